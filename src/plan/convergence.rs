@@ -174,7 +174,7 @@ impl Meshes {
         let ends =
             starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
         let normal = |load: &Load| match *load {
-            Load::Approach { approach, .. } => (false, approach),
+            Load::Approach { approach, .. } | Load::Spring { drive: approach, .. } => (false, approach),
             Load::Force { normal, .. } => (true, normal),
         };
         for by_force in [true, false] {

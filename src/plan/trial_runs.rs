@@ -209,6 +209,8 @@ impl TrialScene<'_> {
             match self.history.at(time).validated_at(time)? {
                 Load::Force { normal, .. } => force = force.max(normal),
                 Load::Approach { approach: depth, .. } => approach = approach.max(depth),
+                // either is a bound
+                Load::Spring { drive: depth, .. } => approach = approach.max(depth),
             }
         }
         let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;

@@ -136,9 +136,11 @@ impl StatesContact {
             let swept = Load::Force { normal: 0.0, tilt: self.states.tilt }.to_string();
             return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
         }
+        let rest = self.states.rest.approach;
         match load {
             Load::Force { normal, .. } => Ok(Demand::Force(normal)),
-            Load::Approach { approach, .. } => Ok(Demand::Depth(approach - self.states.rest.approach)),
+            Load::Approach { approach, .. } => Ok(Demand::Depth { depth: approach - rest, give: 0.0 }),
+            Load::Spring { stiffness, drive, .. } => Ok(Demand::Depth { depth: drive - rest, give: 1.0 / stiffness }),
         }
     }
 

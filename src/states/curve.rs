@@ -182,37 +182,34 @@ impl ElasticStates {
         self.tilt.iter().all(|tilt| matches!(tilt, Tilt::Fixed(_)))
     }
 
-    /// The level of a depth \[m²\]: 0 without depth, NaN beyond the last state.
-    pub(super) fn level_at(&self, depth: f64) -> f64 {
-        let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| depth > 0.0) else { return 0.0 };
-        let wanted = depth.ln();
-        if wanted > last.depth {
+    /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, NaN beyond the last state.
+    pub(super) fn level_where(&self, give: f64, sum: f64) -> f64 {
+        let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| sum > 0.0) else { return 0.0 };
+        let sum_at = |node: &Node| node.depth.exp() + give * node.level.exp();
+        if sum > sum_at(last) {
             return f64::NAN;
         }
-        if wanted <= first.depth {
-            return (first.level + (wanted - first.depth) / first.slope).exp();
+        let upper = self.nodes.partition_point(|node| sum_at(node) < sum);
+        let excess = |[depth, slope, level]: [f64; 3]| {
+            let [depth, yielded] = [depth.exp(), give * level.exp()];
+            [depth + yielded - sum, depth * slope + yielded]
+        };
+        if upper == 0 {
+            // either half of the sum at least
+            let half = (0.5 * sum).ln();
+            let low = ((half - first.depth) / first.slope).min(half - give.ln() - first.level);
+            let at = |s: f64| excess([first.depth + first.slope * s, first.slope, first.level + s]);
+            return (first.level + root([low, 0.0], at)).exp();
         }
-        let upper = self.nodes.partition_point(|node| node.depth < wanted);
         let [a, b] = [self.nodes[upper - 1], self.nodes[upper]];
-        let slopes = [a.slope, b.slope].map(|slope| slope * (b.level - a.level));
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut s = (wanted - a.depth) / (b.depth - a.depth);
-        // Newton's steps, halved intervals where one leaves the bracket
-        for _ in 0..MAX_STEPS {
-            let excess = hermite([a.depth, b.depth], slopes, s) - wanted;
-            if excess > 0.0 {
-                high = s
-            } else {
-                low = s
-            }
-            let next = s - excess / hermite_slope([a.depth, b.depth], slopes, s);
-            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-            if (next - s).abs() <= f64::EPSILON {
-                break;
-            }
-            s = next;
-        }
-        (a.level + s * (b.level - a.level)).exp()
+        let (length, depths) = (b.level - a.level, [a.depth, b.depth]);
+        let slopes = [a.slope, b.slope].map(|slope| slope * length);
+        let at = |s: f64| {
+            let [value, slope] =
+                excess([hermite(depths, slopes, s), hermite_slope(depths, slopes, s) / length, a.level + s * length]);
+            [value, slope * length]
+        };
+        (a.level + root([0.0, 1.0], at) * length).exp()
     }
 
     /// A quantity of the states that is linear in ln l; that of the first state below it, but for `below` times (l/l₁)^`power`.
@@ -255,6 +252,26 @@ pub(super) fn load_point(tilt: &[Tilt; 2]) -> [f64; 2] {
 /// Approach of a point of the body.
 pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64 {
     approach + tilt[0] * point[0] + tilt[1] * point[1]
+}
+
+/// The root of a rising function, given with its slope: Newton's steps from the upper end, halved intervals where one leaves the bracket.
+fn root([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let mut s = high;
+    for _ in 0..MAX_STEPS {
+        let [excess, slope] = at(s);
+        if excess > 0.0 {
+            high = s
+        } else {
+            low = s
+        }
+        let next = s - excess / slope;
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if (next - s).abs() <= f64::EPSILON * s.abs().max(1.0) {
+            break;
+        }
+        s = next;
+    }
+    s
 }
 
 /// Cubic with the values `f` and slopes `m` at 0 and 1.

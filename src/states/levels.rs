@@ -15,8 +15,9 @@ const GROUPS: usize = 256;
 pub(super) enum Demand {
     /// A force \[N\].
     Force(f64),
-    /// A depth of the load point below the first touch of the undisturbed bodies \[m\].
-    Depth(f64),
+    /// A depth of the load point below the first touch of the undisturbed bodies \[m\], which a spring of the compliance `give` \[m/N\] prescribes:
+    /// depth less give times force; 0 for a given approach.
+    Depth { depth: f64, give: f64 },
 }
 
 /// Levels from the top of the group before to its own, with one past.
@@ -97,12 +98,12 @@ impl Levels {
         }
         let level = match demand {
             Demand::Force(force) => self.level_of_force(compliance, force),
-            Demand::Depth(depth) => self.level_of_depth(states, depth),
+            Demand::Depth { depth, give } => self.level_of_depth(states, compliance, [depth, give]),
         };
         if level.is_nan() || level > states.last_level() {
             let (needed, last) = match demand {
                 Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),
-                Demand::Depth(depth) => (format!("the depth {depth:.3e} m"), states.last_depth()),
+                Demand::Depth { depth, .. } => (format!("the depth {depth:.3e} m"), states.last_depth()),
             };
             return Err(StatesError::Beyond { time, needed, last }.into());
         }
@@ -111,11 +112,14 @@ impl Levels {
         }
         self.cut_at(states, level);
         self.accept(level, compliance);
+        if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
+            self.motions.depth = depth; // the bodies are apart
+        }
         Ok(())
     }
 
     /// The groups, each with its bottom, that of the first being 0, and its W if nothing holds it.
-    fn spans(&self) -> impl DoubleEndedIterator<Item = (f64, Motions, &Group, f64)> {
+    fn spans(&self) -> impl Iterator<Item = (f64, Motions, &Group, f64)> {
         self.groups.iter().zip(&self.trial).enumerate().map(|(k, (group, &free))| {
             let (bottom, motions) = self.bottom(k);
             (bottom, motions, group, free)
@@ -141,22 +145,25 @@ impl Levels {
         self.bottom(self.groups.len()).0 + (force - carried) * compliance
     }
 
-    /// The level c up to which groups are held at a depth D(c) = δ(c) + Σ W Δδ above c; NaN beyond the sweep.
-    fn level_of_depth(&self, states: &ElasticStates, depth: f64) -> f64 {
-        if depth > self.bottom(self.groups.len()).1.depth {
-            return states.level_at(depth);
+    /// The level c up to which groups are held where D(c) + `give` F(c) = `depth`, with D(c) = δ(c) + Σ W Δδ above c; NaN beyond the
+    /// sweep.
+    fn level_of_depth(&self, states: &ElasticStates, compliance: f64, [depth, give]: [f64; 2]) -> f64 {
+        let yielding = give / compliance;
+        let mut reached: f64 =
+            self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum();
+        if depth <= reached {
+            return 0.0;
         }
-        let mut above = 0.0;
-        for (bottom, lower, group, free) in self.spans().rev() {
-            let upper = group.motions.depth;
-            let whole = above + free * (upper - lower.depth);
-            if depth > lower.depth + whole {
-                let at_edge = (depth - above - free * upper) / (1.0 - free);
-                return states.level_at(at_edge).clamp(bottom, group.top);
+        for (bottom, lower, group, free) in self.spans() {
+            let more = (1.0 - free) * (group.motions.depth - lower.depth + yielding * (group.top - bottom));
+            if reached + more >= depth {
+                let here = lower.depth + yielding * bottom + (depth - reached) / (1.0 - free);
+                return states.level_where(yielding, here).clamp(bottom, group.top);
             }
-            above = whole;
+            reached += more;
         }
-        0.0
+        let (top, motions) = self.bottom(self.groups.len());
+        states.level_where(yielding, motions.depth + yielding * top + (depth - reached))
     }
 
     /// Splits the group that contains a level there, or adds a group up to it.

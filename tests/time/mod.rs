@@ -8,6 +8,7 @@ mod inside;
 mod protocols;
 mod protocols_run;
 mod returns;
+mod springs;
 mod states;
 mod temperature;
 mod time_rules;
