@@ -22,6 +22,7 @@ pub(super) enum Demand {
 
 /// Levels from the top of the group before to its own, with one past.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 struct Group {
     /// Level and motions at its top.
     top: f64,
@@ -32,6 +33,7 @@ struct Group {
 
 /// Groups by ascending levels, their past, and the state that they make.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Levels {
     history: GroupHistory,
     groups: Vec<Group>,
@@ -41,8 +43,10 @@ pub(super) struct Levels {
     pub(super) level: f64,
     /// Σ w Δl \[N\].
     pub(super) force: f64,
-    /// Σ W Δy.
+    /// Σ W Δy, less the lift.
     pub(super) motions: Motions,
+    /// How far bodies of given approach are apart \[m\].
+    pub(super) lift: f64,
 }
 
 impl Levels {
@@ -54,6 +58,7 @@ impl Levels {
             level: 0.0,
             force: 0.0,
             motions: Motions::default(),
+            lift: 0.0,
         }
     }
 
@@ -62,7 +67,20 @@ impl Levels {
         self.history.copy_from(&other.history);
         self.groups.clone_from(&other.groups);
         self.trial.clone_from(&other.trial);
-        (self.level, self.force, self.motions) = (other.level, other.force, other.motions);
+        (self.level, self.force, self.motions, self.lift) = (other.level, other.force, other.motions, other.lift);
+    }
+
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn is_of_the_material_of(&self, other: &Levels) -> bool {
+        self.history.rule().is_of_the_material_of(other.history.rule())
+    }
+
+    /// Whether these may be levels of the contact of `other`; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self, other: &Levels) -> bool {
+        let (tops, numbers) = (|| self.groups.iter().map(|group| group.top), [self.level, self.force, self.lift]);
+        let is_finite = tops().chain(numbers).all(f64::is_finite);
+        self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
     }
 
     /// Number of groups.
@@ -70,9 +88,10 @@ impl Levels {
         self.groups.len()
     }
 
-    /// Level at the top of each group, and its traction w.
-    pub(super) fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.groups.iter().map(|group| (group.top, group.traction))
+    /// The top of each group, w and W.
+    pub(super) fn groups(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let displacements = self.history.displacements();
+        self.groups.iter().zip(displacements).map(|(group, displacement)| (group.top, group.traction, displacement))
     }
 
     /// The past does not determine how the groups continue, as after a corner of the load.
@@ -113,7 +132,8 @@ impl Levels {
         self.cut_at(states, level);
         self.accept(level, compliance);
         if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
-            self.motions.depth = depth; // the bodies are apart
+            self.lift = self.motions.depth - depth;
+            self.motions.depth = depth;
         }
         Ok(())
     }
@@ -198,7 +218,7 @@ impl Levels {
             motions.add(self.trial[k], lower, group.motions);
         }
         self.history.commit(&self.trial);
-        (self.level, self.force, self.motions) = (level, force, motions);
+        (self.level, self.force, self.motions, self.lift) = (level, force, motions, 0.0);
         for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
             if self.history.is_like_the_one_before(group) {
                 self.history.merge(group);

@@ -10,6 +10,7 @@ mod protocols_run;
 mod returns;
 mod springs;
 mod states;
+mod states_kept;
 mod temperature;
 mod time_rules;
 mod uncached;
