@@ -67,7 +67,7 @@ impl GrowingSphere {
     ///
     /// # Errors
     /// If the radius is not in \[1e-100, 1e100\] m, the material has no exponential series or no elastic
-    /// response, or the load is an approach.
+    /// response, or the load is no force.
     pub fn new(radius: f64, material: &Material, load: impl LoadHistory + 'static) -> Result<GrowingSphere> {
         within("sphere radius", radius, (1.0 / MOST..=MOST).contains(&radius), "in [1e-100, 1e100] m")?;
         let creep =
@@ -75,8 +75,13 @@ impl GrowingSphere {
         if creep.glassy() == 0.0 {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
         }
-        if let Load::Approach { .. } = load.at(0.0) {
-            let (field, needed, given) = ("the growing sphere", "a force", "an approach");
+        let given = match load.at(0.0) {
+            Load::Force { .. } => None,
+            Load::Approach { .. } => Some("an approach"),
+            Load::Spring { .. } => Some("a spring"),
+        };
+        if let Some(given) = given {
+            let (field, needed) = ("the growing sphere", "a force");
             return Err(LoadError::WrongKind { field, needed, given }.into());
         }
         let relaxation = creep.relaxation();
@@ -140,7 +145,7 @@ impl GrowingSphere {
     fn force(&self, t: f64) -> f64 {
         match self.load.at(t) {
             Load::Force { normal, .. } => normal,
-            Load::Approach { .. } => f64::NAN,
+            Load::Approach { .. } | Load::Spring { .. } => f64::NAN,
         }
     }
 

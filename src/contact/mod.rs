@@ -31,7 +31,7 @@ mod read;
 mod state;
 
 #[cfg(feature = "checkpoint")]
-mod checkpoint;
+pub(crate) mod checkpoint;
 mod computation;
 mod distributed;
 mod indenter;

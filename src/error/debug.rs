@@ -42,6 +42,7 @@ fmt_fields! {
     BeyondFullContact { time approach greatest }
     BeyondMaterial { time age known_until }
     BeyondReach { time reach }
+    Cancelled { what }
     #[cfg(feature = "checkpoint")]
     Checkpoint { path source }
     ContactAtEdge { time cells }

@@ -372,6 +372,13 @@ pub enum Error {
         length: f64,
     },
 
+    /// The caller's report of progress ended the call.
+    #[error("{what} was cancelled by its report of progress")]
+    Cancelled {
+        /// The call.
+        what: &'static str,
+    },
+
     /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
     /// the tolerance is too small.
     #[error(

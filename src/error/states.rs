@@ -53,6 +53,14 @@ pub enum StatesError {
         given: String,
     },
 
+    /// The pressures of the states were not kept.
+    #[error("the states hold no pressures: call Sweep::keep_pressures before the sweep")]
+    NoPressures,
+
+    /// The states were read from a file or given as a table: no contact can be solved between them.
+    #[error("the states hold no surface to solve a contact on: fields need the states of a Sweep of this process")]
+    NoScene,
+
     /// A group of levels left 0 ≤ W ≤ 1, or pulls: the levels are not in order, and the superposition is not proved.
     #[error("at t = {} s a group of levels has W = {displacement}, outside [0, 1]: take a shorter step, or ViscoelasticContact", rounded(*.time, TIME))]
     OutOfOrder {

@@ -16,9 +16,7 @@ mod part;
 #[cfg(any(feature = "csv", feature = "plot"))]
 pub(crate) use appending::Appending;
 #[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
-pub(crate) use part::Part;
-#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
-pub(crate) use part::replace;
+pub(crate) use part::{Part, replace};
 
 /// The error of writing a file.
 pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {

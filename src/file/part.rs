@@ -79,7 +79,6 @@ impl Part {
 
 /// Writes a file under a temporary name, syncs it and renames it to `path`. A file of this name is replaced then, and
 /// is unchanged if anything fails; of several concurrent writers the last one to finish wins.
-#[cfg(any(test, feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let (part, file) = Part::create(path)?;
     part.fill(file, write)

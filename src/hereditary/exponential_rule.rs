@@ -258,6 +258,11 @@ impl ExponentialRule {
             && follows(self.at_start)
     }
 
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn is_of_the_material_of(&self, other: &ExponentialRule) -> bool {
+        self.relaxation == other.relaxation
+    }
+
     /// The past does not determine how u continues, as after a corner of the load.
     pub(crate) fn reset_differences(&mut self) {
         (self.known, self.lacking) = (0, 0);

@@ -10,6 +10,7 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// Each group has a row: W, its differences d₁ and d₂, then q_i for each relaxation time.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct GroupHistory {
     rule: ExponentialRule,
     rows: Vec<f64>,
@@ -81,6 +82,18 @@ impl GroupHistory {
                 *q = decay * *q + one * change + two * bend + three * twist;
             }
         }
+    }
+
+    /// Whether it may be the history of so many groups by the rule of `other`; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, other: &GroupHistory, groups: usize) -> bool {
+        let is_finite = self.rows.iter().all(|value| value.is_finite());
+        self.rule.fits(&other.rule) && self.rows.len() == groups * self.stride() && is_finite
+    }
+
+    /// The displacement of each group.
+    pub(crate) fn displacements(&self) -> impl Iterator<Item = f64> + '_ {
+        self.rows.chunks_exact(self.stride()).map(|row| row[0])
     }
 
     /// Adds an undisturbed group after the others.

@@ -21,7 +21,7 @@
 //! ```
 
 pub use crate::error::{Location, Verdict, Violation};
-use crate::load::{Load, LoadHistory};
+use crate::load::{Load, LoadHistory, VALUES};
 
 /// Difference allowed between formulas that are equal but for rounding, relative to the greatest value.
 const SAME: f64 = 1e-10;
@@ -80,18 +80,18 @@ fn and_between(moments: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 /// The greatest absolute value at and between the moments: a load may vanish at its corners.
-fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
-    and_between(moments).fold([0.0; 3], |most, t| {
+fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; VALUES] {
+    and_between(moments).fold([0.0; VALUES], |most, t| {
         let (at, before) = (history.at(t).values(), history.before(t).values());
-        [0, 1, 2].map(|k| f64::max(most[k], f64::max(at[k].abs(), before[k].abs())))
+        std::array::from_fn(|k| f64::max(most[k], f64::max(at[k].abs(), before[k].abs())))
     })
 }
 
 /// Accepts a load that differs from the expected one by no more than `within` in each value.
-fn check_load(law: &'static str, t: f64, found: &Load, expected: &Load, within: [f64; 3]) -> Verdict {
+fn check_load(law: &'static str, t: f64, found: &Load, expected: &Load, within: [f64; VALUES]) -> Verdict {
     let (a, b, named) = (found.values(), expected.values(), found.names());
     Violation::check(law, "kind of load", t, [a[0], b[0]], found.kind() == expected.kind())?;
-    (0..3).try_for_each(|k| Violation::check(law, named[k], t, [a[k], b[k]], (a[k] - b[k]).abs() <= within[k]))
+    (0..VALUES).try_for_each(|k| Violation::check(law, named[k], t, [a[k], b[k]], (a[k] - b[k]).abs() <= within[k]))
 }
 
 /// Breakpoints are finite and later than the argument; the next one is the same for every argument before it.
@@ -122,7 +122,7 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
     Ok(())
 }
 
-/// The loads are valid, finite with non-negative forces, before and after jumps and between the times.
+/// The loads are valid, finite with forces that press and springs that resist, before and after jumps and between the times.
 ///
 /// # Errors
 /// The first violation.
@@ -130,7 +130,7 @@ pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for t in and_between(&moments(history, times)) {
         for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
             let (named, found) = (load.names(), load.values());
-            let k = (0..3).find(|&k| !found[k].is_finite()).unwrap_or(0);
+            let k = (0..VALUES).find(|&k| !found[k].is_finite()).unwrap_or(0);
             Violation::check(IS_A_LOAD, named[k], t, [found[k], 0.0], false)?;
         }
     }
@@ -147,7 +147,7 @@ pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for (&t, loads) in moments.iter().zip(&first).rev() {
         let again = [history.before(t), history.at(t)];
         for (found, expected) in [(&again[1], &loads[0]), (&again[0], &loads[1])] {
-            check_load("asked again, it answers the same", t, found, expected, [0.0; 3])?;
+            check_load("asked again, it answers the same", t, found, expected, [0.0; VALUES])?;
         }
     }
     Ok(())
@@ -168,7 +168,7 @@ fn one_sided_limits(law: &'static str, history: &dyn LoadHistory, times: &[f64],
         }
         let (here, near) = (history.at(t + side * far), history.at(t + side * 1e-3 * far));
         let (a, b) = (here.values(), limit.values());
-        let within = [0, 1, 2].map(|k| 0.5 * (a[k] - b[k]).abs() + SAME * scale[k]);
+        let within = std::array::from_fn(|k| 0.5 * (a[k] - b[k]).abs() + SAME * scale[k]);
         check_load(law, t, &limit, &near, within)?;
     }
     Ok(())

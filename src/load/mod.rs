@@ -27,12 +27,12 @@ pub use step::StepLoad;
 
 use std::fmt::{self, Debug};
 
-use crate::error::{Error, Result, finite, non_negative};
+use crate::error::{Error, Result, finite, non_negative, positive};
 
-/// The load at the end of a step: the force or the approach of the rigid body, and its tilt.
+/// The load at the end of a step: the force or the approach of the rigid body, or the spring that drives it, and its tilt.
 ///
-/// Either the normal force or the approach is prescribed, and for each of the two tilts either the angle, or
-/// the coordinate of the pivot about which the body rotates freely. The constructors cover the usual cases;
+/// Either the normal force or the approach is prescribed, or the far end of a spring between them, and for each of the two tilts either the
+/// angle, or the coordinate of the pivot about which the body rotates freely. The constructors cover the usual cases;
 /// the variants cover every combination.
 ///
 /// ```
@@ -61,6 +61,16 @@ pub enum Load {
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
     },
+    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without tension.
+    Spring {
+        /// Stiffness k of the spring, > 0 \[N/m\].
+        stiffness: f64,
+        /// Position z of its far end \[m\]: the approach of the body if nothing pressed against it. The spring acts at the point about
+        /// which the body tilts, as a given approach does.
+        drive: f64,
+        /// Tilt along x1 and along x2.
+        tilt: [Tilt; 2],
+    },
 }
 
 /// The tilt along one axis: the rotation by which the body lowers the surface by α x.
@@ -83,6 +93,7 @@ impl fmt::Display for Load {
         match self {
             Load::Force { normal, .. } => write!(f, "a force of {normal} N")?,
             Load::Approach { approach, .. } => write!(f, "an approach of {approach} m")?,
+            Load::Spring { stiffness, drive, .. } => write!(f, "a spring of {stiffness} N/m driven by {drive} m")?,
         }
         for (tilt, axis) in self.tilt().into_iter().zip(["x1", "x2"]) {
             match tilt {
@@ -94,6 +105,9 @@ impl fmt::Display for Load {
         Ok(())
     }
 }
+
+/// The number of values that a load prescribes, 0 where there are fewer.
+const VALUES: usize = 4;
 
 const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];
 
@@ -124,25 +138,50 @@ impl Load {
         Load::Approach { approach, tilt: tilt.map(Tilt::Fixed) }
     }
 
+    /// A spring of `stiffness` \[N/m\] whose far end is at `drive` \[m\], on a body that cannot tilt: it carries the force W = k (z − ω), or
+    /// holds the body at ω = z where it does not touch.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// let report = contact.step(0.0, Load::spring(1.0e4, 100.0e-6))?;
+    /// assert!((report.force - 1.0e4 * (100.0e-6 - report.approach)).abs() < 1.0e-5 * report.force);
+    /// assert!(contact.step(1.0, Load::spring(1.0e4, 100.0e-6))?.force < report.force); // the body creeps, the spring relaxes
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn spring(stiffness: f64, drive: f64) -> Load {
+        Load::Spring { stiffness, drive, tilt: UPRIGHT }
+    }
+
     /// Tilt along x1 and along x2.
     pub fn tilt(&self) -> [Tilt; 2] {
-        let (Load::Force { tilt, .. } | Load::Approach { tilt, .. }) = *self;
+        let (Load::Force { tilt, .. } | Load::Approach { tilt, .. } | Load::Spring { tilt, .. }) = *self;
         tilt
     }
 
-    /// Force or approach, then the tilts or load points along x1 and x2.
-    fn values(&self) -> [f64; 3] {
-        let (Load::Force { normal: main, tilt } | Load::Approach { approach: main, tilt }) = *self;
-        let [first, second] = tilt.map(|(Tilt::Fixed(value) | Tilt::Free { at: value })| value);
-        [main, first, second]
+    /// Force, approach or drive, then the tilts or load points along x1 and x2, and the stiffness of a spring.
+    fn values(&self) -> [f64; VALUES] {
+        let [first, second] = self.tilt().map(|(Tilt::Fixed(value) | Tilt::Free { at: value })| value);
+        match *self {
+            Load::Force { normal: main, .. } | Load::Approach { approach: main, .. } => [main, first, second, 0.0],
+            Load::Spring { stiffness, drive, .. } => [drive, first, second, stiffness],
+        }
     }
 
     /// The names of these values.
-    fn names(&self) -> [&'static str; 3] {
-        let main = if matches!(self, Load::Force { .. }) { "normal force" } else { "approach" };
+    fn names(&self) -> [&'static str; VALUES] {
+        let main = match self {
+            Load::Force { .. } => "normal force",
+            Load::Approach { .. } => "approach",
+            Load::Spring { .. } => "drive of the spring",
+        };
         let free = self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
         let first = if free[0] { "load point along x1" } else { "tilt along x1" };
-        [main, first, if free[1] { "load point along x2" } else { "tilt along x2" }]
+        [main, first, if free[1] { "load point along x2" } else { "tilt along x2" }, "stiffness of the spring"]
     }
 
     /// Accepts loads with finite values and a force ≥ 0.
@@ -150,6 +189,9 @@ impl Load {
         let (names, values) = (self.names(), self.values());
         if let Load::Force { normal, .. } = *self {
             non_negative(names[0], normal)?;
+        }
+        if let Load::Spring { stiffness, .. } = *self {
+            positive("stiffness of the spring", stiffness)?;
         }
         names.into_iter().zip(values).try_for_each(|(name, value)| finite(name, value).map(drop))
     }
@@ -177,6 +219,10 @@ impl Load {
             (Load::Approach { .. }, [true, false]) => "an approach, tilt along x1 free",
             (Load::Approach { .. }, [false, true]) => "an approach, tilt along x2 free",
             (Load::Approach { .. }, [true, true]) => "an approach, tilts free",
+            (Load::Spring { .. }, [false, false]) => "a spring, tilts prescribed",
+            (Load::Spring { .. }, [true, false]) => "a spring, tilt along x1 free",
+            (Load::Spring { .. }, [false, true]) => "a spring, tilt along x2 free",
+            (Load::Spring { .. }, [true, true]) => "a spring, tilts free",
         }
     }
 
@@ -198,8 +244,8 @@ impl Load {
         self.kind() == other.kind()
     }
 
-    /// Deviation at `time` from the polynomial through loads of the same kind at other times: force or approach relative to
-    /// `scale`, tilts and points relative to their greatest value.
+    /// Deviation at `time` from the polynomial through loads of the same kind at other times: force, approach or drive relative to
+    /// `scale`, tilts, points and stiffness relative to their greatest value.
     pub(crate) fn deviation(&self, time: f64, nodes: &[(f64, Load)], scale: f64) -> f64 {
         let here = self.values();
         let (mut far, mut greatest) = (here, here.map(f64::abs));
@@ -217,7 +263,7 @@ impl Load {
             let far = far[axis].abs();
             if far <= 4.0 * f64::EPSILON * greatest[axis] { 0.0 } else { far / scale }
         };
-        relative(0, scale).max(relative(1, greatest[1])).max(relative(2, greatest[2]))
+        (1..VALUES).map(|axis| relative(axis, greatest[axis])).fold(relative(0, scale), f64::max)
     }
 
     /// Linear interpolation at the fraction `s` from `self` to `to`, which is of the same kind.
@@ -233,6 +279,9 @@ impl Load {
             (Load::Force { normal: a, .. }, Load::Force { normal: b, .. }) => Load::Force { normal: mix(a, b), tilt },
             (Load::Approach { approach: a, .. }, Load::Approach { approach: b, .. }) => {
                 Load::Approach { approach: mix(a, b), tilt }
+            }
+            (Load::Spring { stiffness, drive, .. }, Load::Spring { stiffness: k, drive: z, .. }) => {
+                Load::Spring { stiffness: mix(stiffness, k), drive: mix(drive, z), tilt }
             }
             _ => *to,
         }

@@ -80,10 +80,6 @@ impl Metadata {
         let units = Field::ALL.map(|field| (field.name(), field.unit())).into_iter().chain(UNITS);
         let temperature = contact.temperature().map(|temperature| ("temperature", text(&format!("{temperature:?}"))));
         let scene = [
-            ("title", text(&self.title)),
-            ("notes", object(self.notes().map(|(key, value)| (key, text(value))))),
-            ("crate", text(env!("CARGO_PKG_NAME"))),
-            ("version", text(env!("CARGO_PKG_VERSION"))),
             ("grid", grid),
             ("bodies", contact.bodies().to_string()),
             ("kernel", text(&contact.kernel().to_string())),
@@ -91,7 +87,23 @@ impl Metadata {
             ("material", text(&format!("{:?}", contact.material()))),
         ];
         let units = ("units", object(units.map(|(name, unit)| (name, text(unit)))));
-        object(scene.into_iter().chain(temperature).chain([units, ("conventions", text(CONVENTIONS))]))
+        let conventions = ("conventions", text(CONVENTIONS));
+        object(self.head().into_iter().chain(scene).chain(temperature).chain([units, conventions]))
+    }
+
+    /// Title, notes and version of the crate as JSON.
+    #[cfg(feature = "npy")]
+    pub(super) fn brief(&self) -> String {
+        object(self.head())
+    }
+
+    fn head(&self) -> [(&'static str, String); 4] {
+        [
+            ("title", text(&self.title)),
+            ("notes", object(self.notes().map(|(key, value)| (key, text(value))))),
+            ("crate", text(env!("CARGO_PKG_NAME"))),
+            ("version", text(env!("CARGO_PKG_VERSION"))),
+        ]
     }
 }
 

@@ -7,6 +7,7 @@
 //! | `write_npy`, `write_field_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
 //! | `write_stress`: the stress in a volume as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
 //! | `write_stress`: the stress in a volume as a VTK grid | `vtk` | ParaView, VisIt, PyVista |
+//! | `write_states`, `read_states`: elastic states as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
 //! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
@@ -42,6 +43,8 @@ mod npy;
 mod npz;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod series;
+#[cfg(feature = "npy")]
+mod states;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod stress;
 #[cfg(feature = "vtk")]
@@ -55,5 +58,7 @@ pub use metadata::Metadata;
 pub use npy::{write_field_npy, write_npy};
 #[cfg(any(feature = "npy", feature = "vtk"))]
 pub use series::{Format, FrameSeries};
+#[cfg(feature = "npy")]
+pub use states::{read_states, write_states};
 #[cfg(any(feature = "npy", feature = "vtk"))]
 pub use stress::write_stress;

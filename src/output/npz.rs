@@ -36,9 +36,14 @@ pub(super) fn write_frame(
 pub(super) struct Archive<W: Write + Seek>(ZipWriter<Deferred<W>>);
 
 impl<W: Write + Seek> Archive<W> {
+    /// An archive without arrays.
+    pub(super) fn empty(out: W) -> Archive<W> {
+        Archive(ZipWriter::new(Deferred::new(out)))
+    }
+
     /// An archive that begins with the time and the cell centres.
     pub(super) fn new(out: W, time: f64, grid: &Grid) -> io::Result<Archive<W>> {
-        let mut archive = Archive(ZipWriter::new(Deferred::new(out)));
+        let mut archive = Archive::empty(out);
         archive.add("time", &[], &[time])?;
         for (axis, name) in ["x1", "x2"].into_iter().enumerate() {
             let cells = grid.cells()[axis];

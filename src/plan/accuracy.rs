@@ -7,23 +7,14 @@ use crate::error::{Result, within};
 /// ```
 /// use viscocontact::plan::Accuracy;
 ///
-/// assert_eq!(Accuracy::Standard.target(), 1e-3);
-/// let custom = Accuracy::target_of(3e-4)?;
-/// assert!(custom.settings().tolerance < Accuracy::Standard.settings().tolerance);
+/// assert_eq!(Accuracy::STANDARD.target(), 1e-3);
+/// let custom = Accuracy::new(3e-4)?;
+/// assert!(custom.settings().tolerance < Accuracy::STANDARD.settings().tolerance);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub enum Accuracy {
-    /// 1e-2: for a first look.
-    Coarse,
-    /// 1e-3: for design.
-    #[default]
-    Standard,
-    /// 1e-4: for reference solutions.
-    Fine,
-    /// Any target in \[1e-6, 0.1\], made by [`Accuracy::target_of`]; a plan rejects targets outside.
-    Custom(f64),
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    target: f64,
 }
 
 /// Shares of the target for the error in time and the error of the mesh, as measured (docs/accuracy.md).
@@ -32,24 +23,32 @@ const SPACE_SHARE: f64 = 0.8;
 /// Share of the target for the residual of the solver, relative to the displacement: far below the other shares.
 const SOLVER_SHARE: f64 = 0.01;
 
+impl Default for Accuracy {
+    fn default() -> Accuracy {
+        Accuracy::STANDARD
+    }
+}
+
 impl Accuracy {
+    /// 1e-2: for a first look.
+    pub const COARSE: Accuracy = Accuracy { target: 1e-2 };
+    /// 1e-3: for design. The default.
+    pub const STANDARD: Accuracy = Accuracy { target: 1e-3 };
+    /// 1e-4: for reference solutions.
+    pub const FINE: Accuracy = Accuracy { target: 1e-4 };
+
     /// Any target in \[1e-6, 0.1\].
     ///
     /// # Errors
     /// If the target is outside this range.
-    pub fn target_of(target: f64) -> Result<Accuracy> {
+    pub fn new(target: f64) -> Result<Accuracy> {
         within("accuracy", target, (1e-6..=0.1).contains(&target), "in [1e-6, 0.1]")?;
-        Ok(Accuracy::Custom(target))
+        Ok(Accuracy { target })
     }
 
     /// The target, a relative error.
     pub fn target(&self) -> f64 {
-        match *self {
-            Accuracy::Coarse => 1e-2,
-            Accuracy::Standard => 1e-3,
-            Accuracy::Fine => 1e-4,
-            Accuracy::Custom(target) => target,
-        }
+        self.target
     }
 
     /// Adaptive steps for this accuracy.
@@ -59,17 +58,17 @@ impl Accuracy {
 
     /// Tolerance of adaptive steps for this accuracy.
     pub(crate) fn step_tolerance(&self) -> f64 {
-        (TIME_SHARE * self.target()).clamp(1e-9, 0.1)
+        (TIME_SHARE * self.target).clamp(1e-9, 0.1)
     }
 
     /// Settings with the tolerances of this accuracy; the other settings are default.
     pub fn settings(&self) -> Settings {
-        let tolerance = (SOLVER_SHARE * self.target()).clamp(1e-12, 1e-3);
-        Settings { tolerance, series_tolerance: (0.1 * self.target()).clamp(1e-7, 1e-2), ..Settings::default() }
+        let tolerance = (SOLVER_SHARE * self.target).clamp(1e-12, 1e-3);
+        Settings { tolerance, series_tolerance: (0.1 * self.target).clamp(1e-7, 1e-2), ..Settings::default() }
     }
 
     /// Allowed error of the mesh for this accuracy.
     pub(crate) fn space(&self) -> f64 {
-        SPACE_SHARE * self.target()
+        SPACE_SHARE * self.target
     }
 }

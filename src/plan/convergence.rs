@@ -174,7 +174,7 @@ impl Meshes {
         let ends =
             starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
         let normal = |load: &Load| match *load {
-            Load::Approach { approach, .. } => (false, approach),
+            Load::Approach { approach, .. } | Load::Spring { drive: approach, .. } => (false, approach),
             Load::Force { normal, .. } => (true, normal),
         };
         for by_force in [true, false] {
@@ -222,7 +222,7 @@ pub(super) fn converge(scene: &TrialScene<'_>, size: &ContactSize, area: bool) -
     let steps = Steps::find(scene, &first)?;
     let scene = &TrialScene { tolerance: steps.tolerance, ..*scene };
     let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, size)) {
-        Some(Err(error @ Error::OutOfMemory { .. })) => return Err(error),
+        Some(Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. }))) => return Err(error),
         // the run succeeds without a separate domain for this part
         Some(law) => Some(law.unwrap_or(ErrorLaw::NONE)),
         None => None,

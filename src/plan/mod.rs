@@ -1,23 +1,18 @@
 //! Mesh, domain and steps for a given accuracy.
 
 mod accuracy;
+mod builder;
 mod convergence;
 mod error_law;
 mod steps;
 mod trial_runs;
 
 pub use accuracy::Accuracy;
+pub use builder::{PlanBuilder, PlanProgress};
 
 use crate::Grid;
 use crate::contact::{Builder, Stepping};
-use crate::error::{Error, Result, positive};
-use crate::geometry::Geometry;
-use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::convergence::{ConvergedRun, DOMAIN_TO_CONTACT, converge, grid_with};
-use crate::plan::error_law::ErrorLaw;
-use crate::plan::trial_runs::{ContactSize, TrialScene};
-use crate::rheology::{Material, TemperatureHistory};
 
 /// A run planned for an accuracy: the extent of the contact, the required cells and steps, and their cost.
 ///
@@ -32,7 +27,7 @@ use crate::rheology::{Material, TemperatureHistory};
 /// Errors of at most twice the accuracy, relative to the greatest value of the run, of
 /// * approach and force at all times,
 /// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
-/// * with [`PlanOptions::area`], the contact radius wherever the contact is at least 8 cells across.
+/// * with [`PlanBuilder::area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// Other errors are estimated, not promised: [`Plan::mesh_error`] estimates the error of the area,
 /// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve
@@ -45,13 +40,12 @@ use crate::rheology::{Material, TemperatureHistory};
 /// builder. Layers and other kernels are not planned.
 ///
 /// ```
-/// use viscocontact::plan::{Accuracy, Plan};
 /// use viscocontact::prelude::*;
 ///
 /// let sphere = Sphere::new(10.0e-3)?;
 /// let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
 /// let load = StepLoad::new(Load::force(1.0))?;
-/// let plan = Plan::new(&sphere, &body, &load, 2.0, Accuracy::Standard)?;
+/// let plan = Plan::builder(&sphere, &body, &load, 2.0).accuracy(Accuracy::STANDARD).build()?;
 /// println!("{plan}");
 ///
 /// let mut contact = plan.builder.build()?;
@@ -92,121 +86,7 @@ pub struct Plan {
     pub pressure_error_at_all_times: f64,
 }
 
-/// Options of a plan besides the scene of [`Plan::new`].
-#[derive(Debug, Clone, Copy, Default)]
-#[expect(clippy::exhaustive_structs, reason = "written as a literal")]
-pub struct PlanOptions<'a> {
-    /// A temperature that changes ([`Builder::temperature`]): the times of the plan and of the load are times, the body creeps
-    /// in reduced time.
-    pub temperature: Option<&'a TemperatureHistory>,
-    /// Whether the mesh gives the contact radius, √(area/π), this accuracy too, at all times at which the contact is at least
-    /// 8 cells across. The radius of a growing contact errs by a fraction of a cell.
-    pub area: bool,
-}
-
-/// Most cells along a side of a plan: more exceed the memory of a workstation.
-const MOST_CELLS: usize = 1 << 13;
-/// Fewest cells across the widest contact: fewer do not resolve it.
-const FEWEST_ACROSS: f64 = 14.0;
-
 impl Plan {
-    /// Plans a run of one body from rest to the time `until` \[s\].
-    ///
-    /// # Errors
-    /// If the time is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or
-    /// approach and force need more than 8192 cells along a side.
-    pub fn new(
-        geometry: &dyn Geometry,
-        material: &Material,
-        history: &dyn LoadHistory,
-        until: f64,
-        accuracy: Accuracy,
-    ) -> Result<Plan> {
-        Plan::with(geometry, material, history, until, accuracy, PlanOptions::default())
-    }
-
-    /// As [`Plan::new`], with options.
-    ///
-    /// ```
-    /// use viscocontact::plan::{Accuracy, Plan, PlanOptions};
-    /// use viscocontact::prelude::*;
-    /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
-    ///
-    /// let (sphere, load) = (Sphere::new(10.0e-3)?, StepLoad::new(Load::force(1.0))?);
-    /// let body = Material::incompressible(Zener::new(1.0e7, 1.0e6, 1.0e7)?);
-    /// let law = TimeTemperature::wlf(17.44, 51.6, 263.15)?;
-    /// let warming = TemperatureHistory::table(law, &[(0.0, 263.15), (100.0, 273.15)])?;
-    /// let options = PlanOptions { temperature: Some(&warming), ..PlanOptions::default() };
-    /// let plan = Plan::with(&sphere, &body, &load, 100.0, Accuracy::Coarse, options)?;
-    /// let mut contact = plan.builder.build()?;
-    /// let mut run = contact.follow(&load, plan.stepping, 100.0);
-    /// while run.next_step()?.is_some() {}
-    /// let exact = viscocontact::analytic::GrowingSphere::step(10.0e-3, &body, 1.0)?;
-    /// assert!((contact.approach() / exact.approach(contact.reduced_time()) - 1.0).abs() < 1e-2);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`Plan::new`]; for a temperature of the run as
-    /// [`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor).
-    pub fn with(
-        geometry: &dyn Geometry,
-        material: &Material,
-        history: &dyn LoadHistory,
-        until: f64,
-        accuracy: Accuracy,
-        PlanOptions { temperature, area }: PlanOptions<'_>,
-    ) -> Result<Plan> {
-        positive("end of the run", until)?;
-        Accuracy::target_of(accuracy.target())?;
-        let tolerance = accuracy.step_tolerance();
-        let scene = TrialScene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance };
-        let size = ContactSize::of(&scene)?;
-        let found = size.on_growing_domain(|size| converge(&scene, size, area))?;
-        let ConvergedRun { steps, meshes, mut pressure, reach } = found;
-        let size = ContactSize { reach, ..size };
-        let needed = |pressure: ErrorLaw| {
-            let across = meshes.across_for(pressure, steps.left_for_mesh(accuracy), accuracy, area).max(FEWEST_ACROSS);
-            (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * size.reach[axis] / size.width[axis]))
-        };
-        let (mut across, mut sides) = needed(pressure);
-        if sides[0].max(sides[1]) > MOST_CELLS as f64 {
-            pressure = ErrorLaw::NONE;
-            (across, sides) = needed(pressure);
-        }
-        let wanted = sides[0].max(sides[1]);
-        if wanted.is_nan() || wanted > MOST_CELLS as f64 {
-            let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
-            return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
-        }
-        let grid = grid_with(&size, across)?;
-        let across = across * grid.cells()[0] as f64 / sides[0];
-        let converges = pressure.converges && steps.resolve_pressure(accuracy);
-        let mesh_error = MeshError {
-            approach: meshes.main().at(across).max(meshes.singular().at(across)),
-            max_pressure: converges.then(|| pressure.at(across)),
-            area: 2.0 * meshes.radius().at(across),
-            singular: meshes.singular().at(across),
-        };
-        let builder = scene.builder(grid.clone());
-        let memory = builder.memory()?;
-        Ok(Plan {
-            builder,
-            stepping: Stepping::adaptive(steps.tolerance),
-            grid,
-            accuracy,
-            reach,
-            steps: steps.run.steps.len(),
-            convolutions: meshes.work().at(across),
-            // adaptive steps keep the rate of the displacement
-            bytes: memory.total() + 8 * memory.computed_cells as u64,
-            time_error: steps.error.map(|error| error.main),
-            mesh_error,
-            pressure_error_at_all_times: meshes.pressure_over_time().at(across)
-                + steps.error.map_or(0.0, |error| error.pressure_over_time),
-        })
-    }
-
     /// Whether the greatest pressure of the run is promised. There are three exceptions: the pressure does not converge
     /// with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and under moving
     /// edges of bodies that creep fast; it may have been greater while the contact was too small for the coarse runs,

@@ -54,7 +54,9 @@ impl Steps {
             let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
             match Steps::with_tolerance(&TrialScene { tolerance, ..*scene }, grid) {
                 Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
-                Err(error @ (Error::ContactAtEdge { .. } | Error::OutOfMemory { .. })) => return Err(error),
+                Err(error @ (Error::ContactAtEdge { .. } | Error::OutOfMemory { .. } | Error::Cancelled { .. })) => {
+                    return Err(error);
+                }
                 _ => break,
             }
         }

@@ -40,6 +40,8 @@ pub(super) struct TrialScene<'a> {
     pub(super) accuracy: Accuracy,
     /// Tolerance of the steps.
     pub(super) tolerance: f64,
+    /// Called after each step; its error ends the planning.
+    pub(super) progress: &'a dyn Fn(&ViscoelasticContact) -> Result<()>,
 }
 
 /// Size of the contact during a run.
@@ -141,6 +143,7 @@ impl TrialScene<'_> {
         let mut run = Run::default();
         while let Some(report) = follow.next_step()? {
             run.add(follow.contact(), &report);
+            (self.progress)(follow.contact())?;
         }
         Ok(run)
     }
@@ -169,6 +172,7 @@ impl TrialScene<'_> {
         for &(dt, load) in steps {
             let report = advance(&mut contact, dt, load, MAX_HALVINGS)?;
             run.add(&contact, &report);
+            (self.progress)(&contact)?;
         }
         Ok(run)
     }
@@ -205,6 +209,8 @@ impl TrialScene<'_> {
             match self.history.at(time).validated_at(time)? {
                 Load::Force { normal, .. } => force = force.max(normal),
                 Load::Approach { approach: depth, .. } => approach = approach.max(depth),
+                // either is a bound
+                Load::Spring { drive: depth, .. } => approach = approach.max(depth),
             }
         }
         let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;

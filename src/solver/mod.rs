@@ -22,7 +22,7 @@ pub(crate) use extension::{Extension, HaloExchange, HaloRows};
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK, Stop};
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution, Solve};
-pub(crate) use rigid_motion::{Freedom, Modes, RigidMotion};
+pub(crate) use rigid_motion::{Freedom, ModeCoefficients, Modes, RigidMotion};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 use bands::BandSums;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result, StatesError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
+use crate::kernel::Layer;
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory, is_known};
 use crate::states::curve::{ElasticStates, approach_at};
@@ -17,12 +18,18 @@ use crate::states::levels::{Demand, Levels};
 /// most; groups with the same past merge. A step allocates nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
+    scene: Arc<Scene>,
+    pub(super) levels: Levels,
+    pub(super) time: f64,
+    pub(super) reduced_time: f64,
+}
+
+/// What steps do not change.
+#[derive(Clone)]
+struct Scene {
     states: Arc<ElasticStates>,
-    levels: Levels,
     temperature: Option<TemperatureHistory>,
     known_until: f64,
-    time: f64,
-    reduced_time: f64,
     interpolant: Interpolant,
 }
 
@@ -53,32 +60,27 @@ impl StatesContact {
     /// If the material has no exponential series ([`Material::fitted`] gives it one), or another Poisson's ratio than the layer of the sweep.
     pub fn new(states: &Arc<ElasticStates>, material: &Material) -> Result<StatesContact> {
         material.validate()?;
-        if let Some(layer) = &states.layer {
-            layer.check_material(&material.poisson_ratios().collect::<Vec<_>>())?;
+        if let Some(poisson) = states.poisson {
+            Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
-        Ok(StatesContact {
-            states: Arc::clone(states),
-            levels: Levels::new(ExponentialRule::new(&creep)),
-            temperature: None,
-            known_until: material.known_until(),
-            time: 0.0,
-            reduced_time: 0.0,
-            interpolant: Interpolant::CorrectedLinear,
-        })
+        let (states, known_until) = (Arc::clone(states), material.known_until());
+        let scene = Scene { states, temperature: None, known_until, interpolant: Interpolant::CorrectedLinear };
+        let levels = Levels::new(ExponentialRule::new(&creep));
+        Ok(StatesContact { scene: Arc::new(scene), levels, time: 0.0, reduced_time: 0.0 })
     }
 
     /// With a temperature that changes: the material creeps in reduced time.
     #[must_use]
     pub fn with_temperature(mut self, temperature: TemperatureHistory) -> StatesContact {
-        self.temperature = Some(temperature);
+        Arc::make_mut(&mut self.scene).temperature = Some(temperature);
         self
     }
 
     /// With steps that are linear and stay so, as [`TimeRule::ExponentialLinear`](crate::contact::TimeRule::ExponentialLinear).
     #[must_use]
     pub fn with_linear_steps(mut self) -> StatesContact {
-        self.interpolant = Interpolant::Linear;
+        Arc::make_mut(&mut self.scene).interpolant = Interpolant::Linear;
         self
     }
 
@@ -96,23 +98,52 @@ impl StatesContact {
     pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
         non_negative("time step", dt)?;
         load.validate()?;
-        let length = match &self.temperature {
+        let length = match &self.scene.temperature {
             Some(history) => history.reduced_time(self.time, time)?,
             None => dt,
         };
-        let reduced = if self.temperature.is_some() { self.reduced_time + length } else { time };
-        if !is_known(reduced, self.known_until) {
-            return Err(Error::BeyondMaterial { time, age: reduced, known_until: self.known_until });
+        let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
+        if !is_known(reduced, self.scene.known_until) {
+            return Err(Error::BeyondMaterial { time, age: reduced, known_until: self.scene.known_until });
         }
         let demand = self.demand(load)?;
-        self.levels.step(&self.states, (time, length), self.interpolant, demand)?;
+        self.levels.step(&self.scene.states, (time, length), self.scene.interpolant, demand)?;
         (self.time, self.reduced_time) = (time, reduced);
         Ok(self.report())
     }
 
-    /// Takes the state of another contact on the same states and of the same material, without allocating where there is room: a
-    /// caller that iterates keeps a clone, tries steps and copies the clone back.
-    pub fn copy_from(&mut self, other: &StatesContact) {
+    /// The contact as it is, to come back to: a clone.
+    pub fn snapshot(&self) -> StatesContact {
+        self.clone()
+    }
+
+    /// [`StatesContact::snapshot`] into one made before, without allocating where there is room.
+    pub fn snapshot_into(&self, snapshot: &mut StatesContact) {
+        if snapshot.is_of(self) {
+            snapshot.copy_from(self);
+        } else {
+            *snapshot = self.clone();
+        }
+    }
+
+    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they were, bitwise.
+    ///
+    /// # Errors
+    /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
+    pub fn restore(&mut self, snapshot: &StatesContact) -> Result<()> {
+        if !snapshot.is_of(self) {
+            return Err(Error::OtherContact);
+        }
+        self.copy_from(snapshot);
+        Ok(())
+    }
+
+    /// Whether both are clones of one contact.
+    fn is_of(&self, other: &StatesContact) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+    }
+
+    pub(super) fn copy_from(&mut self, other: &StatesContact) {
         self.levels.copy_from(&other.levels);
         (self.time, self.reduced_time) = (other.time, other.reduced_time);
     }
@@ -123,7 +154,7 @@ impl StatesContact {
 
     /// The first corner of the temperature after a time; infinite where there is none.
     pub(super) fn next_temperature_corner(&self, after: f64) -> f64 {
-        self.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
+        self.scene.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
     }
 
     /// Depth of the load point \[m\].
@@ -132,13 +163,15 @@ impl StatesContact {
     }
 
     fn demand(&self, load: Load) -> Result<Demand> {
-        if load.tilt() != self.states.tilt {
-            let swept = Load::Force { normal: 0.0, tilt: self.states.tilt }.to_string();
+        if load.tilt() != self.scene.states.tilt {
+            let swept = Load::Force { normal: 0.0, tilt: self.scene.states.tilt }.to_string();
             return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
         }
+        let rest = self.scene.states.rest.approach;
         match load {
             Load::Force { normal, .. } => Ok(Demand::Force(normal)),
-            Load::Approach { approach, .. } => Ok(Demand::Depth(approach - self.states.rest.approach)),
+            Load::Approach { approach, .. } => Ok(Demand::Depth { depth: approach - rest, give: 0.0 }),
+            Load::Spring { stiffness, drive, .. } => Ok(Demand::Depth { depth: drive - rest, give: 1.0 / stiffness }),
         }
     }
 
@@ -155,6 +188,11 @@ impl StatesContact {
         }
     }
 
+    /// The elastic states that it is made of.
+    pub fn states(&self) -> &Arc<ElasticStates> {
+        &self.scene.states
+    }
+
     /// Time \[s\].
     pub fn time(&self) -> f64 {
         self.time
@@ -167,13 +205,13 @@ impl StatesContact {
 
     /// Approach of the origin \[m\].
     pub fn approach(&self) -> f64 {
-        let depth = self.levels.motions.depth + self.states.rest.approach;
-        depth - approach_at(self.states.load_point(), 0.0, self.tilt())
+        let depth = self.levels.motions.depth + self.scene.states.rest.approach;
+        depth - approach_at(self.scene.states.load_point(), 0.0, self.tilt())
     }
 
     /// Tilt along x1 and x2 \[rad\].
     pub fn tilt(&self) -> [f64; 2] {
-        let (rest, turned) = (self.states.rest.tilt, self.levels.motions.tilt);
+        let (rest, turned) = (self.scene.states.rest.tilt, self.levels.motions.tilt);
         [rest[0] + turned[0], rest[1] + turned[1]]
     }
 
@@ -184,18 +222,18 @@ impl StatesContact {
 
     /// Contact area \[m²\].
     pub fn contact_area(&self) -> f64 {
-        self.states.area(self.levels.level)
+        self.scene.states.area(self.levels.level)
     }
 
     /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
     pub fn stiffness_over_modulus(&self) -> f64 {
-        self.states.stiffness(self.levels.level)
+        self.scene.states.stiffness(self.levels.level)
     }
 
     /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its traction w_i \[Pa\]. With
     /// p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) − p_e(l_i−1)), l_0 = 0.
     pub fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.levels.tractions().take_while(|(top, _)| *top <= self.levels.level)
+        self.levels.groups().map(|(top, traction, _)| (top, traction)).take_while(|(top, _)| *top <= self.levels.level)
     }
 }
 

@@ -1,9 +1,13 @@
 //! The elastic states of a contact, and what lies between them.
 
 use std::fmt;
+use std::sync::Arc;
 
-use crate::kernel::Layer;
+use crate::Grid;
+use crate::contact::Builder;
+use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
+use crate::states::pressed::Pressed;
 
 /// Upper limit of the steps of Newton's method.
 const MAX_STEPS: usize = 100;
@@ -35,24 +39,31 @@ pub struct ElasticState {
 /// first state the approach is a power of the level.
 #[derive(Clone)]
 pub struct ElasticStates {
-    pub(super) states: Vec<ElasticState>,
-    pub(super) rest: Rest,
+    pub(crate) states: Vec<ElasticState>,
+    pub(crate) rest: Rest,
     /// Tilts, or load points, along x1 and x2.
-    pub(super) tilt: [Tilt; 2],
-    pub(super) layer: Option<Layer>,
+    pub(crate) tilt: [Tilt; 2],
+    /// Poisson's ratio of a layer, on which its elastic states depend.
+    pub(crate) poisson: Option<f64>,
     /// Greatest error that a state in the middle of two others showed, after which none was added.
-    pub(super) error: f64,
+    pub(crate) error: f64,
     /// Below this level the elastic contact does not only grow: these levels are held or free as a whole.
-    pub(super) first_level: f64,
+    pub(crate) first_level: f64,
+    /// The pressures of the states, if they are kept.
+    pub(crate) pressures: Vec<Pressed>,
+    /// The grid of the sweep.
+    pub(crate) grid: Option<Grid>,
+    /// What they were swept with, for states between them.
+    pub(super) scene: Option<Builder>,
     nodes: Vec<Node>,
 }
 
 /// Motions of the elastic contact in the limit of no load: where the body rests.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rest {
+pub(crate) struct Rest {
     /// Approach of the load point \[m\].
-    pub(super) approach: f64,
-    pub(super) tilt: [f64; 2],
+    pub(crate) approach: f64,
+    pub(crate) tilt: [f64; 2],
 }
 
 /// ln l, ln δ and its slope, with δ the depth of the load point.
@@ -65,10 +76,11 @@ struct Node {
 
 /// Motions since the body rested on the undisturbed surface.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Motions {
     /// δ, of the load point \[m\].
     pub(super) depth: f64,
-    pub(super) tilt: [f64; 2],
+    pub(crate) tilt: [f64; 2],
 }
 
 impl Motions {
@@ -82,16 +94,73 @@ impl Motions {
 }
 
 impl ElasticStates {
-    pub(super) fn new(
-        states: Vec<ElasticState>,
-        rest: Rest,
-        tilt: [Tilt; 2],
-        layer: Option<Layer>,
-        error: f64,
-    ) -> ElasticStates {
-        let mut elastic = ElasticStates { states, rest, tilt, layer, error, first_level: 0.0, nodes: Vec::new() };
+    pub(crate) fn new(states: Vec<ElasticState>, rest: Rest, tilt: [Tilt; 2]) -> ElasticStates {
+        let (poisson, grid, scene) = (None, None, None);
+        let (error, first_level, pressures, nodes) = (0.0, 0.0, Vec::new(), Vec::new());
+        let mut elastic =
+            ElasticStates { states, rest, tilt, poisson, error, first_level, pressures, grid, scene, nodes };
         elastic.nodes = elastic.nodes();
         elastic
+    }
+
+    /// States of an upright body from a table of (level \[m²\], approach \[m\], stiffness over the modulus \[m\], contact area \[m²\]), as of a closed form or of
+    /// another program. The approach is measured from the first touch, and the contact is taken to grow only.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    /// use viscocontact::states::{ElasticStates, StatesContact};
+    ///
+    /// // Hertz: l = 4/3 √R δ^(3/2), S/E* = 2 a, A = π a², a² = R δ; powers are interpolated exactly
+    /// let hertz = |depth: f64| {
+    ///     let radius = (10.0e-3 * depth).sqrt();
+    ///     (4.0 / 3.0 * radius * depth, depth, 2.0 * radius, std::f64::consts::PI * radius * radius)
+    /// };
+    /// let states = ElasticStates::from_table(&[hertz(1.0e-9), hertz(1.0e-3)])?;
+    /// let mut contact = StatesContact::new(&states, &Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))?;
+    /// let report = contact.step(0.0, Load::force(1.0))?;
+    /// assert!((report.approach / (9.0 / (16.0 * 10.0e-3 * 4.0e6_f64.powi(2))).cbrt() - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there are fewer than two states, a number is not finite and positive, or levels and approaches do not ascend.
+    pub fn from_table(table: &[(f64, f64, f64, f64)]) -> Result<Arc<ElasticStates>> {
+        let states = table.iter().map(|&(level, approach, stiffness, area)| ElasticState {
+            level,
+            approach,
+            tilt: [0.0; 2],
+            stiffness,
+            area,
+            cells: 0,
+            patches: 0,
+        });
+        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
+        ElasticStates::new(states.collect(), rest, [Tilt::Fixed(0.0); 2]).validated().map(Arc::new)
+    }
+
+    /// Accepts states that a contact can be made of.
+    pub(crate) fn validated(self) -> Result<ElasticStates> {
+        least_length("elastic states", self.states.len(), 2)?;
+        let depths = || self.states.iter().map(|state| self.depth_of(state));
+        for (state, depth) in self.states.iter().zip(depths()) {
+            positive("level of an elastic state", state.level)?;
+            positive("depth of an elastic state", depth)?;
+            positive("area of an elastic state", state.area)?;
+            if state.stiffness != f64::INFINITY {
+                positive("stiffness of an elastic state", state.stiffness)?; // but infinite in full contact
+            }
+        }
+        let levels = self.states.iter().map(|state| state.level);
+        in_order("levels of elastic states", levels, "ascend", |before, next| next > before)?;
+        in_order("depths of elastic states", depths(), "ascend", |before, next| next > before)?;
+        let fits = |pressed: &Pressed| {
+            let cells = self.grid.as_ref().map_or(0, Grid::len);
+            pressed.cells.len() == pressed.pressures.len() && pressed.cells.iter().all(|&cell| (cell as usize) < cells)
+        };
+        let kept = self.pressures.len();
+        let kept_well = kept == 0 || kept == self.states.len() && self.pressures.iter().all(fits);
+        count_within("pressures of elastic states", kept, kept_well, "one for each state, on cells of the grid")?;
+        Ok(self)
     }
 
     /// The states, by ascending level.
@@ -102,6 +171,11 @@ impl ElasticStates {
     /// Greatest error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle of two others.
     pub fn interpolation_error(&self) -> f64 {
         self.error
+    }
+
+    /// The grid of the sweep; `None` if there was none.
+    pub fn grid(&self) -> Option<&Grid> {
+        self.grid.as_ref()
     }
 
     /// The level from which the contact only grows as the load grows \[m²\]: contacts of a level between 0 and this one are refused.
@@ -182,37 +256,34 @@ impl ElasticStates {
         self.tilt.iter().all(|tilt| matches!(tilt, Tilt::Fixed(_)))
     }
 
-    /// The level of a depth \[m²\]: 0 without depth, NaN beyond the last state.
-    pub(super) fn level_at(&self, depth: f64) -> f64 {
-        let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| depth > 0.0) else { return 0.0 };
-        let wanted = depth.ln();
-        if wanted > last.depth {
+    /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, NaN beyond the last state.
+    pub(super) fn level_where(&self, give: f64, sum: f64) -> f64 {
+        let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| sum > 0.0) else { return 0.0 };
+        let sum_at = |node: &Node| node.depth.exp() + give * node.level.exp();
+        if sum > sum_at(last) {
             return f64::NAN;
         }
-        if wanted <= first.depth {
-            return (first.level + (wanted - first.depth) / first.slope).exp();
+        let upper = self.nodes.partition_point(|node| sum_at(node) < sum);
+        let excess = |[depth, slope, level]: [f64; 3]| {
+            let [depth, yielded] = [depth.exp(), give * level.exp()];
+            [depth + yielded - sum, depth * slope + yielded]
+        };
+        if upper == 0 {
+            // either half of the sum at least
+            let half = (0.5 * sum).ln();
+            let low = ((half - first.depth) / first.slope).min(half - give.ln() - first.level);
+            let at = |s: f64| excess([first.depth + first.slope * s, first.slope, first.level + s]);
+            return (first.level + root([low, 0.0], at)).exp();
         }
-        let upper = self.nodes.partition_point(|node| node.depth < wanted);
         let [a, b] = [self.nodes[upper - 1], self.nodes[upper]];
-        let slopes = [a.slope, b.slope].map(|slope| slope * (b.level - a.level));
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut s = (wanted - a.depth) / (b.depth - a.depth);
-        // Newton's steps, halved intervals where one leaves the bracket
-        for _ in 0..MAX_STEPS {
-            let excess = hermite([a.depth, b.depth], slopes, s) - wanted;
-            if excess > 0.0 {
-                high = s
-            } else {
-                low = s
-            }
-            let next = s - excess / hermite_slope([a.depth, b.depth], slopes, s);
-            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-            if (next - s).abs() <= f64::EPSILON {
-                break;
-            }
-            s = next;
-        }
-        (a.level + s * (b.level - a.level)).exp()
+        let (length, depths) = (b.level - a.level, [a.depth, b.depth]);
+        let slopes = [a.slope, b.slope].map(|slope| slope * length);
+        let at = |s: f64| {
+            let [value, slope] =
+                excess([hermite(depths, slopes, s), hermite_slope(depths, slopes, s) / length, a.level + s * length]);
+            [value, slope * length]
+        };
+        (a.level + root([0.0, 1.0], at) * length).exp()
     }
 
     /// A quantity of the states that is linear in ln l; that of the first state below it, but for `below` times (l/l₁)^`power`.
@@ -227,6 +298,17 @@ impl ElasticStates {
     pub(super) fn motions(&self, level: f64) -> Motions {
         let tilt = |axis: usize| self.linear(level, |state| state.tilt[axis] - self.rest.tilt[axis], Some(1.0));
         Motions { depth: self.depth(level), tilt: [tilt(0), tilt(1)] }
+    }
+
+    /// Approach of the load point at a level, of the elastic contact \[m\].
+    pub fn approach(&self, level: f64) -> f64 {
+        self.rest.approach + self.depth(level)
+    }
+
+    /// The level of the elastic contact at an approach of the load point \[m²\]: 0 without contact, NaN beyond the last state. An elastic body of contact
+    /// modulus E* carries the force E* times it.
+    pub fn level_at(&self, approach: f64) -> f64 {
+        self.level_where(0.0, approach - self.rest.approach)
     }
 
     /// Contact area at a level \[m²\]. Below the first state it falls as the square of the contact radius does under a ball.
@@ -255,6 +337,26 @@ pub(super) fn load_point(tilt: &[Tilt; 2]) -> [f64; 2] {
 /// Approach of a point of the body.
 pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64 {
     approach + tilt[0] * point[0] + tilt[1] * point[1]
+}
+
+/// The root of a rising function, given with its slope: Newton's steps from the upper end, halved intervals where one leaves the bracket.
+fn root([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let mut s = high;
+    for _ in 0..MAX_STEPS {
+        let [excess, slope] = at(s);
+        if excess > 0.0 {
+            high = s
+        } else {
+            low = s
+        }
+        let next = s - excess / slope;
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if (next - s).abs() <= f64::EPSILON * s.abs().max(1.0) {
+            break;
+        }
+        s = next;
+    }
+    s
 }
 
 /// Cubic with the values `f` and slopes `m` at 0 and 1.

@@ -15,12 +15,14 @@ const GROUPS: usize = 256;
 pub(super) enum Demand {
     /// A force \[N\].
     Force(f64),
-    /// A depth of the load point below the first touch of the undisturbed bodies \[m\].
-    Depth(f64),
+    /// A depth of the load point below the first touch of the undisturbed bodies \[m\], which a spring of the compliance `give` \[m/N\] prescribes:
+    /// depth less give times force; 0 for a given approach.
+    Depth { depth: f64, give: f64 },
 }
 
 /// Levels from the top of the group before to its own, with one past.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 struct Group {
     /// Level and motions at its top.
     top: f64,
@@ -31,6 +33,7 @@ struct Group {
 
 /// Groups by ascending levels, their past, and the state that they make.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Levels {
     history: GroupHistory,
     groups: Vec<Group>,
@@ -40,8 +43,10 @@ pub(super) struct Levels {
     pub(super) level: f64,
     /// Σ w Δl \[N\].
     pub(super) force: f64,
-    /// Σ W Δy.
+    /// Σ W Δy, less the lift.
     pub(super) motions: Motions,
+    /// How far bodies of given approach are apart \[m\].
+    pub(super) lift: f64,
 }
 
 impl Levels {
@@ -53,6 +58,7 @@ impl Levels {
             level: 0.0,
             force: 0.0,
             motions: Motions::default(),
+            lift: 0.0,
         }
     }
 
@@ -61,7 +67,20 @@ impl Levels {
         self.history.copy_from(&other.history);
         self.groups.clone_from(&other.groups);
         self.trial.clone_from(&other.trial);
-        (self.level, self.force, self.motions) = (other.level, other.force, other.motions);
+        (self.level, self.force, self.motions, self.lift) = (other.level, other.force, other.motions, other.lift);
+    }
+
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn is_of_the_material_of(&self, other: &Levels) -> bool {
+        self.history.rule().is_of_the_material_of(other.history.rule())
+    }
+
+    /// Whether these may be levels of the contact of `other`; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self, other: &Levels) -> bool {
+        let (tops, numbers) = (|| self.groups.iter().map(|group| group.top), [self.level, self.force, self.lift]);
+        let is_finite = tops().chain(numbers).all(f64::is_finite);
+        self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
     }
 
     /// Number of groups.
@@ -69,9 +88,10 @@ impl Levels {
         self.groups.len()
     }
 
-    /// Level at the top of each group, and its traction w.
-    pub(super) fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.groups.iter().map(|group| (group.top, group.traction))
+    /// The top of each group, w and W.
+    pub(super) fn groups(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let displacements = self.history.displacements();
+        self.groups.iter().zip(displacements).map(|(group, displacement)| (group.top, group.traction, displacement))
     }
 
     /// The past does not determine how the groups continue, as after a corner of the load.
@@ -97,12 +117,12 @@ impl Levels {
         }
         let level = match demand {
             Demand::Force(force) => self.level_of_force(compliance, force),
-            Demand::Depth(depth) => self.level_of_depth(states, depth),
+            Demand::Depth { depth, give } => self.level_of_depth(states, compliance, [depth, give]),
         };
         if level.is_nan() || level > states.last_level() {
             let (needed, last) = match demand {
                 Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),
-                Demand::Depth(depth) => (format!("the depth {depth:.3e} m"), states.last_depth()),
+                Demand::Depth { depth, .. } => (format!("the depth {depth:.3e} m"), states.last_depth()),
             };
             return Err(StatesError::Beyond { time, needed, last }.into());
         }
@@ -111,11 +131,15 @@ impl Levels {
         }
         self.cut_at(states, level);
         self.accept(level, compliance);
+        if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
+            self.lift = self.motions.depth - depth;
+            self.motions.depth = depth;
+        }
         Ok(())
     }
 
     /// The groups, each with its bottom, that of the first being 0, and its W if nothing holds it.
-    fn spans(&self) -> impl DoubleEndedIterator<Item = (f64, Motions, &Group, f64)> {
+    fn spans(&self) -> impl Iterator<Item = (f64, Motions, &Group, f64)> {
         self.groups.iter().zip(&self.trial).enumerate().map(|(k, (group, &free))| {
             let (bottom, motions) = self.bottom(k);
             (bottom, motions, group, free)
@@ -141,22 +165,25 @@ impl Levels {
         self.bottom(self.groups.len()).0 + (force - carried) * compliance
     }
 
-    /// The level c up to which groups are held at a depth D(c) = δ(c) + Σ W Δδ above c; NaN beyond the sweep.
-    fn level_of_depth(&self, states: &ElasticStates, depth: f64) -> f64 {
-        if depth > self.bottom(self.groups.len()).1.depth {
-            return states.level_at(depth);
+    /// The level c up to which groups are held where D(c) + `give` F(c) = `depth`, with D(c) = δ(c) + Σ W Δδ above c; NaN beyond the
+    /// sweep.
+    fn level_of_depth(&self, states: &ElasticStates, compliance: f64, [depth, give]: [f64; 2]) -> f64 {
+        let yielding = give / compliance;
+        let mut reached: f64 =
+            self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum();
+        if depth <= reached {
+            return 0.0;
         }
-        let mut above = 0.0;
-        for (bottom, lower, group, free) in self.spans().rev() {
-            let upper = group.motions.depth;
-            let whole = above + free * (upper - lower.depth);
-            if depth > lower.depth + whole {
-                let at_edge = (depth - above - free * upper) / (1.0 - free);
-                return states.level_at(at_edge).clamp(bottom, group.top);
+        for (bottom, lower, group, free) in self.spans() {
+            let more = (1.0 - free) * (group.motions.depth - lower.depth + yielding * (group.top - bottom));
+            if reached + more >= depth {
+                let here = lower.depth + yielding * bottom + (depth - reached) / (1.0 - free);
+                return states.level_where(yielding, here).clamp(bottom, group.top);
             }
-            above = whole;
+            reached += more;
         }
-        0.0
+        let (top, motions) = self.bottom(self.groups.len());
+        states.level_where(yielding, motions.depth + yielding * top + (depth - reached))
     }
 
     /// Splits the group that contains a level there, or adds a group up to it.
@@ -191,7 +218,7 @@ impl Levels {
             motions.add(self.trial[k], lower, group.motions);
         }
         self.history.commit(&self.trial);
-        (self.level, self.force, self.motions) = (level, force, motions);
+        (self.level, self.force, self.motions, self.lift) = (level, force, motions, 0.0);
         for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
             if self.history.is_like_the_one_before(group) {
                 self.history.merge(group);

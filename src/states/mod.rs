@@ -40,12 +40,19 @@
 
 mod contact;
 mod curve;
+mod fields;
 mod levels;
+mod pressed;
 mod run;
+#[cfg(feature = "checkpoint")]
+mod saved;
 mod sweep;
 
 pub use crate::error::StatesError;
 pub use contact::{StatesContact, StatesReport};
+pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
+pub use fields::StatesFields;
+pub(crate) use pressed::Pressed;
 pub use run::StatesRun;
 pub use sweep::{Reach, Sweep};

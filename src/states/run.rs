@@ -1,7 +1,7 @@
 //! A contact on elastic states along a load history.
 
 use crate::contact::Stepping;
-use crate::error::{Error, LoadError, Result};
+use crate::error::{Error, LoadError, Result, within};
 use crate::load::{Load, LoadHistory};
 use crate::states::contact::{StatesContact, StatesReport};
 
@@ -48,7 +48,7 @@ pub struct StatesRun<'a> {
     load: Option<Load>,
     /// Length of the next adaptive step; 0 after a jump or a corner.
     next: f64,
-    /// State at the start of an adaptive step, and after it was taken whole.
+    /// State at the start of the last step, and after an adaptive one was taken whole.
     before: StatesContact,
     whole: StatesContact,
     /// Greatest depth and force of the run, for errors relative to them.
@@ -91,6 +91,7 @@ impl StatesRun<'_> {
         let now = self.contact.time();
         let load = self.history.at(now).validated_at(now)?;
         if self.load != Some(load) {
+            self.before.copy_from(self.contact);
             let report = self.contact.step(0.0, load)?;
             (self.load, self.next) = (Some(load), 0.0);
             return Ok(Some(report));
@@ -114,7 +115,29 @@ impl StatesRun<'_> {
         Ok(Some(report))
     }
 
+    /// The contact at a time within the last step, its ends included, under the load of the history at that time: as exact as the steps of the
+    /// run.
+    ///
+    /// # Errors
+    /// If the time does not lie within the last step, the load of the history there is invalid, or the step to it fails.
+    pub fn within_step(&self, time: f64) -> Result<StatesContact> {
+        let (start, end) = (self.before.time(), self.contact.time());
+        within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
+        if time == end {
+            return Ok(self.contact.clone());
+        }
+        let mut contact = self.before.clone();
+        // an adaptive step is taken in two halves
+        let middle = start + 0.5 * (end - start);
+        let halved = matches!(self.stepping, Stepping::Adaptive { .. }) && time > middle;
+        for stop in [halved.then_some(middle), (time > start).then_some(time)].into_iter().flatten() {
+            contact.step_to(stop, stop - contact.time(), self.history.at(stop).validated_at(stop)?)?;
+        }
+        Ok(contact)
+    }
+
     fn fixed_step(&mut self, now: f64, dt: f64, stop: f64) -> Result<StatesReport> {
+        self.before.copy_from(self.contact);
         while self.start + (self.steps + 1) as f64 * dt <= now * (1.0 + f64::EPSILON) + SAME_TIME * dt {
             self.steps += 1;
         }

@@ -11,6 +11,7 @@ use crate::kernel::{InfluenceKernel, Layer};
 use crate::load::{Load, Tilt};
 use crate::rheology::{Elastic, Material};
 use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at, load_point};
+use crate::states::pressed::Pressed;
 
 /// How far a sweep goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +36,7 @@ pub struct Sweep {
     accuracy: f64,
     max_states: usize,
     settings: Settings,
+    keep_pressures: bool,
 }
 
 /// The smallest level of a sweep over the greatest.
@@ -57,11 +59,13 @@ impl Sweep {
             accuracy: 1e-4,
             max_states: 400,
             settings,
+            keep_pressures: false,
         }
     }
 
     /// On another body than a half-space.
-    pub fn kernel(mut self, kernel: Arc<InfluenceKernel>) -> Sweep {
+    pub fn kernel(mut self, kernel: impl Into<Arc<InfluenceKernel>>) -> Sweep {
+        let kernel = kernel.into();
         self.layer = kernel.layer_of().cloned();
         self.builder = self.builder.kernel(kernel);
         self
@@ -89,6 +93,13 @@ impl Sweep {
     /// Settings of the stepper (default: those of [`Settings`] with a tolerance of 1e-8).
     pub fn settings(mut self, settings: Settings) -> Sweep {
         self.settings = settings;
+        self
+    }
+
+    /// Keeps the pressure of every state, 12 bytes for each of its cells in contact, for
+    /// [`StatesContact::pressure`](crate::states::StatesContact::pressure).
+    pub fn keep_pressures(mut self) -> Sweep {
+        self.keep_pressures = true;
         self
     }
 
@@ -123,9 +134,11 @@ impl Sweep {
         let nu = self.layer.as_ref().map_or(0.5, Layer::poisson_ratio);
         // C = (1 − ν) J/2 = 1 Pa⁻¹
         let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
-        let contact = self.builder.material(unit).settings(self.settings).build()?;
+        let scene = self.builder.material(unit).settings(self.settings);
+        let contact = scene.clone().build()?;
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
         let at = load_point(&self.tilt);
+        let grid = contact.grid().clone();
         let mut solver = Solver {
             contact,
             tilt: self.tilt,
@@ -133,11 +146,11 @@ impl Sweep {
             rest: Rest { approach: 0.0, tilt },
             last_depth: 0.0,
             first_level: 0.0,
-            layer: self.layer,
             accuracy,
             max_states: self.max_states,
             allowed_fall: ALLOWED_FALL.max(1e2 * self.settings.tolerance),
             solved: Vec::new(),
+            kept: self.keep_pressures.then(Vec::new),
             error: 0.0,
             progress,
         };
@@ -146,7 +159,10 @@ impl Sweep {
             Reach::Approach(approach) => solver.force_at(approach)?,
         };
         solver.sweep(last)?;
-        Ok(Arc::new(solver.finish()))
+        let mut states = solver.finish();
+        (states.poisson, states.grid) = (self.layer.map(|layer| layer.poisson_ratio()), Some(grid));
+        states.scene = Some(scene);
+        Ok(Arc::new(states))
     }
 }
 
@@ -160,11 +176,12 @@ struct Solver<P> {
     last_depth: f64,
     /// The level from which the contact only grows.
     first_level: f64,
-    layer: Option<Layer>,
     accuracy: f64,
     max_states: usize,
     allowed_fall: f64,
     solved: Vec<ElasticState>,
+    /// The pressures of these states, if they are kept.
+    kept: Option<Vec<Pressed>>,
     error: f64,
     progress: P,
 }
@@ -173,37 +190,6 @@ struct Solver<P> {
 struct Solved {
     state: ElasticState,
     pressure: Pressed,
-}
-
-/// The cells in contact, in ascending order, and their pressures: 12 bytes a cell.
-struct Pressed {
-    cells: Vec<u32>,
-    pressures: Vec<f64>,
-}
-
-impl Pressed {
-    fn new(pressure: &[f64]) -> Pressed {
-        let cells: Vec<u32> = (0..).zip(pressure).filter(|(_, p)| **p > 0.0).map(|(cell, _)| cell).collect();
-        let pressures = cells.iter().map(|&cell| pressure[cell as usize]).collect();
-        Pressed { cells, pressures }
-    }
-
-    fn is_on_the_cells_of(&self, other: &Pressed) -> bool {
-        self.cells == other.cells
-    }
-
-    /// Greatest fall of the pressure of a cell from here to `after`, over the greatest pressure there.
-    fn greatest_fall_to(&self, after: &Pressed) -> f64 {
-        let mut there = after.cells.iter().zip(&after.pressures).peekable();
-        let (mut fall, mut greatest) = (0.0f64, 0.0f64);
-        for (cell, before) in self.cells.iter().zip(&self.pressures) {
-            while there.next_if(|(other, _)| *other < cell).is_some() {}
-            let now = there.next_if(|(other, _)| *other == cell).map_or(0.0, |(_, pressure)| *pressure);
-            fall = fall.max(before - now);
-        }
-        after.pressures.iter().for_each(|pressure| greatest = greatest.max(*pressure));
-        fall / greatest
-    }
 }
 
 impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
@@ -236,8 +222,9 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     }
 
     /// Adds a state, unless the sweep is to end.
-    fn add(&mut self, state: ElasticState) -> ControlFlow<()> {
-        self.solved.push(state);
+    fn add(&mut self, Solved { state, pressure }: &Solved) -> ControlFlow<()> {
+        self.solved.push(*state);
+        self.kept.iter_mut().for_each(|kept| kept.push(pressure.clone()));
         if self.solved.len() >= self.max_states {
             return ControlFlow::Break(());
         }
@@ -262,7 +249,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
             coarse.push(next);
         }
         for solved in &coarse {
-            if self.add(solved.state).is_break() {
+            if self.add(solved).is_break() {
                 return Ok(());
             }
         }
@@ -274,7 +261,6 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
                 // what lies below is held or free as a whole
                 Err(Error::States(StatesError::Shrinks { .. })) if pair[0].state.level < last => {
                     self.first_level = pair[0].state.level;
-                    self.solved.retain(|state| state.level >= pair[0].state.level);
                     break;
                 }
                 Err(error) => return Err(error),
@@ -301,11 +287,11 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     /// Adds what is needed between two states.
     fn between(&mut self, lower: &Solved, upper: &Solved) -> Result<ControlFlow<()>> {
         self.check_growth(lower, upper)?;
-        let pair = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt, None, 0.0);
+        let pair = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
         let middle = self.solve((lower.state.level * upper.state.level).sqrt())?;
         let error = pair.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
         let is_fine = error <= self.accuracy || upper.state.level < FINEST * lower.state.level;
-        if self.add(middle.state).is_break() || is_fine {
+        if self.add(&middle).is_break() || is_fine {
             self.error = self.error.max(error);
             self.check_growth(lower, &middle)?;
             self.check_growth(&middle, upper)?;
@@ -328,10 +314,14 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         Ok(())
     }
 
-    fn finish(mut self) -> ElasticStates {
-        self.solved.sort_by(|a, b| a.level.total_cmp(&b.level));
-        let mut states = ElasticStates::new(self.solved, self.rest, self.tilt, self.layer, self.error);
-        states.first_level = self.first_level;
+    fn finish(self) -> ElasticStates {
+        let Solver { solved, mut kept, rest, tilt, error, first_level, .. } = self;
+        let mut order: Vec<usize> = (0..solved.len()).filter(|&k| solved[k].level >= first_level).collect();
+        order.sort_by(|&a, &b| solved[a].level.total_cmp(&solved[b].level));
+        let states = order.iter().map(|&k| solved[k]).collect();
+        let pressures = kept.iter_mut().flat_map(|kept| order.iter().map(|&k| std::mem::take(&mut kept[k]))).collect();
+        let mut states = ElasticStates::new(states, rest, tilt);
+        (states.error, states.first_level, states.pressures) = (error, first_level, pressures);
         states
     }
 }

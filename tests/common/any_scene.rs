@@ -165,7 +165,12 @@ fn history(draws: &mut Draws, lengths: [f64; 2], tilts: [bool; 2], line: bool) -
     let force = if line { 50.0 } else { 0.05 } * draws.power_of_ten(-1.0, 0.5);
     let at = [0, 1].map(|axis| if tilts[axis] { 0.04 * draws.between(-1.0, 1.0) * lengths[axis] } else { 0.0 });
     let rise = move |t: f64| (t.powf(power) - start) / (1.0 - start);
-    match draws.below(6) {
+    match draws.below(7) {
+        6 => {
+            let stiffness = force / depth * draws.power_of_ten(-2.0, 2.0);
+            let drive = depth + force / stiffness;
+            Box::new(FnHistory::new(move |t| Load::spring(stiffness, drive * rise(t))))
+        }
         0 | 1 => Box::new(FnHistory::new(move |t| Load::approach(depth * rise(t)))),
         2 => Box::new(FnHistory::new(move |t| Load::approach(depth * (1.0 - start - (3.0 * t - 1.0).powi(2))))),
         3 => Box::new(FnHistory::new(move |t| Load::force(force * (6.0 * t).sin().max(0.0) * t))),

@@ -15,6 +15,8 @@ pub enum Control {
     EccentricForce(f64, [f64; 2]),
     /// From the first touch \[m\], of the greatest depth \[m\].
     Approach { touch: f64, depth: f64 },
+    /// The same, of the greatest drive of a spring \[m\], and its stiffness \[N/m\].
+    Spring { touch: f64, depth: f64, stiffness: f64, is_stiff: bool },
 }
 
 impl Control {
@@ -23,11 +25,17 @@ impl Control {
             Control::Force(greatest) => Load::force(greatest * part.max(0.0)),
             Control::EccentricForce(greatest, at) => Load::eccentric_force(greatest * part.max(0.0), at),
             Control::Approach { touch, depth } => Load::approach(touch + depth * part),
+            Control::Spring { touch, depth, stiffness, .. } => Load::spring(stiffness, touch + depth * part),
         }
     }
 
     pub fn is_approach(&self) -> bool {
-        matches!(self, Control::Approach { .. })
+        matches!(self, Control::Approach { .. } | Control::Spring { .. })
+    }
+
+    /// Whether the force is the answer, not the approach.
+    pub fn gives_the_approach(&self) -> bool {
+        matches!(self, Control::Approach { .. } | Control::Spring { is_stiff: true, .. })
     }
 
     fn table(&self, rows: &[(f64, f64)]) -> Box<dyn LoadHistory> {

@@ -70,6 +70,15 @@ fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Bo
 impl RandomScene {
     /// The scene of this number in the series of this seed.
     pub fn new(seed: u64, number: u64) -> RandomScene {
+        RandomScene::driven(seed, number, false)
+    }
+
+    /// The scene of this number in the series of this seed, driven by a spring.
+    pub fn sprung(seed: u64, number: u64) -> RandomScene {
+        RandomScene::driven(seed, number, true)
+    }
+
+    fn driven(seed: u64, number: u64, by_spring: bool) -> RandomScene {
         let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
         let body = random_body(&mut draws);
         let grid = random_grid(&mut draws);
@@ -79,6 +88,15 @@ impl RandomScene {
         let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
         let (touch, force) = scene.answers(depth);
         scene.control = match draws.below(10) {
+            _ if by_spring => {
+                let over = draws.power_of_ten(-2.0, 2.0);
+                Control::Spring {
+                    touch,
+                    depth: depth * (1.0 + 1.0 / over),
+                    stiffness: over * force / depth,
+                    is_stiff: over > 1.0,
+                }
+            }
             0..4 => Control::Approach { touch, depth },
             4 => {
                 let at = [draws.between(-0.15, 0.15) * reach, draws.between(-0.15, 0.15) * reach];
@@ -151,6 +169,8 @@ impl RandomScene {
             Control::Force(_) => "force",
             Control::EccentricForce(..) => "eccentric force",
             Control::Approach { .. } => "approach",
+            Control::Spring { is_stiff: false, .. } => "soft spring",
+            Control::Spring { .. } => "stiff spring",
         };
         let (body, history) = (&self.body, &self.history);
         self.name = format!(

@@ -83,7 +83,7 @@ pub fn watch(
     most_steps: u64,
 ) -> Result<Watched, Stopped> {
     let moments = scene.moments();
-    let by_approach = scene.control.is_approach();
+    let by_approach = scene.control.gives_the_approach();
     let mut run = contact.follow(history, stepping, scene.body.until).stop_at(stops).unwrap();
     let mut seen = Watched::default();
     loop {

@@ -153,8 +153,12 @@ pub fn load(source: &mut Source, length: f64, softness: f64) -> Load {
     if source.chance(0.75) {
         let normal = if source.chance(0.1) { 0.0 } else { length * length / softness * source.scale(1e-6, 1e-1) };
         Load::Force { normal, tilt }
-    } else {
+    } else if source.chance(0.6) {
         Load::Approach { approach: length * source.between(-1e-3, 1e-2), tilt }
+    } else {
+        let stiffness = length / softness * source.scale(1e-6, 1e6);
+        let drive = length * source.between(-1e-3, 1e-2) * (1.0 + length / (softness * stiffness));
+        Load::Spring { stiffness, drive, tilt }
     }
 }
 
@@ -168,6 +172,10 @@ pub fn history(source: &mut Source, length: f64, softness: f64) -> viscocontact:
         }
         Load::Approach { approach, tilt } if source.chance(0.9) => {
             Load::Approach { approach: approach * source.scale(0.1, 3.0), tilt }
+        }
+        Load::Spring { stiffness, drive, tilt } if source.chance(0.9) => {
+            let stiffness = if source.chance(0.5) { stiffness } else { stiffness * source.scale(0.1, 3.0) };
+            Load::Spring { stiffness, drive: drive * source.scale(0.1, 3.0), tilt }
         }
         _ => load(source, length, softness),
     };
@@ -200,6 +208,7 @@ pub fn few_turns(source: &mut Source, length: f64, softness: f64) -> viscocontac
     let [first, second] = [load(source, length, softness), load(source, length, softness)].map(|load| match load {
         Load::Force { normal, .. } => Load::force(normal),
         Load::Approach { approach, .. } => Load::approach(approach),
+        Load::Spring { stiffness, drive, .. } => Load::spring(stiffness, drive),
         other => other,
     });
     Ok(match source.below(4) {

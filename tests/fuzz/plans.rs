@@ -16,9 +16,9 @@ fn plan(source: &mut Source) -> Verdict {
         let softness = material.contact_compliance(1.0).abs().max(1e-300);
         let history = models::few_turns(source, length, softness)?;
         let geometry = models::geometry(source, length)?;
-        let accuracy =
-            if source.chance(0.5) { Accuracy::Coarse } else { Accuracy::target_of(source.scale(1e-2, 0.1))? };
-        Plan::new(&geometry, &material, &*history, source.scale(0.3, 3.0), accuracy)
+        let accuracy = if source.chance(0.5) { Accuracy::COARSE } else { Accuracy::new(source.scale(1e-2, 0.1))? };
+        let until = source.scale(0.3, 3.0);
+        Plan::builder(&geometry, &material, &*history, until).accuracy(accuracy).build()
     });
     judged(made, |plan| {
         let (error, [reach1, reach2]) = (plan.mesh_error, plan.reach);

@@ -200,7 +200,7 @@ fn runs_under_the_least_loads_end() {
                         Err(error) => panic!("{what}: {error}"),
                     }
                     if load.tilt()[0] == Tilt::Fixed(0.0) {
-                        let _ = Plan::new(shape, &material, &history, 1.0, Accuracy::Coarse);
+                        let _ = Plan::builder(shape, &material, &history, 1.0).accuracy(Accuracy::COARSE).build();
                     }
                 }
             }

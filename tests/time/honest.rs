@@ -80,14 +80,24 @@ fn is_doubtful(truth: &Truth, tolerance: f64, run: &Result<Watched, Stopped>) ->
 /// of random scenes, and below three times in all of them; no run ends in an error.
 #[test]
 fn errors_are_honest_on_random_scenes() {
+    check_honesty(RandomScene::new, ("HONEST_SCENES", 40));
+}
+
+/// The same of bodies that springs drive: of the force where they are stiffer than the contact, else of the approach.
+#[test]
+fn errors_under_springs_are_honest() {
+    check_honesty(RandomScene::sprung, ("HONEST_SPRINGS", 20));
+}
+
+fn check_honesty(make: impl Fn(u64, u64) -> RandomScene, count: (&'static str, u64)) {
     let [scenes, seed, first, most_steps] =
-        [("HONEST_SCENES", 40), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)]
+        [count, ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)]
             .map(|(name, default)| from_environment(name, default));
     let kept = std::env::var_os("HONEST_TRUTHS").map(std::path::PathBuf::from);
     let mut tallies: [Tally; 4] = Default::default();
     let mut without_truth = 0;
     for number in first..first + scenes {
-        let scene = RandomScene::new(seed, number);
+        let scene = make(seed, number);
         let mut truth = match Truth::kept_in(kept.as_deref(), &scene, 1e-6, most_steps) {
             Ok(truth) => truth,
             Err(stopped) => {

@@ -1,5 +1,7 @@
 //! What an accuracy promises, a planned run delivers.
 
+use std::ops::ControlFlow;
+
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::histories::{four_terms, triangle};
 use crate::common::spheres::{RADIUS, contact_of};
@@ -28,7 +30,7 @@ fn deliver(
     accuracy: Accuracy,
     exact: impl FnMut(f64, f64) -> (f64, Option<f64>),
 ) -> Outcome {
-    run(Plan::new(geometry, material, history, until, accuracy).unwrap(), history, until, exact)
+    run(Plan::builder(geometry, material, history, until).accuracy(accuracy).build().unwrap(), history, until, exact)
 }
 
 fn run(
@@ -77,11 +79,8 @@ fn warming_spheres_are_as_accurate_as_planned() {
     let law = TimeTemperature::wlf(17.44, 51.6, 263.15).unwrap();
     let warming = TemperatureHistory::table(law, &[(1.0, 263.15), (5.0, 293.15)]).unwrap();
     let exact = GrowingSphere::step(RADIUS, &body, 1.0).unwrap();
-    fn at(temperature: &TemperatureHistory) -> PlanOptions<'_> {
-        PlanOptions { temperature: Some(temperature), ..PlanOptions::default() }
-    }
     for accuracy in PRESETS {
-        let plan = Plan::with(&sphere, &body, &load, 6.0, accuracy, at(&warming)).unwrap();
+        let plan = Plan::builder(&sphere, &body, &load, 6.0).accuracy(accuracy).temperature(&warming).build().unwrap();
         let mut last = 0.0;
         let outcome = run(plan, &load, 6.0, |reduced, r| {
             last = reduced;
@@ -92,11 +91,12 @@ fn warming_spheres_are_as_accurate_as_planned() {
     }
     // below the end of the law
     let cold = TemperatureHistory::function(law, |t| 263.15 - 20.0 * t, &[]).unwrap();
-    let refused = Plan::with(&sphere, &body, &load, 6.0, Accuracy::Coarse, at(&cold)).unwrap_err();
+    let refused =
+        Plan::builder(&sphere, &body, &load, 6.0).accuracy(Accuracy::COARSE).temperature(&cold).build().unwrap_err();
     assert!(matches!(refused, Error::OutOfRange { field: "temperature", .. }), "{refused}");
 }
 
-const PRESETS: [Accuracy; 3] = [Accuracy::Coarse, Accuracy::Standard, Accuracy::Fine];
+const PRESETS: [Accuracy; 3] = [Accuracy::COARSE, Accuracy::STANDARD, Accuracy::FINE];
 
 #[test]
 fn held_spheres_are_as_accurate_as_planned() {
@@ -122,10 +122,10 @@ fn a_planned_run_is_a_thousand_times_less_work_than_the_papers() {
     let material = maxwell();
     let exact = GrowingSphere::step(RADIUS, &material, 1.0).unwrap();
     let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
-    let outcome = deliver(&sphere, &material, &load, 2.0, Accuracy::Standard, |t, r| {
+    let outcome = deliver(&sphere, &material, &load, 2.0, Accuracy::STANDARD, |t, r| {
         (exact.approach(t), Some(exact.pressure(r, t)))
     });
-    check("planned", Accuracy::Standard, &outcome);
+    check("planned", Accuracy::STANDARD, &outcome);
     // 256² cells, 100 steps; fifteen times the mean work of the first ones stands for all, which take a little more
     let cells = 256;
     let grid = Grid::square(cells, 2.25 * exact.contact_radius(2.0)).unwrap();
@@ -148,7 +148,7 @@ fn loads_that_come_and_go_are_as_accurate_as_planned() {
     let cases: [(&str, Material, Box<dyn LoadHistory>, f64); 2] =
         [("triangle", zener, Box::new(triangle()), 3.5), ("sine", four, Box::new(sine), 2.0)];
     for (name, material, history, until) in cases {
-        for accuracy in [Accuracy::Coarse, Accuracy::Standard] {
+        for accuracy in [Accuracy::COARSE, Accuracy::STANDARD] {
             let reach = 1.4 * (0.75 * RADIUS * material.contact_compliance(until)).cbrt();
             let mut foundation =
                 AxisymmetricContact::new(&Profile::sphere(RADIUS).unwrap(), &material, 4000, reach).unwrap();
@@ -175,10 +175,11 @@ fn punches_need_fine_meshes_and_say_so() {
     let material = maxwell();
     let load = StepLoad::new(Load::force(1.0)).unwrap();
     let exact = |t: f64| material.contact_compliance(t) / (2.0 * radius);
-    let outcome = deliver(&punch, &material, &load, 2.0, Accuracy::Coarse, |t, _| (exact(t), None));
-    check("punch", Accuracy::Coarse, &outcome);
+    let outcome = deliver(&punch, &material, &load, 2.0, Accuracy::COARSE, |t, _| (exact(t), None));
+    check("punch", Accuracy::COARSE, &outcome);
     // first order: a hundred times the cells a side for a hundredth of the error
-    let error = Plan::new(&punch, &material, &load, 2.0, Accuracy::target_of(1e-5).unwrap()).unwrap_err();
+    let error =
+        Plan::builder(&punch, &material, &load, 2.0).accuracy(Accuracy::new(1e-5).unwrap()).build().unwrap_err();
     assert!(matches!(error, Error::CountOutOfRange { field: "cells along a side for this accuracy", .. }), "{error}");
 }
 
@@ -190,31 +191,32 @@ fn plans_find_the_domain_whatever_its_size() {
         let material = Material::incompressible(Elastic::new(modulus).unwrap());
         let force = force.min(modulus * scale * scale * 1e-2);
         let radius = (0.75 * scale * force * material.contact_compliance(0.0)).cbrt();
-        let plan = Plan::new(&sphere, &material, &load(force), 1.0, Accuracy::Coarse).unwrap();
+        let plan = Plan::builder(&sphere, &material, &load(force), 1.0).accuracy(Accuracy::COARSE).build().unwrap();
         let [half, _] = plan.reach;
         assert!((half / radius - 1.0).abs() < 0.12, "{scale:e}: {half:e} {radius:e}");
     }
     // an ellipse gets a domain of its own shape
     let ellipsoid = Ellipsoid::new(10.0e-3, 160.0e-3).unwrap();
     let material = elastic();
-    let plan = Plan::new(&ellipsoid, &material, &load(1.0), 1.0, Accuracy::Coarse).unwrap();
+    let plan = Plan::builder(&ellipsoid, &material, &load(1.0), 1.0).accuracy(Accuracy::COARSE).build().unwrap();
     let [l1, l2] = plan.grid.lengths();
     assert!(l2 > 3.0 * l1, "{l1} {l2}");
     // a driven approach, and one that never touches
     let sphere = Sphere::new(RADIUS).unwrap();
     let driven = StepLoad::new(Load::approach(1.0e-4)).unwrap();
-    let plan = Plan::new(&sphere, &material, &driven, 1.0, Accuracy::Coarse).unwrap();
+    let plan = Plan::builder(&sphere, &material, &driven, 1.0).accuracy(Accuracy::COARSE).build().unwrap();
     assert_abs_diff_eq!(plan.reach[0] / (RADIUS * 1.0e-4).sqrt(), 1.0, epsilon = 0.12);
     let apart = StepLoad::new(Load::approach(-1.0e-4)).unwrap();
-    assert!(matches!(Plan::new(&sphere, &material, &apart, 1.0, Accuracy::Coarse), Err(Error::NoDomain { .. })));
+    assert!(matches!(
+        Plan::builder(&sphere, &material, &apart, 1.0).accuracy(Accuracy::COARSE).build(),
+        Err(Error::NoDomain { .. })
+    ));
     for until in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = Plan::new(&sphere, &material, &driven, until, Accuracy::Coarse).unwrap_err();
+        let error = Plan::builder(&sphere, &material, &driven, until).accuracy(Accuracy::COARSE).build().unwrap_err();
         assert!(matches!(error, Error::OutOfRange { field: "end of the run", .. }), "{error}");
     }
     for target in [0.0, -1.0, 1e-7, 0.2, 5.0, f64::NAN] {
-        assert!(matches!(Accuracy::target_of(target), Err(Error::OutOfRange { field: "accuracy", .. })));
-        let error = Plan::new(&sphere, &material, &driven, 1.0, Accuracy::Custom(target)).unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { field: "accuracy", .. }), "{error}");
+        assert!(matches!(Accuracy::new(target), Err(Error::OutOfRange { field: "accuracy", .. })));
     }
 }
 
@@ -223,12 +225,37 @@ fn plans_find_the_domain_whatever_its_size() {
 fn plans_give_the_times_over_which_a_body_is_wanted() {
     let material = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
     let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
-    let plan = Plan::new(&sphere, &material, &load, 10.0, Accuracy::Coarse).unwrap();
+    let plan = Plan::builder(&sphere, &material, &load, 10.0).accuracy(Accuracy::COARSE).build().unwrap();
     let contact = plan.builder.clone().build().unwrap();
     let [first, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
     assert!(first < 0.1, "{first:e}");
     assert_abs_diff_eq!(last / 10.0, 1.0, epsilon = 1e-12);
     let held = |t: f64| (0.75 * RADIUS * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS;
-    let outcome = deliver(&sphere, &material, &load, 10.0, Accuracy::Coarse, |t, _| (held(t), None));
-    check("held on a closure", Accuracy::Coarse, &outcome);
+    let outcome = deliver(&sphere, &material, &load, 10.0, Accuracy::COARSE, |t, _| (held(t), None));
+    check("held on a closure", Accuracy::COARSE, &outcome);
+}
+
+/// Planning reports every step of its coarse runs, and ends where its caller wants.
+#[test]
+fn planning_reports_its_progress_and_can_be_cancelled() {
+    let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
+    let material = maxwell();
+    let builder = Plan::builder(&sphere, &material, &load, 2.0).accuracy(Accuracy::COARSE);
+    let mut steps = 0;
+    let plan = builder.build_with(|progress| {
+        steps += 1;
+        assert_eq!(progress.steps, steps);
+        assert!(progress.time <= 2.0 && progress.cells[0] >= 14);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(plan.unwrap().grid, builder.build().unwrap().grid);
+    for last in (1..=steps).step_by(1 + steps / 9) {
+        let cancelled =
+            builder.build_with(
+                |progress| {
+                    if progress.steps < last { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                },
+            );
+        assert!(matches!(cancelled, Err(Error::Cancelled { what: "a plan" })));
+    }
 }

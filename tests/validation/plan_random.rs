@@ -134,7 +134,7 @@ fn scene(seed: u64, number: u64) -> Scene {
             ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods / until).unwrap()))
         }
     };
-    let accuracy = if draws.chance(0.7) { Accuracy::Coarse } else { Accuracy::Standard };
+    let accuracy = if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD };
     // a punch aside of the load tilts, and sinks in as much in its middle
     let most = if matches!(shape, Shape::Punch) { 0.8 * PUNCH } else { f64::INFINITY };
     let aside = if draws.chance(0.3) { f64::min(draws.between(0.1, 2.0) * radius, most) } else { 0.0 };
@@ -175,7 +175,7 @@ fn tilting(seed: u64, number: u64) -> Scene {
     let table: Vec<_> = [0.0, 0.45, 1.0].into_iter().zip(loads).collect();
     let (history, name) =
         (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, {body} ×{ratio:.1}"));
-    let (history, accuracy) = (Box::new(history), Accuracy::Coarse);
+    let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
     let (shape, until, area, radius) = (None, 1.0, draws.chance(0.3), 0.0);
     Scene { name, shape, geometry, material, history, until, by_force, accuracy, area, radius }
 }
@@ -260,8 +260,7 @@ struct Outcome {
 fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     let Scene { geometry, material, history, until, accuracy, .. } = scene;
     let started = Instant::now();
-    let options = PlanOptions { area: scene.area, ..PlanOptions::default() };
-    let plan = Plan::with(geometry, material, history, *until, *accuracy, options)?;
+    let plan = Plan::builder(geometry, material, history, *until).accuracy(*accuracy).area(scene.area).build()?;
     let planning = started.elapsed().as_secs_f64();
     let limit = from_environment("PLANS_CELLS", 150) as usize;
     let note = format!("{plan}; planned in {planning:.2} s");

@@ -17,7 +17,7 @@ use crate::contact::window::region::Region;
 use crate::error::{Error, KernelError, RanksError, Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary::{History, Weighting};
-use crate::kernel::InfluenceKernel;
+use crate::kernel::{InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
 
@@ -191,7 +191,7 @@ impl Builder {
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
         if let Some(layer) = kernel.layer_of() {
-            layer.check_material(&material.poisson_ratios().collect::<Vec<_>>())?;
+            Layer::check_material(layer.poisson_ratio(), &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         if let Some(times) = &self.times
             && self.settings.time_rule.needs_series()

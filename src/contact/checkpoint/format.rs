@@ -14,7 +14,7 @@ use crate::parallel::{Rows, part};
 
 const MAGIC: &[u8; 8] = b"VISCOCHK";
 /// Raised with every change of the contents.
-pub(super) const VERSION: u32 = 8;
+pub(crate) const VERSION: u32 = 8;
 /// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: usize = 20;
@@ -24,20 +24,20 @@ const PIECE: usize = 1 << 16;
 const TEXT: u64 = 1 << 24;
 
 /// A file that is being written: hashes what goes into it.
-pub(super) struct Output<'a> {
+pub(crate) struct Output<'a> {
     out: &'a mut BufWriter<File>,
     hasher: Hasher,
     length: u64,
 }
 
 impl<'a> Output<'a> {
-    pub(super) fn begin(out: &'a mut BufWriter<File>) -> io::Result<Output<'a>> {
+    pub(crate) fn begin(out: &'a mut BufWriter<File>) -> io::Result<Output<'a>> {
         out.write_all(&[0; HEADER])?;
         Ok(Output { out, hasher: Hasher::new(), length: 0 })
     }
 
     /// Writes the header, once all contents are there.
-    pub(super) fn finish(self) -> io::Result<()> {
+    pub(crate) fn finish(self) -> io::Result<()> {
         let mut header = Vec::with_capacity(HEADER);
         header.extend(MAGIC);
         header.extend(VERSION.to_le_bytes());
@@ -66,7 +66,7 @@ impl Write for Output<'_> {
 
 /// A file that is being read.
 #[derive(Debug)]
-pub(super) struct Input {
+pub(crate) struct Input {
     file: BufReader<File>,
     header: [u8; HEADER],
     /// Bytes of the contents.
@@ -77,7 +77,7 @@ pub(super) struct Input {
 
 impl Input {
     /// Opens a file of this format and of the length that it states.
-    pub(super) fn open(path: &Path) -> Result<Input, CheckpointError> {
+    pub(crate) fn open(path: &Path) -> Result<Input, CheckpointError> {
         let mut file = File::open(path).map_err(unreadable)?;
         let found = file.metadata().map_err(unreadable)?.len();
         let mut header = Vec::with_capacity(HEADER);
@@ -103,12 +103,12 @@ impl Input {
     }
 
     /// The checksum that the file states.
-    pub(super) fn stated_checksum(&self) -> u32 {
+    pub(crate) fn stated_checksum(&self) -> u32 {
         number(&self.header, CHECKSUM)
     }
 
     /// The checksum of the part of the contents that a rank reads, and the number of its bytes.
-    pub(super) fn checksum_of_part(&mut self, rows: &Rows) -> Result<[f64; 2], CheckpointError> {
+    pub(crate) fn checksum_of_part(&mut self, rows: &Rows) -> Result<[f64; 2], CheckpointError> {
         let bytes = part(self.length as usize, rows.rank(), rows.ranks());
         self.file.seek(SeekFrom::Start((HEADER + bytes.start) as u64)).map_err(unreadable)?;
         let (mut hasher, mut piece) = (Hasher::new(), vec![0; PIECE]);
@@ -121,7 +121,7 @@ impl Input {
     }
 
     /// Compares the checksum stated with the checksum found, of the parts of all ranks. A call of all ranks.
-    pub(super) fn require_checksum(&self, rows: &Rows, of_part: [f64; 2]) -> Result<(), CheckpointError> {
+    pub(crate) fn require_checksum(&self, rows: &Rows, of_part: [f64; 2]) -> Result<(), CheckpointError> {
         let hasher = |[checksum, length]: [f64; 2]| Hasher::new_with_initial_len(checksum as u32, length as u64);
         let joined = |before: [f64; 2], after: [f64; 2]| {
             let mut all = hasher(before);
@@ -136,7 +136,7 @@ impl Input {
     }
 
     /// Reads what the file begins with.
-    pub(super) fn contents<T: DeserializeOwned>(&mut self) -> Result<T, CheckpointError> {
+    pub(crate) fn contents<T: DeserializeOwned>(&mut self) -> Result<T, CheckpointError> {
         self.file.seek(SeekFrom::Start(HEADER as u64)).map_err(unreadable)?;
         let mut text = vec![0; self.length.min(TEXT) as usize];
         let read = postcard::from_io((&mut self.file, &mut text[..])).map(|(contents, _)| contents);
@@ -146,12 +146,12 @@ impl Input {
     }
 
     /// Whether so many values follow what the file begins with.
-    pub(super) fn has_values(&self, count: u64) -> bool {
+    pub(crate) fn has_values(&self, count: u64) -> bool {
         count.checked_mul(8).and_then(|bytes| bytes.checked_add(self.values)) == Some(self.length + HEADER as u64)
     }
 
     /// Reads one value for each local cell, of the next values of all cells.
-    pub(super) fn rows(&mut self, rows: &Rows) -> Result<Vec<f64>, CheckpointError> {
+    pub(crate) fn rows(&mut self, rows: &Rows) -> Result<Vec<f64>, CheckpointError> {
         let (own, columns) = (rows.own(), rows.cells()[1]);
         self.file.seek(SeekFrom::Start(self.values + 8 * (own.start * columns) as u64)).map_err(unreadable)?;
         self.values += 8 * rows.len() as u64;

@@ -2,7 +2,7 @@
 
 pub(in crate::contact) mod autosave;
 mod fields;
-mod format;
+pub(crate) mod format;
 mod saved;
 pub(in crate::contact) mod scene_fingerprint;
 

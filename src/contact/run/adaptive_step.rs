@@ -109,7 +109,7 @@ pub(super) fn adaptive_step(
         control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], is_kink, order);
         let mut report = contact.accept(attempt, step, error)?;
         // bodies apart do not respond to a given approach before they touch
-        let apart = matches!(loads[0], Load::Approach { .. }) && report.contact_cells == 0 && time < touch;
+        let apart = !matches!(loads[0], Load::Force { .. }) && report.contact_cells == 0 && time < touch;
         if is_kink && !apart {
             contact.computation.state.history.reset_differences();
         }
@@ -180,7 +180,8 @@ impl StepControl {
     /// Whether a body of given approach comes no nearer between `now` and `time` than at these two times.
     pub(super) fn stays_away(&self, history: &dyn LoadHistory, now: f64, time: f64) -> bool {
         let approach = |load: Load| match load {
-            Load::Approach { approach, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] } => approach,
+            Load::Approach { approach: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] }
+            | Load::Spring { drive: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)], .. } => at,
             _ => f64::NAN,
         };
         let nearest = approach(history.at(now)).max(approach(history.before(time)));

@@ -35,7 +35,7 @@ pub(super) struct RunScale {
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
     returns: Returns,
-    /// Times at which a given approach follows a given force, ascending.
+    /// Times at which a given approach or a spring follows a given force, ascending.
     switches: Vec<f64>,
 }
 
@@ -69,10 +69,12 @@ impl RunScale {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let load = load(history, time).validated_at(time)?;
                 scale.include(&load);
-                if let (Load::Approach { .. }, Some(Load::Force { .. })) = (load, last.replace(load)) {
+                let is_force = |load: &Load| matches!(load, Load::Force { .. });
+                let before = last.replace(load);
+                if !is_force(&load) && before.is_some_and(|before| is_force(&before)) {
                     scale.switches.push(time);
                 }
-                if let (Load::Approach { .. }, true) = (load, time > now) {
+                if !is_force(&load) && time > now {
                     scale.stress = scale.stress.max(scale.magnitude(&load) / compliance_at(time)?);
                 }
             }
@@ -100,15 +102,20 @@ impl RunScale {
         match load {
             Load::Force { .. } => self.force = self.force.max(magnitude),
             Load::Approach { .. } => self.depth = self.depth.max(magnitude),
+            // the bounds of both
+            Load::Spring { stiffness, .. } => {
+                self.depth = self.depth.max(magnitude);
+                self.force = self.force.max(stiffness * magnitude);
+            }
         }
     }
 
-    /// The force, or the prescribed depth below first touch. 0 while the bodies are apart: the gap is no scale for the
+    /// The force, or the prescribed depth below first touch, of the body or of the far end of its spring. 0 while the bodies are apart: the gap is no scale for the
     /// load.
     pub(super) fn magnitude(&self, load: &Load) -> f64 {
         match load {
             Load::Force { normal, .. } => *normal,
-            Load::Approach { approach, .. } => (approach - self.touch).max(0.0),
+            Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => (depth - self.touch).max(0.0),
         }
     }
 
@@ -126,6 +133,10 @@ impl RunScale {
             }
             Load::Force { .. } => [0.0; 2],
             Load::Approach { .. } => [self.depth, self.stress],
+            Load::Spring { .. } => {
+                let sunk = self.depth_over_compliance;
+                [self.depth.min(sunk * scene.material.contact_compliance(age)), self.stress.min(sunk)]
+            }
         }
     }
 
@@ -145,17 +156,18 @@ impl RunScale {
         match load {
             Load::Force { .. } => self.expected(scene, load, age)[0],
             Load::Approach { .. } => self.returns.depth_after(now),
+            Load::Spring { .. } => self.returns.depth_after(now).min(self.expected(scene, load, age)[0]),
         }
     }
 
-    /// The time between `now` and `stop` at which a prescribed approach first brings undisturbed bodies into contact.
+    /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies into contact.
     /// The displacement grows from this time on, as after a corner. Infinite if there is none.
     pub(super) fn first_touch(&self, history: &dyn LoadHistory, now: f64, stop: f64) -> f64 {
         let apart = |time: f64| match history.at(time) {
-            Load::Approach { approach, .. } => approach < self.touch,
+            Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth < self.touch,
             Load::Force { .. } => true,
         };
-        if !matches!(history.at(now), Load::Approach { .. }) || !apart(now) || !stop.is_finite() {
+        if matches!(history.at(now), Load::Force { .. }) || !apart(now) || !stop.is_finite() {
             return f64::INFINITY;
         }
         let part = |k: i32| now + (stop - now) * f64::from(k) / f64::from(EQUAL_PARTS);
@@ -171,7 +183,7 @@ impl RunScale {
     }
 }
 
-/// Ends of the rises of a prescribed approach after it has receded, and their depths below first touch. At such a rise
+/// Ends of the rises of a prescribed approach, or of a driven spring, after it has receded, and their depths below first touch. At such a rise
 /// a body meets a surface that is still recovering.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -183,10 +195,13 @@ impl Returns {
         let (mut returns, mut receded, mut last) = (Returns::default(), false, None);
         for &time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let Load::Approach { approach, .. } = load(history, time).validated_at(time)? else {
-                    // a force may have receded, too
-                    (receded, last) = (true, None);
-                    continue;
+                let approach = match load(history, time).validated_at(time)? {
+                    Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth,
+                    Load::Force { .. } => {
+                        // a force may have receded, too
+                        (receded, last) = (true, None);
+                        continue;
+                    }
                 };
                 if let Some(before) = last.replace(approach) {
                     receded |= approach < before;

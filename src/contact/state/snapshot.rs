@@ -163,9 +163,12 @@ impl ViscoelasticContact {
             Tilt::Fixed(_) => Tilt::Fixed(now.tilt[axis]),
             free => free,
         });
-        match other {
+        let at = tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+        let approach = now.approach + now.tilt[0] * at[0] + now.tilt[1] * at[1];
+        match *other {
             Load::Force { .. } => Load::Force { normal: now.force, tilt },
-            Load::Approach { .. } => Load::Approach { approach: now.approach, tilt },
+            Load::Approach { .. } => Load::Approach { approach, tilt },
+            Load::Spring { stiffness, .. } => Load::Spring { stiffness, drive: approach + now.force / stiffness, tilt },
         }
     }
 }

@@ -28,7 +28,8 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
         if lost || !total.is_finite() {
             return Err(Error::Overflow { time, what: "the force over the area of a cell" });
         }
-        let balanced = tilt != [false; 2] && !(translation && total == 0.0);
+        let pressed = !translation || total > 0.0 || matches!(load, Load::Spring { .. });
+        let balanced = tilt != [false; 2] && pressed;
         if balanced && step.indenter.hull(body, grid).balanced_at(point, tilt).is_none() {
             return Err(Error::LoadOutsideHull { time, body, at: point });
         }
@@ -57,6 +58,8 @@ fn freedom(load: &Load, grid: &Grid) -> Freedom {
     let (translation, total) = match load {
         Load::Force { normal, .. } => (true, normal / grid.cell_area()),
         Load::Approach { .. } => (false, 0.0),
+        // found with the pressure
+        Load::Spring { .. } => (true, 0.0),
     };
     Freedom { translation, tilt, point, total }
 }

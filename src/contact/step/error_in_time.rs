@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::contact::computation::Computation;
 use crate::contact::scene::Scene;
 use crate::contact::step::request::Step;
+use crate::contact::step::spring::has_stiff_spring;
 use crate::contact::window::placement::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
@@ -139,7 +140,7 @@ pub(in crate::contact) fn error_in_time(
     let on_switch = one * (1.0 + agreement * (amplified(one, all) - 1.0));
     let pressure = [&pressure[..], &before.pressure, &state.previous.solution.pressure];
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
-    let matters = [forces > 0, forces < trial.free.len()];
+    let matters = [forces > 0, forces < trial.free.len() || has_stiff_spring(scene, state, step)];
     let gap = &tried.window.gap(&step.indenter).above;
     let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
     let rests_at = from_rest.then(|| first_touch(tried, gap));

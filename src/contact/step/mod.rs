@@ -21,6 +21,7 @@ mod gap;
 mod initial_guess;
 mod jump;
 pub(in crate::contact) mod request;
+pub(in crate::contact) mod spring;
 
 use std::sync::Arc;
 
@@ -28,7 +29,7 @@ use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::scene::Scene;
 use crate::contact::state::{Equilibrium, State};
-use crate::contact::step::request::Step;
+use crate::contact::step::request::{Step, Trial};
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::window::region::Region;
@@ -46,6 +47,7 @@ use error_in_time::{StepContext, error_in_time};
 use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
+use spring::{guess_forces, solve_with_springs};
 
 /// A computed step, not yet accepted. Dropping it leaves the contact unchanged.
 #[must_use]
@@ -212,6 +214,7 @@ fn marks(step: &Step<'_>) -> [f64; 4] {
     let load = step.loads.first().map_or(0.0, |load| match load {
         Load::Force { normal, .. } => *normal,
         Load::Approach { approach, .. } => *approach,
+        Load::Spring { drive, .. } => *drive,
     });
     [step.interval.time, step.interval.dt, step.tolerance, load]
 }
@@ -264,6 +267,7 @@ impl Computation {
         let before = &state.current.solution.pressure;
         bodies.fill_gap(window.gap(&step.indenter), &state.history, before, &mut trial.gap);
         below_full_contact(window, trial, step)?;
+        guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
 
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
         if c == 0.0 {
@@ -272,7 +276,9 @@ impl Computation {
             initial_guess(state, window, trial, step, c);
         }
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
-        let outcome = window.solve(&step.indenter, [c, bodies.greatest_motion(&scene.grid)], stop, trial);
+        let given = [c, bodies.greatest_motion(&scene.grid)];
+        let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
+        let outcome = solve_with_springs(scene, state, step, c, trial, solve);
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::indenter::Indenter;
+use crate::contact::step::spring::TriedSpring;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::solver::{Freedom, RigidMotion, Solution};
@@ -40,6 +41,8 @@ pub(crate) struct Trial {
     pub(in crate::contact) gap: Vec<f64>,
     /// Free motions of each body.
     pub(in crate::contact) free: Vec<Freedom>,
+    /// The last force tried of each body that a spring drives.
+    pub(in crate::contact) springs: Vec<TriedSpring>,
     /// Length of the extrapolation of the guess, in last steps.
     pub(in crate::contact) reach: f64,
     /// Cells that are likely to be in contact, and whether they were predicted.
@@ -57,6 +60,7 @@ impl Trial {
             solution: Solution::zero(cells, bodies),
             gap: vec![0.0; cells],
             free: vec![nothing_free; bodies],
+            springs: vec![TriedSpring::default(); bodies],
             reach: 0.0,
             likely: vec![false; cells],
             predicted: false,

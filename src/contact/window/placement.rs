@@ -56,16 +56,23 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
     for (body, load) in step.loads.iter().enumerate() {
         let free_tilt = |axis: usize| matches!(load.tilt()[axis], Tilt::Free { .. }) && !region.folded()[axis];
         let prescribed = step.prescribed(body);
+        // twice the depth of the level at which the gap has risen by a²/2R, see the cold start of the solver
+        let sunk = |normal: f64| {
+            let force = scene.material.contact_compliance(step.interval.dt) * normal;
+            let [lowest, rest] = level(scene, &region.of_gap(), &step.indenter, body, force);
+            lowest + 2.0 * rest
+        };
         let motion = match *load {
             Load::Force { normal: 0.0, .. } => continue,
             _ if free_tilt(0) || free_tilt(1) => RigidMotion { approach: f64::INFINITY, tilt: [0.0; 2] },
-            Load::Force { normal, .. } => {
-                let force = scene.material.contact_compliance(step.interval.dt) * normal;
-                let [lowest, rest] = level(scene, &region.of_gap(), &step.indenter, body, force);
-                // twice the depth of the level at which the gap has risen by a²/2R, see the cold start of the solver
-                RigidMotion { approach: lowest + 2.0 * rest, ..prescribed }
-            }
+            Load::Force { normal, .. } => RigidMotion { approach: sunk(normal), ..prescribed },
             Load::Approach { .. } => prescribed,
+            // neither deeper than without a spring, nor than under the force of the spring if the body did not yield
+            Load::Spring { stiffness, drive, .. } => {
+                let [datum, lowest] = [step.indenter.gap().datum, sunk(0.0)];
+                let approach = (drive - datum).min(sunk(stiffness * (drive - datum - lowest).max(0.0)));
+                RigidMotion { approach, ..prescribed }
+            }
         };
         let below = cells_below(&scene.grid, region.folded(), step.indenter.gap(), body, motion, |_, _| true);
         touched = Extent::hull(touched.into_iter().chain(below));

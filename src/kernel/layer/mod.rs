@@ -189,12 +189,12 @@ impl Layer {
         }
     }
 
-    /// Rejects a material whose Poisson's ratio differs from the layer's: `nu` for each body of a contact, none where
-    /// it is not constant.
-    pub(crate) fn check_material(&self, bodies: &[Option<f64>]) -> Result<()> {
-        let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer: self.poisson, what }));
+    /// Rejects a material whose Poisson's ratio differs from that of a layer, `layer`: `bodies` are the ratios of the bodies of a contact, none
+    /// where it is not constant.
+    pub(crate) fn check_material(layer: f64, bodies: &[Option<f64>]) -> Result<()> {
+        let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer, what }));
         match bodies {
-            [Some(nu)] if (nu - self.poisson).abs() <= SAME_POISSON => Ok(()),
+            [Some(nu)] if (nu - layer).abs() <= SAME_POISSON => Ok(()),
             // to the digits that were given
             [Some(nu)] => refused(format!("the material has the constant ratio {}", (nu * 1e9).round() / 1e9)),
             [None] => refused("that of a material with an elastic bulk rises in time".into()),

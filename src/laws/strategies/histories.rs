@@ -12,7 +12,7 @@ use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid,
 /// A load history of any type.
 pub type AnyHistory = Arc<dyn LoadHistory>;
 
-/// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], tilts within `tilt` \[rad\], load
+/// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], springs about as stiff as both suggest, tilts within `tilt` \[rad\], load
 /// points within `reach` of the origin \[m\].
 pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Value = Load> {
     let part = || -1.0..1.0_f64;
@@ -29,6 +29,10 @@ pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Val
         part().prop_map(move |part| Load::approach(part * depth)),
         (0.0..1.0_f64, tilts()).prop_map(move |(part, tilt)| Load::Force { normal: part * force, tilt }),
         (part(), tilts()).prop_map(move |(part, tilt)| Load::Approach { approach: part * depth, tilt }),
+        (part(), part(), tilts()).prop_map(move |(part, stiff, tilt)| {
+            let stiffness = 10f64.powf(2.0 * stiff) * force / depth;
+            Load::Spring { stiffness, drive: part * (depth + force / stiffness), tilt }
+        }),
     ]
 }
 

@@ -1,0 +1,152 @@
+//! Bodies that springs drive.
+//!
+//! The force F of a spring is the solution of g(F) = ω(F) + F/k − z = 0, with ω(F) the approach at the end of the step under the force F.
+//! ω never falls as F grows, since it is the slope of a convex energy, so that there is one solution. It is found by the steps of Barzilai
+//! and Borwein (IMA J. Numer. Anal. 8, 1988), which for one body are those of the secant method. Each solves the contact problem
+//! from the pressure of the last, which is nearly in balance.
+
+use std::f64::consts::PI;
+
+use crate::contact::scene::Scene;
+use crate::contact::state::State;
+use crate::contact::step::request::{Step, Trial};
+use crate::geometry::Gap;
+use crate::load::Load;
+use crate::solver::{ModeCoefficients, Outcome};
+
+/// Greatest number of forces that are tried.
+const MAX_FORCES: usize = 60;
+/// The relative change of the force that is still to come, over the tolerance of the solver.
+const SHARE_OF_TOLERANCE: f64 = 0.3;
+/// The next force over the last, where a body that tilts freely may bear none.
+const SMALLER: f64 = 0.1;
+/// Halvings of the depth of a first contact.
+const HALVINGS: usize = 40;
+
+/// What the last trial told of a spring.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::contact) struct TriedSpring {
+    force: f64,
+    /// g(F) \[m\].
+    excess: f64,
+    /// The motion in which a body that tilts freely hangs on its spring without contact.
+    hanging: Option<ModeCoefficients>,
+}
+
+/// The springs of a step, each with the body that it drives, its compliance \[m/N\] and its drive from the datum of the gap.
+fn springs<'a>(step: &'a Step<'_>) -> impl Iterator<Item = (usize, f64, f64)> + Clone + 'a {
+    let datum = step.indenter.gap().datum;
+    step.loads.iter().enumerate().filter_map(move |(body, load)| match *load {
+        Load::Spring { stiffness, drive, .. } => Some((body, 1.0 / stiffness, drive - datum)),
+        _ => None,
+    })
+}
+
+/// Force over Σ p \[m²\].
+fn area(scene: &Scene, state: &State) -> f64 {
+    scene.grid.cell_area() * state.region.images() as f64
+}
+
+/// Estimated dω/dF, that of a circle with the area of the present contact in a step of compliance `c`.
+fn yielding(scene: &Scene, state: &State, c: f64) -> f64 {
+    let pressed = (state.current.contact_cells.max(1) / scene.bodies).max(1) as f64;
+    0.5 * c / (pressed * scene.grid.cell_area() / PI).sqrt()
+}
+
+/// Whether a spring is stiffer than the contact, so that it gives the approach rather than the force.
+pub(super) fn has_stiff_spring(scene: &Scene, state: &State, step: &Step<'_>) -> bool {
+    let c = state.history.exponential_rule().map_or(0.0, |rule| rule.compliance());
+    springs(step).any(|(_, give, _)| give < yielding(scene, state, c))
+}
+
+/// Writes the first forces to try to the free motions: those that the present pressure, and in a first contact the shape, suggest.
+pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<'_>, c: f64, trial: &mut Trial) {
+    let (area, rows, now) = (area(scene, state), state.region.rows(), &state.current.solution);
+    for (body, give, drive) in springs(step) {
+        let above = &trial.gap;
+        let own = |k: usize| gap.owner(k) == body && above[k].is_finite();
+        // Σ p, and Σ p times the height at which this pressure would hold a cell
+        let [sum, heights] = rows.sum_terms(|k| {
+            let (p, height) = (now.pressure[k], above[k] + c * now.potential[k]);
+            (p > 0.0 && own(k)).then_some([p, p * height])
+        });
+        let force = if sum > 0.0 {
+            let change = drive - give * sum * area - heights / sum;
+            sum * area + change / (give + yielding(scene, state, c))
+        } else {
+            let heights = || (0..above.len()).filter(|&k| own(k)).map(|k| above[k]);
+            let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
+            // Hertz's force on the cells below half of a depth, see the cold start of the solver
+            let carried = |depth: f64| {
+                let level = lowest + 0.5 * depth;
+                let cells = rows.count(heights().filter(|&height| height <= level).count()) as f64;
+                0.5 * depth * (cells * area).sqrt() / (0.375 * PI.sqrt() * c)
+            };
+            let (mut low, mut high) = (0.0, (drive - lowest).max(0.0));
+            for _ in 0..HALVINGS {
+                let depth = 0.5 * (low + high);
+                if depth + give * carried(depth) < drive - lowest { low = depth } else { high = depth }
+            }
+            if high > 0.0 && c > 0.0 { carried(high) } else { 0.0 }
+        };
+        trial.free[body].total = force.max(0.0) / area;
+        trial.springs[body] = TriedSpring::default();
+    }
+}
+
+/// Solves the contact problem, again and again until the springs carry the forces that their approaches lead to.
+pub(super) fn solve_with_springs(
+    scene: &Scene,
+    state: &State,
+    step: &Step<'_>,
+    c: f64,
+    trial: &mut Trial,
+    mut solve: impl FnMut(&mut Trial) -> Outcome,
+) -> Outcome {
+    let (area, least) = (area(scene, state), yielding(scene, state, c));
+    let one_cell = c / scene.grid.cell_area().sqrt();
+    for tries in 0..MAX_FORCES {
+        let outcome = solve(trial);
+        if springs(step).next().is_none() || outcome != Outcome::Converged {
+            return outcome;
+        }
+        // Σ s (dg/dF) s by the estimate, and Σ s Δg
+        let (mut estimated, mut found) = (0.0, 0.0);
+        for (body, give, drive) in springs(step) {
+            let (force, position) = (trial.free[body].total * area, trial.solution.motions[body].0[0]);
+            let before = trial.springs[body];
+            let now = TriedSpring { force, excess: position + give * force - drive, ..before };
+            trial.springs[body] = now;
+            let change = now.force - before.force;
+            estimated += (give + least) * change * change;
+            found += change * (now.excess - before.excess);
+        }
+        let ratio = if tries > 0 && found > 0.0 && estimated > 0.0 { estimated / found } else { 1.0 };
+        let mut worst = 0.0f64;
+        for (body, give, drive) in springs(step) {
+            let TriedSpring { force, excess, hanging } = trial.springs[body];
+            let motion = &mut trial.solution.motions[body];
+            if force == 0.0 && (excess >= 0.0 || hanging.is_some()) {
+                *motion = hanging.unwrap_or(*motion);
+                motion.0[0] = drive;
+                continue;
+            }
+            let mut next = (force - ratio * excess / (give + least)).max(0.0);
+            if next == 0.0 && trial.free[body].tilts() {
+                // without force it hangs above the surface in this tilt, if it is higher than all of this force lowers it
+                let lifts = excess > 2.0 * force * (give + one_cell);
+                (next, trial.springs[body].hanging) =
+                    if lifts { (0.0, Some(*motion)) } else { (SMALLER * force, None) };
+            }
+            worst = worst.max((next - force).abs() / force.max(next));
+            trial.free[body].total = next / area;
+        }
+        // at a jump of a body without elastic response nothing moves
+        if c == 0.0 || worst <= SHARE_OF_TOLERANCE * step.tolerance {
+            springs(step).for_each(|(body, ..)| trial.free[body].total = trial.springs[body].force / area);
+            return outcome;
+        }
+        trial.predicted = false;
+    }
+    Outcome::Stagnated
+}

@@ -1,0 +1,165 @@
+//! Elastic states as archives in the NPZ format of NumPy.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+use zip::ZipArchive;
+
+use crate::Grid;
+use crate::error::{Error, Result};
+use crate::file::{npy, replace};
+use crate::load::Tilt;
+use crate::output::Metadata;
+use crate::output::npz::Archive;
+use crate::states::{ElasticState, ElasticStates, Pressed, Rest};
+
+/// Writes elastic states as an NPZ archive, so that a [`Sweep`](crate::states::Sweep) is made once: `numpy.load(path)["level"]` and so on, arrays named as
+/// the fields of an [`ElasticState`], and the pressures if they were kept. An existing file is replaced.
+///
+/// Needs the feature `npy`.
+///
+/// ```
+/// use viscocontact::output::{Metadata, read_states, write_states};
+/// use viscocontact::prelude::*;
+/// use viscocontact::states::{Reach, Sweep};
+///
+/// let states = Sweep::new(Grid::square(16, 4.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(5.0e-7))?;
+/// # let path = std::env::temp_dir().join(format!("viscocontact-doc-states-{}.npz", std::process::id()));
+/// write_states(&path, &states, &Metadata::new("A ball"))?;
+/// assert_eq!(read_states(&path)?.states(), states.states());
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &Metadata) -> Result<()> {
+    let table = states.states();
+    let count = table.len();
+    let column = |of: fn(&ElasticState) -> f64| table.iter().map(of).collect::<Vec<f64>>();
+    let scalars = [
+        ("level", column(|state| state.level)),
+        ("approach", column(|state| state.approach)),
+        ("stiffness", column(|state| state.stiffness)),
+        ("area", column(|state| state.area)),
+        ("cells", column(|state| state.cells as f64)),
+        ("patches", column(|state| state.patches as f64)),
+    ];
+    let tilts: Vec<f64> = table.iter().flat_map(|state| state.tilt).collect();
+    let Rest { approach, tilt: [tilt1, tilt2] } = states.rest;
+    let given = states.tilt.map(|tilt| match tilt {
+        Tilt::Fixed(angle) => [0.0, angle],
+        Tilt::Free { at } => [1.0, at],
+    });
+    let sizes = [states.error, states.first_level, states.poisson.unwrap_or(f64::NAN)];
+    replace(path.as_ref(), |out| {
+        let mut archive = Archive::empty(out);
+        for (name, values) in &scalars {
+            archive.add(name, &[count], values)?;
+        }
+        archive.add("tilt", &[count, 2], &tilts)?;
+        archive.add("rest", &[3], &[approach, tilt1, tilt2])?;
+        archive.add("given_tilt", &[2, 2], given.as_flattened())?;
+        archive.add("error_first_level_poisson", &[3], &sizes)?;
+        if let Some(grid) = states.grid() {
+            let ([n1, n2], [l1, l2]) = (grid.cells(), grid.lengths());
+            archive.add("grid", &[2, 2], &[n1 as f64, n2 as f64, l1, l2])?;
+        }
+        if !states.pressures.is_empty() {
+            let counts: Vec<f64> = states.pressures.iter().map(|pressed| pressed.cells.len() as f64).collect();
+            let cells: Vec<f64> =
+                states.pressures.iter().flat_map(|pressed| pressed.cells.iter().map(|&k| k.into())).collect();
+            let pressures: Vec<f64> =
+                states.pressures.iter().flat_map(|pressed| pressed.pressures.iter().copied()).collect();
+            archive.add("pressed_cells_of_state", &[count], &counts)?;
+            archive.add("pressed_cells", &[cells.len()], &cells)?;
+            archive.add("pressure", &[pressures.len()], &pressures)?;
+        }
+        archive.finish(&metadata.brief())
+    })
+}
+
+/// Reads elastic states that [`write_states`] has written. They hold no surface: [`StatesContact::fields`](crate::states::StatesContact::fields) needs the
+/// states of a sweep of this process.
+///
+/// Needs the feature `npy`.
+///
+/// # Errors
+/// If the file cannot be read, or its arrays are no elastic states ([`Error::Unreadable`]).
+pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
+    let path = path.as_ref();
+    let refused = |reason: String| Error::Unreadable { file: path.display().to_string(), reason, kind: None };
+    let arrays = read_arrays(path)?;
+    let array = |name: &str, length: usize| match arrays.get(name) {
+        Some(values) if values.len() == length => Ok(&values[..]),
+        Some(values) => Err(refused(format!("the array {name} has {} numbers, not {length}", values.len()))),
+        None => Err(refused(format!("there is no array {name}"))),
+    };
+    let count = arrays.get("level").map_or(0, Vec::len);
+    let [levels, approaches, stiffnesses] =
+        [array("level", count)?, array("approach", count)?, array("stiffness", count)?];
+    let [areas, cells, patches] = [array("area", count)?, array("cells", count)?, array("patches", count)?];
+    let tilts = array("tilt", 2 * count)?;
+    let states = (0..count).map(|k| ElasticState {
+        level: levels[k],
+        approach: approaches[k],
+        tilt: [tilts[2 * k], tilts[2 * k + 1]],
+        stiffness: stiffnesses[k],
+        area: areas[k],
+        cells: cells[k] as usize,
+        patches: patches[k] as usize,
+    });
+    let rest = array("rest", 3)?;
+    let rest = Rest { approach: rest[0], tilt: [rest[1], rest[2]] };
+    let given = array("given_tilt", 4)?;
+    let tilt =
+        [0, 2].map(|k| if given[k] == 1.0 { Tilt::Free { at: given[k + 1] } } else { Tilt::Fixed(given[k + 1]) });
+    let mut states = ElasticStates::new(states.collect(), rest, tilt);
+    let sizes = array("error_first_level_poisson", 3)?;
+    (states.error, states.first_level) = (sizes[0], sizes[1]);
+    states.poisson = Some(sizes[2]).filter(|poisson| !poisson.is_nan());
+    if arrays.contains_key("grid") {
+        let grid = array("grid", 4)?;
+        states.grid = Some(Grid::new([grid[0] as usize, grid[1] as usize], [grid[2], grid[3]])?);
+    }
+    if arrays.contains_key("pressure") {
+        let counts = array("pressed_cells_of_state", count)?;
+        let all = counts.iter().sum::<f64>() as usize;
+        let (mut cells, mut pressures) = (array("pressed_cells", all)?.iter(), array("pressure", all)?.iter());
+        let pressed = counts.iter().map(|&count| Pressed {
+            cells: cells.by_ref().take(count as usize).map(|&cell| cell as u32).collect(),
+            pressures: pressures.by_ref().take(count as usize).copied().collect(),
+        });
+        states.pressures = pressed.collect();
+    }
+    states.validated().map(Arc::new).map_err(|error| refused(error.to_string()))
+}
+
+/// The arrays of real numbers in an archive, by their names.
+fn read_arrays(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
+    let file = path.display().to_string();
+    let refused = |reason: String| Error::Unreadable { file: file.clone(), reason, kind: None };
+    let unopened = |error: io::Error| Error::Unreadable {
+        file: file.clone(),
+        reason: error.to_string(),
+        kind: Some(error.kind()),
+    };
+    let opened = File::open(path).map_err(unopened)?;
+    // arrays are not compressed
+    let length = opened.metadata().map_err(unopened)?.len();
+    let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| refused(error.to_string()))?;
+    let mut arrays = BTreeMap::new();
+    for index in 0..archive.len() {
+        let entry = archive.by_index(index).map_err(|error| refused(error.to_string()))?;
+        let name = entry.name().map_err(|error| refused(error.to_string()))?.trim_end_matches(".npy").to_owned();
+        let mut bytes = Vec::new();
+        entry.take(length).read_to_end(&mut bytes).map_err(|error| refused(error.to_string()))?;
+        if let Some(values) = npy::numbers(&bytes) {
+            arrays.insert(name, values);
+        }
+    }
+    Ok(arrays)
+}

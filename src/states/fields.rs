@@ -1,0 +1,93 @@
+//! Fields of a contact on elastic states.
+
+use crate::contact::ViscoelasticContact;
+use crate::error::{Result, StatesError};
+use crate::load::Load;
+use crate::states::contact::StatesContact;
+use crate::states::curve::ElasticStates;
+
+/// Fields of a [`StatesContact`], one value for each cell of the grid of the sweep.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct StatesFields {
+    /// Contact pressure \[Pa\].
+    pub pressure: Vec<f64>,
+    /// Displacement of the surface, positive into the bodies \[m\].
+    pub displacement: Vec<f64>,
+    /// Gap between the deformed bodies \[m\]; +∞ where there is nothing to touch.
+    pub gap: Vec<f64>,
+}
+
+impl StatesContact {
+    /// The pressure \[Pa\] from the states that the sweep kept ([`Sweep::keep_pressures`](crate::states::Sweep::keep_pressures)), linear in the level
+    /// between them: one value for each cell of the grid.
+    ///
+    /// # Errors
+    /// [`StatesError::NoPressures`] if none were kept.
+    pub fn pressure(&self) -> Result<Vec<f64>> {
+        let states = self.states();
+        let grid = states.grid.as_ref().filter(|_| !states.pressures.is_empty()).ok_or(StatesError::NoPressures)?;
+        // Σ w (p_e(l_i) − p_e(l_i−1)) by the share of each state in it
+        let mut shares = vec![0.0; states.pressures.len()];
+        let mut last = 0.0;
+        for (top, traction, _) in self.levels.groups().filter(|(_, traction, _)| *traction > 0.0) {
+            states.share(top, traction, &mut shares);
+            states.share(last, -traction, &mut shares);
+            last = top;
+        }
+        let mut field = vec![0.0; grid.len()];
+        states.pressures.iter().zip(shares).for_each(|(pressed, share)| pressed.add_to(share, &mut field));
+        Ok(field)
+    }
+
+    /// All fields, exact: by an elastic contact at the level of each group, from the smallest to the largest.
+    ///
+    /// # Errors
+    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of [`ViscoelasticContact::step`].
+    pub fn fields(&self) -> Result<StatesFields> {
+        let states = self.states();
+        let mut elastic = states.elastic_contact()?;
+        elastic.step(0.0, Load::Force { normal: 0.0, tilt: states.tilt })?;
+        let cells = elastic.grid().len();
+        let mut fields =
+            StatesFields { pressure: vec![0.0; cells], displacement: vec![0.0; cells], gap: vec![0.0; cells] };
+        elastic.gap_into(&mut fields.gap)?;
+        let (mut before, mut gap) = (fields.clone(), vec![0.0; cells]);
+        for (top, traction, displacement) in self.levels.groups() {
+            elastic.step(0.0, Load::Force { normal: top, tilt: states.tilt })?;
+            elastic.gap_into(&mut gap)?;
+            let parts = [
+                (traction, &mut fields.pressure, &mut before.pressure, elastic.pressure()),
+                (displacement, &mut fields.displacement, &mut before.displacement, elastic.displacement()),
+                (displacement, &mut fields.gap, &mut before.gap, &gap),
+            ];
+            for (share, sum, before, now) in parts {
+                for ((sum, before), now) in sum.iter_mut().zip(before.iter_mut()).zip(now) {
+                    // nothing to touch stays nothing to touch
+                    *sum += if now.is_finite() { share * (now - *before) } else { 0.0 };
+                    *before = *now;
+                }
+            }
+        }
+        fields.gap.iter_mut().for_each(|gap| *gap += self.levels.lift);
+        Ok(fields)
+    }
+}
+
+impl ElasticStates {
+    /// Adds the shares of the states in `weight` times the pressure at a level.
+    fn share(&self, level: f64, weight: f64, shares: &mut [f64]) {
+        let upper = self.states.partition_point(|state| state.level < level).min(self.states.len() - 1);
+        let [below, above] = [upper.checked_sub(1).map_or(0.0, |k| self.states[k].level), self.states[upper].level];
+        let share = (level - below) / (above - below);
+        shares[upper] += weight * share;
+        if upper > 0 {
+            shares[upper - 1] += weight * (1.0 - share);
+        }
+    }
+
+    /// An elastic contact of unit compliance on this surface, undisturbed.
+    fn elastic_contact(&self) -> Result<ViscoelasticContact> {
+        self.scene.clone().ok_or(StatesError::NoScene)?.build()
+    }
+}

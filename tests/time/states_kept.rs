@@ -1,0 +1,168 @@
+//! What is kept of elastic states, and of contacts on them: files, snapshots, states within a step.
+
+use std::sync::Arc;
+
+use crate::common::temporary::Temporary;
+use viscocontact::prelude::*;
+use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
+
+fn rough_states(kept: bool) -> Arc<ElasticStates> {
+    let grid = Grid::square(24, 1.0).unwrap();
+    let rough = Rough::new(&grid, RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(0.02))).unwrap();
+    let sweep = Sweep::new(grid.clone(), &rough).kernel(InfluenceKernel::periodic(&grid).unwrap()).accuracy(1e-3);
+    let sweep = if kept { sweep.keep_pressures() } else { sweep };
+    sweep.run(Reach::Level(0.05)).unwrap()
+}
+
+fn material() -> Material {
+    Material::incompressible(GeneralizedMaxwell::new(0.05, &[(0.1, 0.1), (0.1, 1.0), (0.05, 10.0)]).unwrap())
+}
+
+fn load(step: u32) -> (f64, Load) {
+    let wave = 0.5 + 0.5 * (1.7 * f64::from(step)).sin();
+    let load = if step % 3 == 2 { Load::spring(0.05, 0.02 * (1.0 + wave)) } else { Load::force(2.0e-3 * wave) };
+    (if step.is_multiple_of(5) { 0.0 } else { 0.1 * (1.0 + wave) }, load)
+}
+
+fn advanced(contact: &mut StatesContact, steps: std::ops::Range<u32>) {
+    for step in steps {
+        let (dt, load) = load(step);
+        contact.step(dt, load).unwrap();
+    }
+}
+
+/// A contact restored or resumed goes on by the same bits.
+#[test]
+fn contacts_on_states_come_back_to_the_last_bit() {
+    let states = rough_states(false);
+    let mut contact = StatesContact::new(&states, &material()).unwrap();
+    advanced(&mut contact, 0..8);
+    let mut start = contact.snapshot();
+    advanced(&mut contact, 8..20);
+    let end = contact.report();
+    contact.restore(&start).unwrap();
+    advanced(&mut contact, 8..20);
+    assert_eq!(contact.report(), end);
+    contact.snapshot_into(&mut start);
+    assert_eq!(start.report(), end);
+    let mut other = StatesContact::new(&states, &material()).unwrap();
+    assert!(matches!(other.restore(&start), Err(Error::OtherContact)));
+
+    let folder = Temporary::folder("states-checkpoint");
+    let path = folder.join("state");
+    other = StatesContact::new(&states, &material()).unwrap();
+    advanced(&mut other, 0..8);
+    other.save(&path).unwrap();
+    let mut again = StatesContact::new(&states, &material()).unwrap();
+    again.resume(&path).unwrap();
+    advanced(&mut again, 8..20);
+    assert_eq!(again.report(), end);
+    // of another material, other states, a damaged file, a file of a contact
+    let stiffer = Material::incompressible(Maxwell::new(1.0, 1.0).unwrap());
+    let mut wrong = StatesContact::new(&states, &stiffer).unwrap();
+    assert!(matches!(wrong.resume(&path), Err(Error::Checkpoint { .. })));
+    let table = ElasticStates::from_table(&[(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)]).unwrap();
+    assert!(StatesContact::new(&table, &material()).unwrap().resume(&path).is_err());
+    let before = again.report();
+    let bytes = std::fs::read(&path).unwrap();
+    for cut in (0..bytes.len()).step_by(97) {
+        std::fs::write(&path, &bytes[..cut]).unwrap();
+        assert!(again.resume(&path).is_err());
+        let mut damaged = bytes.clone();
+        damaged[cut] ^= 0x10;
+        std::fs::write(&path, damaged).unwrap();
+        assert!(again.resume(&path).is_err(), "{cut}");
+    }
+    assert_eq!(again.report(), before);
+}
+
+/// States read from a file carry the same contacts, and the same pressures.
+#[test]
+fn states_in_files_are_the_states() {
+    use viscocontact::output::{Metadata, read_states, write_states};
+
+    let folder = Temporary::folder("states-npz");
+    let path = folder.join("states.npz");
+    for kept in [false, true] {
+        let states = rough_states(kept);
+        write_states(&path, &states, &Metadata::new("rough").note("seed", "0")).unwrap();
+        let read = read_states(&path).unwrap();
+        assert_eq!(read.states(), states.states());
+        assert_eq!(read.interpolation_error(), states.interpolation_error());
+        assert_eq!(read.grid(), states.grid());
+        let [mut one, mut other] = [&states, &read].map(|states| StatesContact::new(states, &material()).unwrap());
+        for step in 0..12 {
+            let (dt, load) = load(step);
+            assert_eq!(one.step(dt, load).unwrap(), other.step(dt, load).unwrap());
+        }
+        let no_pressures = |error: Error| matches!(error, Error::States(StatesError::NoPressures));
+        match kept {
+            true => assert_eq!(one.pressure().unwrap(), other.pressure().unwrap()),
+            false => assert!(no_pressures(one.pressure().unwrap_err()) && no_pressures(other.pressure().unwrap_err())),
+        }
+        assert!(matches!(other.fields().unwrap_err(), Error::States(StatesError::NoScene)));
+        let bytes = std::fs::read(&path).unwrap();
+        for cut in (0..bytes.len()).step_by(1 + bytes.len() / 60) {
+            std::fs::write(&path, &bytes[..cut]).unwrap();
+            assert!(read_states(&path).is_err());
+        }
+    }
+    // a layer keeps its Poisson's ratio
+    let (grid, layer) = (Grid::square(16, 2.0).unwrap(), Layer::bonded_to_rigid(0.5, 0.3).unwrap());
+    let sweep = Sweep::new(grid.clone(), &Sphere::new(10.0).unwrap());
+    let states = sweep.kernel(InfluenceKernel::layer(&grid, layer).unwrap()).run(Reach::Level(0.01)).unwrap();
+    write_states(&path, &states, &Metadata::default()).unwrap();
+    assert!(StatesContact::new(&read_states(&path).unwrap(), &material()).is_err());
+    assert!(read_states(folder.join("absent.npz")).is_err());
+}
+
+/// A state within a step is as exact as one at its end.
+#[test]
+fn runs_on_states_can_be_looked_at_within_their_steps() {
+    let states = rough_states(false);
+    let driven = Ramp::new(Load::spring(0.2, -0.005), Load::spring(0.2, 0.03), 1.0).unwrap();
+    let exact = |time: f64| {
+        let mut contact = StatesContact::new(&states, &material()).unwrap();
+        let mut run = contact.follow(&driven, Stepping::adaptive(1e-9), time);
+        while run.next_step().unwrap().is_some() {}
+        contact
+    };
+    let greatest = exact(1.0).force();
+    for stepping in [Stepping::adaptive(1e-5), Stepping::fixed(0.01)] {
+        let mut contact = StatesContact::new(&states, &material()).unwrap();
+        let mut run = contact.follow(&driven, stepping, 3.0);
+        let mut last = 0.0;
+        let mut looked = 0;
+        while let Some(report) = run.next_step().unwrap() {
+            let parts = if looked < 20 { vec![0.3, 0.8] } else { Vec::new() };
+            for part in parts {
+                let time = last + part * (report.time - last);
+                let (within, exact) = (run.within_step(time).unwrap(), exact(time));
+                assert_eq!(within.time(), time);
+                let [forces, approaches] = [within.force() - exact.force(), within.approach() - exact.approach()];
+                assert!(forces.abs() < 1e-4 * greatest && approaches.abs() < 2e-6, "{time} {forces:e} {approaches:e}");
+            }
+            assert!(run.within_step(last - 1e-3).is_err() && run.within_step(report.time + 1e-3).is_err());
+            last = report.time;
+            looked += usize::from(last > 0.2);
+        }
+    }
+}
+
+/// Tables that are no elastic states are refused.
+#[test]
+fn tables_that_are_no_states_are_refused() {
+    let good = [(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)];
+    assert!(ElasticStates::from_table(&good).is_ok());
+    assert!(matches!(ElasticStates::from_table(&good[..1]), Err(Error::WrongLength { .. })));
+    for (row, column) in (0..2).flat_map(|row| (0..4).map(move |column| (row, column))) {
+        for bad in [0.0, -1.0, f64::NAN] {
+            let mut table = good.map(|(a, b, c, d)| [a, b, c, d]);
+            table[row][column] = bad;
+            let table = table.map(|[a, b, c, d]| (a, b, c, d));
+            assert!(ElasticStates::from_table(&table).is_err(), "{table:?}");
+        }
+    }
+    let falls = [(1.0, 1.0, 1.0, 1.0), (2.0, 0.5, 2.0, 2.0)];
+    assert!(matches!(ElasticStates::from_table(&falls), Err(Error::OutOfOrder { .. })));
+}
