@@ -33,6 +33,6 @@ use outcome::ResidualSums;
 use passes::{Passes, Search, add};
 use preconditioner::Preconditioner;
 use resting_position::RestingPosition;
-use rigid_motion::{Gram, Line, ModeCoefficients, dot};
+use rigid_motion::{Gram, Line, dot};
 use row_segments::{Cut, PIECE_CELLS, Piece, RowSegments};
 use trace::Trace;
