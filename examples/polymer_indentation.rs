@@ -18,7 +18,7 @@ use viscocontact::rheology::library;
 /// A ball on a real polymer over many decades of time.
 #[derive(Parser)]
 struct Args {
-    /// Published material (`--material list` names them).
+    /// PublishedMaterial material (`--material list` names them).
     #[arg(long, default_value = "PMMA")]
     material: String,
     /// Poisson's ratio at first.

@@ -34,7 +34,7 @@ use viscocontact::rheology::library;
 /// The real contact area of a rough polymer, growing over decades of time.
 #[derive(Parser)]
 struct Args {
-    /// Published material.
+    /// PublishedMaterial material.
     #[arg(long, default_value = "adhesive")]
     material: String,
     /// Temperature [K], where it is published how the material shifts with it.

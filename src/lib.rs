@@ -110,7 +110,7 @@
 //!
 //! # Features
 //!
-//! `checkpoint`: saves the state to a file and resumes from it ([`contact::Follow`]`::autosave_to`,
+//! `checkpoint`: saves the state to a file and resumes from it ([`contact::Run`]`::autosave_to`,
 //! `ViscoelasticContact::save` and `resume`).
 //!
 //! `csv` (on by default): tables of measured data from CSV files.
@@ -223,8 +223,8 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Follow, Frame, Settings, Snapshot, Solver, SteadyMotion, StepReport, Stepping,
-        TimeRule, ViscoelasticContact, Warnings,
+        BodyState, Builder, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepReport, Stepping, TimeRule,
+        ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,

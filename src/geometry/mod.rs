@@ -38,7 +38,7 @@ pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
-pub use height_map::{Form, HeightMap, LengthUnit, Resampled, ResamplingError};
+pub use height_map::{Form, HeightMap, LengthUnit, ResampledMap, ResamplingError};
 pub use repeated::Repeated;
 pub use rough::{Anisotropy, Rough, RoughSpec, Roughness, SharedRough};
 pub use shifted::Shifted;

@@ -7,7 +7,7 @@ use crate::plot::{COLORS, Chart, Legend, Quantity, Style};
 /// A quantity of a contact that a [`History`] records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Observed {
+pub enum HistoryColumn {
     /// [`ViscoelasticContact::force`] \[N\].
     Force,
     /// [`ViscoelasticContact::approach`] \[m\].
@@ -20,10 +20,15 @@ pub enum Observed {
     MaxPressure,
 }
 
-impl Observed {
+impl HistoryColumn {
     /// All of them.
-    pub const ALL: [Observed; 5] =
-        [Observed::Force, Observed::Approach, Observed::ContactArea, Observed::MeanPressure, Observed::MaxPressure];
+    pub const ALL: [HistoryColumn; 5] = [
+        HistoryColumn::Force,
+        HistoryColumn::Approach,
+        HistoryColumn::ContactArea,
+        HistoryColumn::MeanPressure,
+        HistoryColumn::MaxPressure,
+    ];
 
     /// Name and SI unit.
     pub fn quantity(self) -> Quantity {
@@ -34,11 +39,11 @@ impl Observed {
     /// Name, SI unit and the method that returns the value.
     fn definition(self) -> (&'static str, &'static str, fn(&ViscoelasticContact) -> f64) {
         match self {
-            Observed::Force => ("force", "N", ViscoelasticContact::force),
-            Observed::Approach => ("approach", "m", ViscoelasticContact::approach),
-            Observed::ContactArea => ("contact area", "m²", ViscoelasticContact::contact_area),
-            Observed::MeanPressure => ("mean pressure", "Pa", ViscoelasticContact::mean_pressure),
-            Observed::MaxPressure => ("greatest pressure", "Pa", ViscoelasticContact::max_pressure),
+            HistoryColumn::Force => ("force", "N", ViscoelasticContact::force),
+            HistoryColumn::Approach => ("approach", "m", ViscoelasticContact::approach),
+            HistoryColumn::ContactArea => ("contact area", "m²", ViscoelasticContact::contact_area),
+            HistoryColumn::MeanPressure => ("mean pressure", "Pa", ViscoelasticContact::mean_pressure),
+            HistoryColumn::MaxPressure => ("greatest pressure", "Pa", ViscoelasticContact::max_pressure),
         }
     }
 }
@@ -46,7 +51,7 @@ impl Observed {
 /// Quantities of a contact recorded over a run, to draw over time.
 ///
 /// ```
-/// use viscocontact::plot::{History, Observed, Scale};
+/// use viscocontact::plot::{History, HistoryColumn, Scale};
 /// use viscocontact::prelude::*;
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
@@ -58,8 +63,8 @@ impl Observed {
 ///     contact.step(dt, Load::force(0.5))?;
 ///     history.add(&contact);
 /// }
-/// assert_eq!(history.column(Observed::Approach)[2], contact.approach());
-/// let mut chart = history.chart(Observed::Approach)?;
+/// assert_eq!(history.column(HistoryColumn::Approach)[2], contact.approach());
+/// let mut chart = history.chart(HistoryColumn::Approach)?;
 /// chart.scale = Scale::LogX;
 /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-history-{}.png", std::process::id()));
 /// chart.save(&path)?;
@@ -69,7 +74,7 @@ impl Observed {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
     times: Vec<f64>,
-    columns: [Vec<f64>; Observed::ALL.len()],
+    columns: [Vec<f64>; HistoryColumn::ALL.len()],
 }
 
 impl History {
@@ -81,7 +86,7 @@ impl History {
     /// Records the current state of a contact.
     pub fn add(&mut self, contact: &ViscoelasticContact) {
         self.times.push(contact.time());
-        for (column, observed) in self.columns.iter_mut().zip(Observed::ALL) {
+        for (column, observed) in self.columns.iter_mut().zip(HistoryColumn::ALL) {
             column.push(observed.definition().2(contact));
         }
     }
@@ -92,7 +97,7 @@ impl History {
     }
 
     /// The recorded values of a quantity, one per time.
-    pub fn column(&self, observed: Observed) -> &[f64] {
+    pub fn column(&self, observed: HistoryColumn) -> &[f64] {
         &self.columns[observed as usize]
     }
 
@@ -100,7 +105,7 @@ impl History {
     ///
     /// # Errors
     /// As [`Chart::history`]; none is expected, since all columns are as long as the times.
-    pub fn chart(&self, observed: Observed) -> Result<Chart> {
+    pub fn chart(&self, observed: HistoryColumn) -> Result<Chart> {
         Chart::history("", &self.times, observed.quantity(), &[("", self.column(observed))])
     }
 }

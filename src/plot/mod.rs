@@ -14,7 +14,7 @@
 //! | an animation of a run | [`Animation`] |
 //!
 //! ```
-//! use viscocontact::plot::{Animation, History, Map, Observed};
+//! use viscocontact::plot::{Animation, History, Map, HistoryColumn};
 //! use viscocontact::{output::Field, prelude::*};
 //!
 //! let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
@@ -32,7 +32,7 @@
 //! }
 //! animation.finish()?;
 //! Map::pressure(&contact)?.save(folder.join("pressure.png"))?;
-//! history.chart(Observed::ContactArea)?.save(folder.join("area.png"))?;
+//! history.chart(HistoryColumn::ContactArea)?.save(folder.join("area.png"))?;
 //! # std::fs::remove_dir_all(&folder).unwrap();
 //! # Ok::<(), Error>(())
 //! ```
@@ -62,7 +62,7 @@ pub use animation::Animation;
 pub use axis::scientific;
 pub use chart::{Chart, Legend, Scale, Style};
 pub use color::{COLORS, Color};
-pub use history::{History, Observed};
+pub use history::{History, HistoryColumn};
 pub use map::Map;
 pub use picture::Picture;
 pub use quantity::Quantity;

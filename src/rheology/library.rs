@@ -1,4 +1,4 @@
-//! Published materials, by name.
+//! PublishedMaterial materials, by name.
 //!
 //! Prony series as printed, each with its reference and the source of the digits. Other specimens differ by
 //! temperature, compound and ageing: take these as examples of real bodies, and measure your own.
@@ -31,7 +31,7 @@ pub enum Measured {
 /// A published material: a relaxation modulus as a Prony series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Published {
+pub struct PublishedMaterial {
     /// Its name in this library.
     pub name: &'static str,
     /// A description.
@@ -53,7 +53,7 @@ pub struct Published {
     pub remark: &'static str,
 }
 
-impl Published {
+impl PublishedMaterial {
     /// Modulus after an infinite time, as published \[Pa\].
     pub fn equilibrium(&self) -> f64 {
         self.equilibrium * self.scale
@@ -92,7 +92,7 @@ impl Published {
 }
 
 /// All published materials.
-pub fn all() -> &'static [Published] {
+pub fn all() -> &'static [PublishedMaterial] {
     &MATERIALS
 }
 
@@ -100,16 +100,16 @@ pub fn all() -> &'static [Published] {
 ///
 /// # Errors
 /// If there is none; the error lists the known names.
-pub fn find(name: &str) -> Result<&'static Published> {
+pub fn find(name: &str) -> Result<&'static PublishedMaterial> {
     MATERIALS.iter().find(|material| material.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
         let known = MATERIALS.map(|material| material.name).join(", ");
         MaterialError::Unknown { name: name.to_owned(), known }.into()
     })
 }
 
-static MATERIALS: [Published; 5] = [PMMA, EPOXY, ADHESIVE, POLYISOBUTYLENE, POLYSTYRENE_RINGS];
+static MATERIALS: [PublishedMaterial; 5] = [PMMA, EPOXY, ADHESIVE, POLYISOBUTYLENE, POLYSTYRENE_RINGS];
 
-const PMMA: Published = Published {
+const PMMA: PublishedMaterial = PublishedMaterial {
     name: "PMMA",
     description: "polymethyl methacrylate",
     measured: Measured::Tension,
@@ -137,7 +137,7 @@ const PMMA: Published = Published {
              neither temperature nor Poisson's ratio is given there",
 };
 
-const EPOXY: Published = Published {
+const EPOXY: PublishedMaterial = PublishedMaterial {
     name: "epoxy",
     description: "commercial epoxy, cured",
     measured: Measured::Shear,
@@ -178,7 +178,7 @@ const EPOXY: Published = Published {
              to 1, the last time leaves out half a decade, the temperature is not given there",
 };
 
-const ADHESIVE: Published = Published {
+const ADHESIVE: PublishedMaterial = PublishedMaterial {
     name: "adhesive",
     description: "electrically conductive adhesive E1 of photovoltaic modules, unexposed",
     measured: Measured::Shear,
@@ -225,7 +225,7 @@ const ADHESIVE: Published = Published {
              \"Springer, 2020\"; the longest times are extrapolated by shifting",
 };
 
-const POLYISOBUTYLENE: Published = Published {
+const POLYISOBUTYLENE: PublishedMaterial = PublishedMaterial {
     name: "polyisobutylene",
     description: "polyisobutylene at 25 degrees Celsius, 1e-11 s to 1e6 s",
     measured: Measured::Tension,
@@ -270,7 +270,7 @@ const POLYISOBUTYLENE: Published = Published {
              terms of 0.1 Pa left out; reproduces the data within a factor of 0.81 to 1.12",
 };
 
-const POLYSTYRENE_RINGS: Published = Published {
+const POLYSTYRENE_RINGS: PublishedMaterial = PublishedMaterial {
     name: "polystyrene rings",
     description: "melt of polystyrene rings of 198 kg/mol, a fluid",
     measured: Measured::Shear,

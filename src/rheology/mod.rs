@@ -17,10 +17,10 @@
 //! | [`SlowCreep`] | J_g + c ln(1 + (t/λ)ⁿ) |
 //! | [`FnRheology`] | any closure |
 //! | [`CreepSeries`] | fitted to [`Measurements`], or to another model |
-//! | [`AtTemperature`] | J of another model, at a constant temperature; [`TemperatureHistory`]: at a changing one |
+//! | [`ShiftedRheology`] | J of another model, at a constant temperature; [`TemperatureHistory`]: at a changing one |
 //!
 //! A [`Rheology`] describes shear; a [`Material`] adds the bulk response and gives the contact
-//! compliance C(t) of the surface. Published materials are in [`library`], the laws that every
+//! compliance C(t) of the surface. PublishedMaterial materials are in [`library`], the laws that every
 //! rheology obeys in [`laws`].
 //!
 //! # Exponential series
@@ -91,7 +91,7 @@ pub use table::Units;
 pub use table::{Experiment, Isotherm, MasterCurve, Measurements};
 pub use temperature_history::TemperatureHistory;
 pub(crate) use time_temperature::GAS_CONSTANT;
-pub use time_temperature::{AtTemperature, TimeTemperature};
+pub use time_temperature::{ShiftedRheology, TimeTemperature};
 pub use zener::Zener;
 
 use std::fmt::Debug;

@@ -93,20 +93,20 @@ impl TimeTemperature {
     ///
     /// # Errors
     /// As [`TimeTemperature::shift_factor`].
-    pub fn at<R: Rheology>(&self, rheology: R, temperature: f64) -> Result<AtTemperature<R>> {
-        Ok(AtTemperature { rheology, factor: self.shift_factor(temperature)?, temperature })
+    pub fn at<R: Rheology>(&self, rheology: R, temperature: f64) -> Result<ShiftedRheology<R>> {
+        Ok(ShiftedRheology { rheology, factor: self.shift_factor(temperature)?, temperature })
     }
 }
 
 /// A rheology at a temperature other than the one measured; made by [`TimeTemperature::at`].
 #[derive(Debug, Clone, PartialEq)]
-pub struct AtTemperature<R> {
+pub struct ShiftedRheology<R> {
     rheology: R,
     factor: f64,
     temperature: f64,
 }
 
-impl<R: Rheology> AtTemperature<R> {
+impl<R: Rheology> ShiftedRheology<R> {
     /// Temperature \[K\].
     pub fn temperature(&self) -> f64 {
         self.temperature
@@ -118,7 +118,7 @@ impl<R: Rheology> AtTemperature<R> {
     }
 }
 
-impl<R: Rheology> Rheology for AtTemperature<R> {
+impl<R: Rheology> Rheology for ShiftedRheology<R> {
     fn creep_compliance(&self, t: f64) -> f64 {
         self.rheology.creep_compliance(t / self.factor)
     }

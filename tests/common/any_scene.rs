@@ -37,7 +37,7 @@ pub(super) enum Steps {
 /// Takes the steps of a scene: a contact, or a run along a history.
 pub enum Stepper<'a, 'b> {
     Contact(&'a mut ViscoelasticContact),
-    Run(&'a mut Follow<'b>),
+    Run(&'a mut Run<'b>),
 }
 
 impl Stepper<'_, '_> {

@@ -183,7 +183,7 @@ fn steps(source: &mut Source, fitted: bool) -> Verdict {
 
 /// Looks at the first steps of a run, and at its error budget.
 pub fn look_along(
-    mut run: Follow,
+    mut run: Run,
     steps: usize,
     source: &mut Source,
     mut seen: impl FnMut(StepReport),

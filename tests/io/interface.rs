@@ -111,7 +111,7 @@ fn a_run_can_own_its_contact() {
         let mut run = borrowed.follow(&history, stepping, 1.0);
         while run.next_step().unwrap().is_some() {}
         let owned = std::thread::spawn(move || {
-            let mut run: Follow<'static> = contact().into_follow(load(), stepping, 1.0);
+            let mut run: Run<'static> = contact().into_follow(load(), stepping, 1.0);
             while run.next_step().unwrap().is_some() {}
             run.into_contact()
         });

@@ -10,7 +10,9 @@ use std::path::Path;
 use proptest::prelude::*;
 use viscocontact::observe::Axis;
 use viscocontact::output::Field;
-use viscocontact::plot::{Animation, COLORS, Chart, History, Legend, Map, Observed, Picture, Quantity, Scale, Style};
+use viscocontact::plot::{
+    Animation, COLORS, Chart, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style,
+};
 use viscocontact::prelude::*;
 
 /// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
@@ -95,14 +97,14 @@ fn pressure_is_blank_out_of_contact() {
 fn profiles_and_histories_hold_the_state() {
     let mut contact = ball();
     let mut history = History::new();
-    assert!(history.chart(Observed::Force).unwrap().draw().is_err(), "nothing to draw yet");
+    assert!(history.chart(HistoryColumn::Force).unwrap().draw().is_err(), "nothing to draw yet");
     for _ in 0..3 {
         history.add(&contact);
         contact.step(0.5, Load::force(0.3)).unwrap();
     }
     assert_eq!(history.times(), [0.0, 0.5, 1.0]);
-    assert!(history.column(Observed::ContactArea).windows(2).all(|w| w[1] > w[0]));
-    for observed in Observed::ALL {
+    assert!(history.column(HistoryColumn::ContactArea).windows(2).all(|w| w[1] > w[0]));
+    for observed in HistoryColumn::ALL {
         assert_eq!(history.column(observed).len(), 3);
         history.chart(observed).unwrap().draw().unwrap();
     }

@@ -27,7 +27,7 @@ fn models() -> Vec<(&'static str, Box<dyn Rheology>)> {
         ("LogCreep", Box::new(LogCreep::new(1.0e-9, 1.0e-10, 0.1).unwrap())),
         ("SlowCreep", Box::new(SlowCreep::new(1.0e-9, 1.0e-10, 10.0, 0.3).unwrap())),
         ("FnRheology", Box::new(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())))),
-        ("AtTemperature", Box::new(warm.at(zener(), 383.15).unwrap())),
+        ("ShiftedRheology", Box::new(warm.at(zener(), 383.15).unwrap())),
         ("Arc", Box::new(std::sync::Arc::new(zener()))),
     ]
 }

@@ -134,7 +134,7 @@ fn random_loading(draws: &mut Draws, periodic: bool) -> Loading {
 }
 
 /// Approach (force where the approach is given), greatest pressure and area, with their estimated errors.
-type Observed = ([f64; 3], Option<MeshError>);
+type HistoryColumn = ([f64; 3], Option<MeshError>);
 
 impl Shape {
     fn contact(&self, grid: &Grid, creep: Option<f64>, edge: Edge) -> Result<ViscoelasticContact, Error> {
@@ -150,7 +150,7 @@ impl Shape {
         builder.material(material).settings(settings).build()
     }
 
-    fn observe(&self, grid: &Grid, loading: &Loading, full: f64) -> Result<Observed, Error> {
+    fn observe(&self, grid: &Grid, loading: &Loading, full: f64) -> Result<HistoryColumn, Error> {
         let mut contact = self.contact(grid, loading.creep, loading.edge)?;
         let mut dt = 0.0;
         for share in &loading.shares {
@@ -167,7 +167,7 @@ impl Shape {
     }
 
     /// The scene on both meshes, under a load that both bear.
-    fn observe_both(&self, grid: &Grid, loading: &Loading) -> Option<[Observed; 2]> {
+    fn observe_both(&self, grid: &Grid, loading: &Loading) -> Option<[HistoryColumn; 2]> {
         let fine = Grid::new(grid.cells().map(|cells| 4 * cells), grid.lengths()).unwrap();
         let mut depth = self.depth;
         for _ in 0..12 {

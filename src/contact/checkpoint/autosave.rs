@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::contact::run::follow::Follow;
+use crate::contact::run::follow::Run;
 use crate::contact::run::progress::Autosave;
 use crate::error::Result;
 
-impl Follow<'_> {
+impl Run<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
     /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
     /// with the next run of the same stepping as if nothing had happened, bitwise. Where [ranks](crate::parallel) share out the

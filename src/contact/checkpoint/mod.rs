@@ -96,7 +96,7 @@ impl ViscoelasticContact {
     ///
     /// Scenes are compared by sums over gap and influence, the rigid body that each cell belongs to, and materials by their series, or by their compliance at eight times a decade
     /// where they have none: closures that agree there cannot be told apart. A run along a history that saved it
-    /// ([`Follow::autosave_to`](crate::contact::Follow::autosave_to)) goes on where it was with the next
+    /// ([`Run::autosave_to`](crate::contact::Run::autosave_to)) goes on where it was with the next
     /// [`ViscoelasticContact::follow`].
     ///
     /// Needs the feature `checkpoint`.

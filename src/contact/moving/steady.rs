@@ -45,7 +45,7 @@ setters! { SteadyMotion {
 
 /// A contact on its way to a steady state, made by [`ViscoelasticContact::toward_steady`].
 #[derive(Debug)]
-pub struct TowardSteady<'a> {
+pub struct SteadyRun<'a> {
     contact: &'a mut ViscoelasticContact,
     motion: SteadyMotion,
     /// Cells per step.
@@ -90,7 +90,7 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// If the grid is fixed to the bodies, the axis is neither 0 nor 1, the velocity zero or not finite, or the tolerance not in (0, 1).
-    pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<TowardSteady<'_>> {
+    pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<SteadyRun<'_>> {
         count_within("axis of the motion", motion.axis, motion.axis <= 1, "0 (x1) or 1 (x2)")?;
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a motion to its steady state" });
@@ -101,7 +101,7 @@ impl ViscoelasticContact {
         within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
         let before = self.pressure().to_vec();
         let change = f64::INFINITY;
-        Ok(TowardSteady {
+        Ok(SteadyRun {
             contact: self,
             motion,
             stride: 0,
@@ -115,7 +115,7 @@ impl ViscoelasticContact {
     }
 }
 
-impl TowardSteady<'_> {
+impl SteadyRun<'_> {
     /// Takes one step and returns its report, or `None` if the motion is steady.
     ///
     /// # Errors
@@ -147,7 +147,7 @@ impl TowardSteady<'_> {
     /// Moves on to the steady state.
     ///
     /// # Errors
-    /// As [`TowardSteady::next_step`].
+    /// As [`SteadyRun::next_step`].
     pub fn run(mut self) -> Result<()> {
         while self.next_step()?.is_some() {}
         Ok(())

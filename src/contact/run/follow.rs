@@ -17,7 +17,7 @@ use crate::load::{Load, LoadHistory};
 const SAME_TIME: f64 = 1e-6;
 
 /// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
-/// [`Follow::next_step`] takes one step.
+/// [`Run::next_step`] takes one step.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -39,7 +39,7 @@ const SAME_TIME: f64 = 1e-6;
 /// ```
 ///
 /// With [`Stepping::adaptive`] the step length follows the creep, here over nine decades of time.
-/// [`Follow::within_step`] gives the state between the ends of a step:
+/// [`Run::within_step`] gives the state between the ends of a step:
 ///
 /// ```
 /// # use viscocontact::prelude::*;
@@ -60,7 +60,7 @@ const SAME_TIME: f64 = 1e-6;
 /// ```
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
-pub struct Follow<'a> {
+pub struct Run<'a> {
     pub(in crate::contact) contact: RunContact<'a>,
     pub(in crate::contact) history: RunHistory<'a>,
     stepping: Stepping,
@@ -77,8 +77,8 @@ pub struct Follow<'a> {
 
 impl ViscoelasticContact {
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
-    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
-        Follow::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
+    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Run<'a> {
+        Run::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
     }
 
     /// Like [`ViscoelasticContact::follow`], for a run that owns the contact and its history. Such a run can be stored
@@ -88,7 +88,7 @@ impl ViscoelasticContact {
     /// use viscocontact::prelude::*;
     ///
     /// struct Simulation {
-    ///     run: Follow<'static>,
+    ///     run: Run<'static>,
     /// }
     ///
     /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
@@ -102,17 +102,17 @@ impl ViscoelasticContact {
     /// assert_eq!(contact.time(), 1.0);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
-    pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Follow<'static> {
-        Follow::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
+    pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static> {
+        Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
 }
 
-impl<'a> Follow<'a> {
-    fn new(mut contact: RunContact<'a>, history: RunHistory<'a>, stepping: Stepping, until: f64) -> Follow<'a> {
+impl<'a> Run<'a> {
+    fn new(mut contact: RunContact<'a>, history: RunHistory<'a>, stepping: Stepping, until: f64) -> Run<'a> {
         let begun = Progress::begin(contact.time(), stepping);
         // continues a saved run that began like this one
         let saved = contact.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
-        Follow {
+        Run {
             contact,
             history,
             stepping,
@@ -131,7 +131,7 @@ impl<'a> Follow<'a> {
     ///
     /// # Errors
     /// If a time is not finite.
-    pub fn stop_at(mut self, times: &[f64]) -> Result<Follow<'a>> {
+    pub fn stop_at(mut self, times: &[f64]) -> Result<Run<'a>> {
         self.stops.add("time to stop at", times)?;
         Ok(self)
     }
@@ -150,7 +150,7 @@ impl<'a> Follow<'a> {
     /// begins, for the greatest loads, and adaptive steps evaluate it between their ends and ahead), or a step fails.
     /// The contact then keeps its state after the last successful step, and the call may be repeated.
     ///
-    /// If the file of `Follow::autosave_to` cannot be written. The step is then taken nevertheless; the next call
+    /// If the file of `Run::autosave_to` cannot be written. The step is then taken nevertheless; the next call
     /// writes the file and returns the report of the step.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         #[cfg(feature = "checkpoint")]
@@ -191,7 +191,7 @@ impl<'a> Follow<'a> {
         let kink = if jumps { corner.min(turn) } else { corner };
         let corner = corner.min(turn);
         let stop = corner.min(self.until).min(self.next_stop(now));
-        let Follow { contact, history, until, progress, .. } = self;
+        let Run { contact, history, until, progress, .. } = self;
         if let Some(mut control) = progress.control.take() {
             let rows = contact.computation.state.region.rows();
             let course = Course { history: &**history, until: *until, stop, kink };

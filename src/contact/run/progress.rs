@@ -149,7 +149,7 @@ impl Progress {
     }
 }
 
-/// Where the error of a run comes from, made by [`Follow::error_budget`](crate::contact::Follow::error_budget). All
+/// Where the error of a run comes from, made by [`Run::error_budget`](crate::contact::Run::error_budget). All
 /// errors are relative; `None` where nothing was estimated.
 ///
 /// ```

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::contact::run::follow::Follow;
+use crate::contact::run::follow::Run;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
@@ -93,7 +93,7 @@ impl ViscoelasticContact {
     ///
     /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
     /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has
-    /// the loads in between, and [`Follow::within_step`] takes them from there.
+    /// the loads in between, and [`Run::within_step`] takes them from there.
     ///
     /// This costs a copy of the contact and a contact problem. Where ranks share out the contact, all of them call it.
     ///
@@ -173,7 +173,7 @@ impl ViscoelasticContact {
     }
 }
 
-impl Follow<'_> {
+impl Run<'_> {
     /// The contact at a time within the last step of the run, its ends included, under the load of the history at that time:
     /// as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
     ///

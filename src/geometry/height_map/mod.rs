@@ -10,7 +10,7 @@ mod unit;
 mod write;
 
 pub use level::Form;
-pub use resample::{Resampled, ResamplingError};
+pub use resample::{ResampledMap, ResamplingError};
 pub use unit::LengthUnit;
 
 use crate::Grid;

@@ -9,7 +9,7 @@ use crate::memory;
 /// A map interpolated onto another grid, and the error of the interpolation.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Resampled {
+pub struct ResampledMap {
     /// The map on the new grid.
     pub map: HeightMap,
     /// Difference from the old map.
@@ -48,7 +48,7 @@ impl HeightMap {
     ///
     /// # Errors
     /// If map and grid have no known points in common, or there is no memory for the heights on the grid.
-    pub fn resampled(&self, grid: &Grid) -> Result<Resampled> {
+    pub fn resampled(&self, grid: &Grid) -> Result<ResampledMap> {
         let [_, n2] = grid.cells();
         let heights = (0..grid.len()).map(|k| {
             let [x1, x2] = grid.center(k / n2, k % n2);
@@ -62,7 +62,7 @@ impl HeightMap {
         let (old, new) = (self.lengths(), map.lengths());
         map.periodic = self.periodic && (0..2).all(|axis| (new[axis] / old[axis] - 1.0).abs() < 1e-9);
         let error = self.error_of(&map)?;
-        Ok(Resampled { map, error })
+        Ok(ResampledMap { map, error })
     }
 
     /// The difference of `other` from this map at the points of this map.
