@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
-use viscocontact::{Grid, InfluenceKernel};
+use viscocontact::{Axis, Grid, InfluenceKernel};
 
 fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
@@ -49,7 +49,7 @@ fn other_bodies(c: &mut Criterion) {
     let (plane, line) = (Grid::square(256, 1.0).unwrap(), |cells| Grid::new([cells, 1], [1.0, 1.0]).unwrap());
     let kernels = [
         ("half-space 256²", InfluenceKernel::half_space(&plane)),
-        ("periodic along one axis 256²", InfluenceKernel::periodic_along(&plane, 0, 1.0)),
+        ("periodic along one axis 256²", InfluenceKernel::periodic_along(&plane, Axis::X1, 1.0)),
         ("periodic 256²", InfluenceKernel::periodic(&plane)),
         ("half-space 64²", InfluenceKernel::half_space(&Grid::square(64, 1.0).unwrap())),
         ("line of 4096", InfluenceKernel::line(&line(4096), 1.0)),

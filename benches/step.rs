@@ -44,7 +44,7 @@ fn warm_step(c: &mut Criterion) {
     for (name, settings) in choices() {
         for cells in [32, 64, 128, 256, 512, 1024] {
             for threads in [1, 2] {
-                if cells == 1024 && settings.solver == Solver::PolonskyKeer {
+                if cells == 1024 && settings.solver() == Solver::PolonskyKeer {
                     continue;
                 }
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -78,7 +78,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let mut contact = ViscoelasticContact::builder(grid)
             .geometry(&Sphere::new(args.radius)?)
             .material(material.clone())
-            .kernel(kernel.into())
+            .kernel(kernel)
             .build()?;
         let (mut curve, mut apparent) = (Vec::new(), Vec::new());
         for step in 0..=args.steps {

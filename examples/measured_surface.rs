@@ -18,7 +18,6 @@ use viscocontact::Result;
 use viscocontact::analytic::Hertz;
 use viscocontact::geometry::Form;
 use viscocontact::geometry::Sum;
-use viscocontact::observe::Axis;
 use viscocontact::output::{CsvHistory, Metadata};
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 use viscocontact::prelude::*;

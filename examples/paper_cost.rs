@@ -79,7 +79,7 @@ const WAYS: [&str; 3] = ["paper, literally", "paper, convolutions kept", "defaul
 
 fn settings(way: usize) -> Settings {
     match way {
-        0 => Settings::paper().with_time_rule(TimeRule::RectangleUncached),
+        0 => Settings::paper_literal(),
         1 => Settings::paper(),
         _ => Settings::default(),
     }
@@ -115,7 +115,7 @@ fn cost(cells: usize, steps: usize, settings: Settings, repeat: f64) -> Result<C
         for _ in 0..steps {
             let report = contact.step(scene.duration / steps as f64, Load::force(scene.force))?;
             convolutions += report.convolution_equivalents();
-            if settings.solver == Solver::PolonskyKeer {
+            if settings.solver() == Solver::PolonskyKeer {
                 of_the_past += (report.convolutions - 2 * report.iterations - 1) as f64;
             }
         }

@@ -86,7 +86,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let convolution = time_of_a_convolution(cells)?;
         for (way, points) in ways.iter().zip(&mut series) {
             progress.inc(1);
-            if way.1.solver == Solver::PolonskyKeer && cells > args.paper_up_to {
+            if way.1.solver() == Solver::PolonskyKeer && cells > args.paper_up_to {
                 continue;
             }
             let cost = cost(cells, args.steps, way.1, way.2)?;

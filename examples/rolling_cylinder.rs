@@ -89,7 +89,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
         .kernel(Arc::new(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?))
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
-    let motion = SteadyMotion::new(0, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
+    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
     let mut run = contact.toward_steady(motion)?;
     let (mut steps, mut convolutions) = (0, 0);
     while let Some(report) = run.next_step()? {

@@ -109,7 +109,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         args.length * 1e3,
         statistics.rms_height * 1e6,
         statistics.rms_slope,
-        spec.hurst
+        spec.hurst()
     );
 
     let material = polymer(args)?;

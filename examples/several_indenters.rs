@@ -20,7 +20,6 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use indenters::{ClosedFaces, Indenters, SPHERE};
-use viscocontact::observe::Axis;
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Style};
 use viscocontact::prelude::*;
 
@@ -109,7 +108,7 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
     table.write_record(["time_s", "body", "approach_m", "exact_m", "by_others_m", "sum_of_lone_m"])?;
     for k in 0..=HELD * args.steps {
         let dt = if k == 0 { 0.0 } else { args.tau / f64::from(args.steps) };
-        contact.step_each(dt, &loads)?;
+        contact.step(dt, &loads)?;
         if ![0, args.steps, HELD * args.steps].contains(&k) {
             continue;
         }
@@ -185,8 +184,8 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
         let loads = [forces[0], forces[1], forces[2], args.sphere_load].map(Load::force);
         for k in 0..=args.steps {
             let dt = if k == 0 { 0.0 } else { args.tau / f64::from(args.steps) };
-            punches.step_each(dt, &loads[..3])?;
-            four.step_each(dt, &loads)?;
+            punches.step(dt, &loads[..3])?;
+            four.step(dt, &loads)?;
             let time = punches.time();
             let exact = faces.approaches(material, &jumps, time);
             for body in 0..3 {

@@ -86,7 +86,7 @@ impl Bodies {
             .material(self.material.clone())
             .settings(Settings::default().with_frame(Frame::Indenter))
             .build()?;
-        contact.toward_steady(SteadyMotion::new(0, velocity, self.load))?.run()?;
+        contact.toward_steady(SteadyMotion::new(Axis::X1, velocity, self.load))?.run()?;
         Ok((contact, sphere))
     }
 }

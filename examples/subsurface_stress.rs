@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use viscocontact::contact::StressHistory;
-use viscocontact::observe::{Axis, Stress, StressPeak, StressSection};
+use viscocontact::observe::{Stress, StressPeak, StressSection};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Picture, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 

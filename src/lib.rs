@@ -159,10 +159,11 @@
 #![warn(missing_debug_implementations)]
 
 #[macro_use]
-mod setters;
+mod values;
 
 pub mod analytic;
 mod ascending;
+mod axis;
 pub mod contact;
 mod error;
 mod events;
@@ -203,6 +204,7 @@ mod solver;
 pub mod states;
 mod sum;
 
+pub use axis::Axis;
 pub use contact::ViscoelasticContact;
 pub use error::{Convergence, Error, KernelError, OutputError, Result, TextError, Trend};
 pub use grid::Grid;
@@ -232,12 +234,17 @@ pub mod prelude {
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
+    #[cfg(feature = "csv")]
+    pub use crate::output::CsvHistory;
+    #[cfg(any(feature = "npy", feature = "vtk"))]
+    pub use crate::output::{Field, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Zener,
     };
-    pub use crate::{Error, Grid, InfluenceKernel, Layer};
+    pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
+    pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }
 
 #[doc = include_str!("../README.md")]

@@ -4,7 +4,6 @@
 use std::error::Error;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
 use viscocontact::prelude::*;
 
@@ -58,7 +57,7 @@ impl Case {
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(&surface.shape_at(0.0)?)
             .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6 * 1.0e-3)?)) // retarded by 1 ms
-            .kernel(Arc::new(InfluenceKernel::periodic(&grid)?))
+            .kernel(InfluenceKernel::periodic(&grid)?)
             .build()?;
         contact.step(0.0, load)?;
         let mut sum = 0.0;

@@ -1,7 +1,6 @@
 //! Creeping bodies against closed forms and other formulations.
 
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
@@ -248,11 +247,11 @@ pub fn rolling() -> Outcome {
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&cylinder)
         .material(Material::incompressible(Zener::new(G, 0.5 * G, 0.5 * G)?))
-        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0e3)?))
+        .kernel(InfluenceKernel::line(&grid, 1.0e3)?)
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
     let load = Load::force(scene.per_length);
-    contact.toward_steady(SteadyMotion::new(0, scene.reach, load).with_tolerance(2e-4))?.run()?;
+    contact.toward_steady(SteadyMotion::new(Axis::X1, scene.reach, load).with_tolerance(2e-4))?.run()?;
     let [behind, ahead] = exact.ends();
     let friction = contact.lateral_force(&cylinder)[0] / contact.force();
     let axis = 1e3 * (0.5 * grid.lengths()[0] - 2.0 * relaxed);

@@ -1,7 +1,6 @@
 //! Elastic bodies against closed forms.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use viscocontact::Result;
 use viscocontact::analytic::{Hertz, HertzEllipse, RigidPunch};
@@ -121,7 +120,7 @@ pub fn wavy() -> Outcome {
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&Wavy::new(amplitude, wavelength)?)
         .material(elastic())
-        .kernel(Arc::new(InfluenceKernel::periodic(&grid)?))
+        .kernel(InfluenceKernel::periodic(&grid)?)
         .build()?;
     contact.step(0.0, Load::force(mean * wavelength))?;
     let line = between(-0.5 * wavelength, 0.5 * wavelength).map(|x| {
@@ -147,7 +146,7 @@ pub fn line() -> Outcome {
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&Cylinder::new(radius)?)
         .material(elastic())
-        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0)?))
+        .kernel(InfluenceKernel::line(&grid, 1.0)?)
         .build()?;
     contact.step(0.0, Load::force(per_length))?;
     let approach = per_length / (PI * E_STAR) * (2.0 * (2.0 / half_width).ln() + 1.0);

@@ -14,7 +14,7 @@ fn press(shape: &dyn Geometry, thickness: f64, nu: f64, (cells, length): (usize,
     let material = Material::constant_poisson(Elastic::new(1.0e6)?, nu)?;
     let kernel = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(thickness, nu)?)?;
     let mut contact =
-        ViscoelasticContact::builder(grid).geometry(shape).material(material.clone()).kernel(kernel.into()).build()?;
+        ViscoelasticContact::builder(grid).geometry(shape).material(material.clone()).kernel(kernel).build()?;
     contact.step(0.0, Load::approach(approach))?;
     Ok(contact.force() * material.contact_compliance(0.0))
 }

@@ -5,7 +5,6 @@
 //! u′ = −h_i′ in contact. Elasticity alone does not resist: ∫ p w′ dA = 0, K being symmetric. μ is F over the normal force W.
 
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 use viscocontact::Result;
 use viscocontact::analytic::HertzEllipse;
@@ -95,7 +94,7 @@ impl Slider {
             Grid::new(counts, counts.map(|count| count as f64 * side))?
         };
         let builder = builder(&grid, &shape)?;
-        let builder = if line { builder.kernel(Arc::new(InfluenceKernel::line(&grid, 1.0)?)) } else { builder };
+        let builder = if line { builder.kernel(InfluenceKernel::line(&grid, 1.0)?) } else { builder };
         Ok((builder.build()?, shape))
     }
 
@@ -185,7 +184,7 @@ pub fn wave() -> Outcome {
         let [q1, q2] = periods.map(wave_number);
         let wave = FnGeometry::new(move |x1, x2| height * (1.0 - (q1 * x1 + q2 * x2).cos()));
         let (area, side) = (grid.lengths()[0] * grid.lengths()[1], grid.spacing()[0]);
-        let mut contact = builder(&grid, &wave)?.kernel(Arc::new(InfluenceKernel::periodic(&grid)?)).build()?;
+        let mut contact = builder(&grid, &wave)?.kernel(InfluenceKernel::periodic(&grid)?).build()?;
         // twice the amplitude of the pressure on the glassy body
         let load = Load::force(q1.hypot(q2) * height / at_once() * area);
         contact.step(0.0, load)?;

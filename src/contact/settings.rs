@@ -3,45 +3,48 @@
 use crate::error::{Result, count_within, within};
 use crate::hereditary::Interpolant;
 
+value! {
 /// How a contact is computed: [`Settings::default`], changed by methods `with_…`, and validated when a contact is built.
 ///
 /// ```
 /// use viscocontact::contact::{Settings, TimeRule};
 ///
 /// let settings = Settings::default().with_tolerance(1e-8).with_time_rule(TimeRule::Backward);
-/// assert_eq!(Settings::default().tolerance, 1e-6);
+/// assert_eq!(Settings::default().tolerance(), 1e-6);
 /// # let _ = settings;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
-#[non_exhaustive]
 pub struct Settings {
     /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the
     /// deepest penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
-    pub tolerance: f64,
+    tolerance: f64, with_tolerance;
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
-    pub max_iterations: usize,
+    max_iterations: usize, with_max_iterations;
     /// The solver of the contact problem (default: [`Solver::ActiveSet`]).
-    pub solver: Solver,
+    solver: Solver, with_solver;
     /// The time rule of the hereditary integral (default: [`TimeRule::Exponential`]).
-    pub time_rule: TimeRule,
+    time_rule: TimeRule, with_time_rule;
     /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
-    pub edge: Edge,
+    edge: Edge, with_edge;
     /// Relative error of the creep compliance of an exponential series that is fitted to a rheology without an exact one (default: 1e-4; range \[1e-8, 0.1\]).
-    pub series_tolerance: f64,
+    series_tolerance: f64, with_series_tolerance;
     /// Memory that a direct sum may use for past steps, 8 bytes per computed cell and step; a step beyond it fails
     /// \[bytes\] (default: 2 GiB).
-    pub history_limit: usize,
+    history_limit: usize, with_history_limit;
     /// Whether only half or a quarter of the cells is computed where gap and load are even in x1, x2, or both, bitwise, and
     /// the number of cells along that axis is even (default: true). The result is the same except for rounding.
-    pub symmetry: bool,
+    symmetry: bool, with_symmetry;
     /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand (default:
     /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums, and on bodies
     /// other than the half-space loaded on the grid, such as layers, the whole grid is computed.
-    pub window: bool,
+    window: bool, with_window;
     /// The frame of the grid (default: [`Frame::Bodies`]).
-    pub frame: Frame,
+    frame: Frame, with_frame;
+    /// Whether the rectangle rule convolves all past increments in each step, as in [`Settings::paper_literal`] (default: false).
+    repeats_past: bool;
+}
 }
 
 /// The frame of the grid. It only matters for motion along the surface.
@@ -98,10 +101,6 @@ pub enum TimeRule {
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
     Rectangle,
-    /// [`TimeRule::Rectangle`] at the cost that the source paper states (section 4), O(N_t² N₁N₂ log(N₁N₂)): the history is
-    /// kept as pressures, and each step convolves all past increments anew, as Eq. 11 is written. The pressures equal the
-    /// pressures of [`TimeRule::Rectangle`] to within rounding. For comparisons of cost only.
-    RectangleUncached,
     /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps of
     /// any length, one field per past step ([`Settings::history_limit`]).
     Backward,
@@ -133,22 +132,10 @@ impl Default for Settings {
             symmetry: true,
             window: true,
             frame: Frame::Bodies,
+            repeats_past: false,
         }
     }
 }
-
-setters! { Settings {
-    with_tolerance: tolerance, f64;
-    with_max_iterations: max_iterations, usize;
-    with_solver: solver, Solver;
-    with_time_rule: time_rule, TimeRule;
-    with_edge: edge, Edge;
-    with_series_tolerance: series_tolerance, f64;
-    with_history_limit: history_limit, usize;
-    with_symmetry: symmetry, bool;
-    with_window: window, bool;
-    with_frame: frame, Frame;
-} }
 
 impl TimeRule {
     /// Whether the rule needs an exponential series of the creep.
@@ -160,14 +147,7 @@ impl TimeRule {
 impl Settings {
     /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
     /// comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept.
-    /// [`TimeRule::RectangleUncached`] repeats them in each step, as stated in the paper:
-    ///
-    /// ```
-    /// use viscocontact::contact::{Settings, TimeRule};
-    ///
-    /// let literal = Settings::paper().with_time_rule(TimeRule::RectangleUncached);
-    /// # let _ = literal;
-    /// ```
+    /// [`Settings::paper_literal`] repeats them in each step.
     pub fn paper() -> Settings {
         Settings {
             solver: Solver::PolonskyKeer,
@@ -176,6 +156,13 @@ impl Settings {
             window: false,
             ..Settings::default()
         }
+    }
+
+    /// [`Settings::paper`] at the cost that the source paper states (section 4), O(N_t² N₁N₂ log(N₁N₂)): the history is kept
+    /// as pressures, and each step convolves all past increments anew, as Eq. 11 is written. The pressures equal the
+    /// pressures of [`Settings::paper`] to within rounding. For comparisons of cost only.
+    pub fn paper_literal() -> Settings {
+        Settings { repeats_past: true, ..Settings::paper() }
     }
 
     /// How the displacement changes within a step of given length.
@@ -218,6 +205,7 @@ mod tests {
             symmetry: false,
             window: false,
             frame: Frame::Indenter,
+            repeats_past: false,
         }
     }
 

@@ -33,6 +33,7 @@ pub use table::{Place, TableError};
 pub use text::TextError;
 pub use violation::{Location, Verdict, Violation};
 
+use crate::axis::Axis;
 use crate::rounded::{TIME, rounded};
 
 /// Everything that can go wrong, with the numbers needed to correct it.
@@ -165,12 +166,12 @@ pub enum Error {
     Kernel(#[from] KernelError),
 
     /// A load tilts a body along an axis along which the bodies are periodic.
-    #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted body is not", .axis + 1, time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load tilts the body along {axis}, along which the bodies are periodic: a tilted body is not", time = rounded(*.time, TIME))]
     TiltOfPeriodic {
         /// End of the step \[s\].
         time: f64,
-        /// The axis, 0 or 1.
-        axis: usize,
+        /// The axis.
+        axis: Axis,
     },
 
     /// A call needs the grid in the other [`Frame`](crate::contact::Frame): fixed to the indenter for a step over the

@@ -5,6 +5,7 @@ use std::io::Read;
 
 use crate::error::{Error, Result, TextError};
 
+value! {
 /// How a text file separates its fields and writes its numbers.
 ///
 /// Fields that contain the delimiter or a line end are quoted. Numbers have an exponent with `e`, or with `d` as in
@@ -25,18 +26,13 @@ use crate::error::{Error, Result, TextError};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
 pub struct TextFormat {
     /// What separates the fields of a line.
-    pub delimiter: Delimiter,
+    delimiter: Delimiter, with_delimiter;
     /// Whether numbers have a decimal comma, or else a decimal point.
-    pub decimal_comma: bool,
+    decimal_comma: bool, with_decimal_comma;
 }
-
-setters!(TextFormat {
-    with_delimiter: delimiter, Delimiter;
-    with_decimal_comma: decimal_comma, bool;
-});
+}
 
 /// What separates the fields of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -10,6 +10,7 @@ use super::line_load::{Strip, wave_number};
 use super::love::Love;
 use super::{InfluenceKernel, MEMORY_WHILE_MADE};
 use crate::Grid;
+use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
 use crate::memory;
 
@@ -92,7 +93,7 @@ impl InfluenceKernel {
         Ok(InfluenceKernel::new(grid, Body::HalfSpace, [true; 2], compliance))
     }
 
-    /// A half-space that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid
+    /// A half-space that is periodic along an axis, the grid being one period, and loaded on the grid
     /// only along the other: K0(κ |x|) for each wave κ along the axis, as for a line load for the mean.
     ///
     /// The displacement of a half-space under a load on an endless line is unbounded. `datum` \[m\] is the distance
@@ -100,11 +101,11 @@ impl InfluenceKernel {
     /// distance the approach is greater by (2 ln 2/π) C times the force per unit length.
     ///
     /// # Errors
-    /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other
+    /// If `datum` is not finite, or less than the length of the grid along the other
     /// axis, or more than 1e120 m; if a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m).
-    pub fn periodic_along(grid: &Grid, axis: usize, datum: f64) -> Result<InfluenceKernel> {
-        check_axis(axis)?;
-        let strip = strip(grid, 1 - axis, datum)?;
+    pub fn periodic_along(grid: &Grid, along: Axis, datum: f64) -> Result<InfluenceKernel> {
+        let (axis, across) = along.and_other();
+        let strip = strip(grid, across, datum)?;
         Ok(InfluenceKernel::strips(grid, Body::HalfSpace, axis, (strip, Some(datum)), Vec::new()))
     }
 
@@ -121,7 +122,7 @@ impl InfluenceKernel {
     /// not in \[1e-100, 1e100\] (m).
     pub fn line(grid: &Grid, datum: f64) -> Result<InfluenceKernel> {
         check_line(grid)?;
-        InfluenceKernel::periodic_along(grid, 1, datum)
+        InfluenceKernel::periodic_along(grid, Axis::X2, datum)
     }
 
     /// A user-defined body: `coefficient(i, j)` \[m\] is the displacement, over C, of a cell under a unit pressure
@@ -254,11 +255,6 @@ pub(super) fn representable(grid: &Grid) -> Result<()> {
     }
     let field = "aspect ratio of the cells";
     within(field, d1 / d2, RANGE.contains(&(d1 / d2)), "in [1e-100, 1e100] for the kernel of a half-space").map(drop)
-}
-
-/// Rejects an axis that a grid does not have.
-pub(super) fn check_axis(axis: usize) -> Result<()> {
-    count_within("periodic axis", axis, axis < 2, "0 (x1) or 1 (x2)")
 }
 
 /// Rejects grids of more than one cell along x2.

@@ -1,12 +1,13 @@
 //! Constructors of the kernels of layers.
 
 use super::InfluenceKernel;
-use super::constructors::{check_axis, check_line, representable, strip};
+use super::constructors::{check_line, representable, strip};
 use super::influence::{Body, longest_side, magnitude};
 use super::layer::{Layer, Remainder};
 use super::line_load::{Strip, wave_number};
 use super::love::Love;
 use crate::Grid;
+use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
 
 /// Longest cell over the thickness: the coefficients have then lost as many digits.
@@ -93,7 +94,7 @@ impl InfluenceKernel {
     /// [`InfluenceKernel::layer`], of the sides along x1.
     pub fn layer_line(grid: &Grid, layer: Layer, datum: Option<f64>) -> Result<InfluenceKernel> {
         check_line(grid)?;
-        InfluenceKernel::layer_periodic_along(grid, layer, 1, datum)
+        InfluenceKernel::layer_periodic_along(grid, layer, Axis::X2, datum)
     }
 
     /// A [`Layer`] that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid only
@@ -106,11 +107,11 @@ impl InfluenceKernel {
     /// with a hundredth.
     ///
     /// # Errors
-    /// If `axis` is neither 0 nor 1. As [`InfluenceKernel::layer_line`], of lengths and sides along the other axis.
-    pub fn layer_periodic_along(grid: &Grid, layer: Layer, axis: usize, datum: Option<f64>) -> Result<InfluenceKernel> {
-        check_axis(axis)?;
-        let strip = layer_strip(grid, layer, 1 - axis, datum)?;
-        let (last, cells, side) = (grid.lengths()[1 - axis], grid.cells()[axis], grid.spacing()[axis]);
+    /// As [`InfluenceKernel::layer_line`], of lengths and sides along the other axis.
+    pub fn layer_periodic_along(grid: &Grid, layer: Layer, along: Axis, datum: Option<f64>) -> Result<InfluenceKernel> {
+        let (axis, across) = along.and_other();
+        let strip = layer_strip(grid, layer, across, datum)?;
+        let (last, cells, side) = (grid.lengths()[across], grid.cells()[axis], grid.spacing()[axis]);
         let mut added = vec![Remainder::of_lines(&layer, last, datum)];
         let waves = (1..=cells / 2).map(|k| Remainder::of_wave(&layer, last, wave_number(k, cells, side)));
         added.extend(waves.map_while(|remainder| remainder));

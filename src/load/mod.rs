@@ -13,6 +13,7 @@
 
 mod function;
 pub mod laws;
+mod loads;
 mod piecewise_linear;
 mod ramp;
 mod sinusoid;
@@ -20,6 +21,7 @@ mod step;
 
 pub use crate::error::LoadError;
 pub use function::FnHistory;
+pub use loads::Loads;
 pub use piecewise_linear::PiecewiseLinear;
 pub use ramp::Ramp;
 pub use sinusoid::Sinusoid;

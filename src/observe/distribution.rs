@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(found.share_at_zero, contact.contact_cells() as f64 / 1024.0);
         let sum = found.density.iter().sum::<f64>() * found.width;
         assert_abs_diff_eq!(sum + found.share_at_zero, 1.0, epsilon = 1e-12);
-        let corner = contact.profile(crate::observe::Axis::X1, -2.0e-3).unwrap().gap[0];
+        let corner = contact.profile(crate::Axis::X1, -2.0e-3).unwrap().gap[0];
         assert_abs_diff_eq!(found.width * 50.0 / corner, 1.0, epsilon = 1e-12);
     }
 }

@@ -25,7 +25,7 @@ pub use asymmetry::Asymmetry;
 pub use distribution::Distribution;
 pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
-pub use profile::{Axis, LineProfile};
+pub use profile::LineProfile;
 pub use stress::{Stress, StressPeak, StressSection, StressVolume, SubsurfaceStress};
 
 /// A sphere pressed on an elastic half-space, for the tests of most observations.

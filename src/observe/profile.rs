@@ -3,26 +3,6 @@
 use crate::Grid;
 use crate::error::{Result, within};
 
-/// One of the two axes in the plane of contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::exhaustive_enums, reason = "a plane has two axes")]
-pub enum Axis {
-    /// Along x1.
-    X1,
-    /// Along x2.
-    X2,
-}
-
-impl Axis {
-    /// The indices of this axis and of the other one.
-    pub(crate) fn and_other(self) -> (usize, usize) {
-        match self {
-            Axis::X1 => (0, 1),
-            Axis::X2 => (1, 0),
-        }
-    }
-}
-
 /// The index of the line of cells that contains the coordinate `at` along `across`.
 pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static str, f64)) -> Result<usize> {
     let half = 0.5 * grid.lengths()[across];
@@ -52,7 +32,7 @@ pub struct LineProfile {
 mod tests {
     use approx::assert_abs_diff_eq;
 
-    use super::*;
+    use crate::axis::Axis;
     use crate::error::Error;
     use crate::observe::sphere;
 

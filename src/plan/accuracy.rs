@@ -9,7 +9,7 @@ use crate::error::{Result, within};
 ///
 /// assert_eq!(Accuracy::STANDARD.target(), 1e-3);
 /// let custom = Accuracy::new(3e-4)?;
-/// assert!(custom.settings().tolerance < Accuracy::STANDARD.settings().tolerance);
+/// assert!(custom.settings().tolerance() < Accuracy::STANDARD.settings().tolerance());
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Maps and charts of a contact.
 
+use crate::Axis;
 use crate::ViscoelasticContact;
 use crate::error::Result;
-use crate::observe::Axis;
 use crate::output::Field;
 use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};

@@ -1,7 +1,8 @@
 //! Maps of the stress on a section.
 
+use crate::Axis;
 use crate::error::{Result, exact_length, in_order, least_length};
-use crate::observe::{Axis, Stress, StressSection};
+use crate::observe::{Stress, StressSection};
 use crate::plot::contact::time_title;
 use crate::plot::map::runs;
 use crate::plot::{Map, Quantity};
@@ -16,7 +17,7 @@ impl Map {
     /// that depths of ½, 3/2, … steps begin at the surface.
     ///
     /// ```
-    /// use viscocontact::observe::{Axis, Stress};
+    /// use viscocontact::{Axis, observe::Stress};
     /// use viscocontact::{plot::{Map, Quantity}, prelude::*};
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 2.4e-3)?)

@@ -50,9 +50,11 @@ mod sweep;
 
 pub use crate::error::StatesError;
 pub use contact::{StatesContact, StatesReport};
+#[cfg(feature = "npy")]
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
+#[cfg(feature = "npy")]
 pub(crate) use pressed::Pressed;
 pub use run::StatesRun;
 pub use sweep::{Reach, Sweep};

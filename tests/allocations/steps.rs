@@ -22,7 +22,7 @@ fn count_tilting_steps<const N: usize>(mut contact: ViscoelasticContact, loads: 
     for step in 0..600 {
         let (dt, loads) = (if step % 5 == 0 { 0.0 } else { 0.1 }, loads(step));
         let region = Region::new(ALLOCATOR);
-        let Ok(report) = contact.step_each(dt, &loads) else { continue };
+        let Ok(report) = contact.step(dt, &loads) else { continue };
         let change = region.change();
         assert!(step < 2 || (change.allocations, change.reallocations) == (0, 0), "{step} {loads:?}: {change:?}");
         fallback += usize::from(report.fallback_iterations > 0);
@@ -121,9 +121,9 @@ pub fn steps_allocate_nothing() {
         (InfluenceKernel::line(&line, 1.0), 100.0),
         (InfluenceKernel::half_space(&plane), 0.5),
         (InfluenceKernel::periodic(&plane), 0.5),
-        (InfluenceKernel::periodic_along(&plane, 0, 1.0), 0.5),
+        (InfluenceKernel::periodic_along(&plane, Axis::X1, 1.0), 0.5),
         (InfluenceKernel::layer(&plane, sheet), 0.5),
-        (InfluenceKernel::layer_periodic_along(&plane, sheet, 0, None), 0.5),
+        (InfluenceKernel::layer_periodic_along(&plane, sheet, Axis::X1, None), 0.5),
     ];
     for (kernel, force) in kernels {
         let kernel = std::sync::Arc::new(kernel.unwrap());

@@ -96,7 +96,7 @@ fn random_kernel(draws: &mut Draws, kind: u64) -> (Grid, InfluenceKernel, f64) {
     let line = matches!(kind, 4 | 9);
     let [n1, n2] = cells(draws, line);
     let grid = Grid::new([n1, n2], [LENGTH, if line { 1.0 } else { LENGTH * draws.between(0.6, 1.0) }]).unwrap();
-    let axis = (kind % 2) as usize;
+    let axis = Axis::BOTH[kind as usize % 2];
     let datum = if layer.compliance(0.0).is_finite() { None } else { Some(1.0) };
     let kernel = match kind {
         0 => InfluenceKernel::half_space(&grid),

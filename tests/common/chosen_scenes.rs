@@ -111,7 +111,7 @@ pub fn all() -> Vec<AnyScene> {
 
     // periodic along x1 alone: the rows of the pyramid go on at the other end
     let grid = Grid::new([192, 176], [1.0e-3, 1.0e-3]).unwrap();
-    let kernel = Arc::new(InfluenceKernel::periodic_along(&grid, 0, 1.0e-2).unwrap());
+    let kernel = Arc::new(InfluenceKernel::periodic_along(&grid, Axis::X1, 1.0e-2).unwrap());
     let ridge = FnGeometry::new(|x1, x2| 400.0 * x2 * x2 + waves(x1, x2));
     scenes.push(AnyScene { kernel, ..AnyScene::plain("strip", grid, ridge, two(0.02)) });
 

@@ -37,7 +37,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let strip = || {
         let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
         builder_on(grid.clone(), three_times())
-            .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap()))
+            .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, Axis::X2, 1.0).unwrap()))
             .build()
             .unwrap()
     };
@@ -60,10 +60,10 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
             .unwrap()
     };
     let in_turn = |contact: &mut ViscoelasticContact, k: u32| {
-        contact.step_each(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
+        contact.step(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
     };
     let direct = whole.with_time_rule(TimeRule::Backward);
-    let uncached = Settings::paper().with_time_rule(TimeRule::RectangleUncached);
+    let uncached = Settings::paper_literal();
     let layer = move || {
         let layer = Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap();
         let kernel = Arc::new(InfluenceKernel::layer(&grid(), layer).unwrap());

@@ -43,7 +43,7 @@ fn build(scene: usize) -> viscocontact::Result<ViscoelasticContact> {
 
 fn step(contact: &mut ViscoelasticContact, dt: f64, force: f64) -> viscocontact::Result<StepReport> {
     let loads = vec![Load::force(force); contact.bodies()];
-    contact.step_each(dt, &loads)
+    contact.step(dt, &loads)
 }
 
 /// A sound file of each scene, and one of a run along a history.

@@ -225,7 +225,7 @@ pub fn kernel(source: &mut Source, grid: &Grid) -> viscocontact::Result<Influenc
         0 | 1 => InfluenceKernel::half_space(grid),
         2 | 3 => InfluenceKernel::periodic(grid),
         4 => {
-            let axis = source.choose(&[0, 0, 0, 1, 1, 1, 2]);
+            let axis = source.choose(&Axis::BOTH);
             InfluenceKernel::periodic_along(grid, axis, lengths[0].max(lengths[1]) * source.between(0.9, 9.0))
         }
         5 => InfluenceKernel::line(grid, lengths[0] * source.between(0.9, 9.0)),

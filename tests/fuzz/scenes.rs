@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use viscocontact::contact::{SteadyMotion, Stepping};
 use viscocontact::motion::{Straight, Travel};
-use viscocontact::observe::Axis;
 use viscocontact::output::Metadata;
 use viscocontact::prelude::*;
 
@@ -30,9 +29,10 @@ struct Scale {
 
 fn settings(source: &mut Source) -> Settings {
     let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
-    use TimeRule::{Backward, Exponential, Rectangle, RectangleUncached};
-    let rules = [Exponential, Exponential, Exponential, Rectangle, RectangleUncached, Backward];
-    Settings::default()
+    use TimeRule::{Backward, Exponential, Rectangle};
+    let rules = [Exponential, Exponential, Exponential, Rectangle, Rectangle, Backward];
+    let basis = if source.chance(0.2) { Settings::paper_literal() } else { Settings::default() };
+    basis
         .with_tolerance(source.scale(1e-10, 1e-2))
         .with_max_iterations(source.choose(&[1, 3, 30, 200, 200, 200, 0]))
         .with_solver(source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]))
@@ -170,7 +170,7 @@ fn steps(source: &mut Source, fitted: bool) -> Verdict {
             unchanged(&before, &contact, &error)?;
         }
         let before = state(&contact);
-        match contact.step_each(dt, &loads) {
+        match contact.step(dt, &loads) {
             Ok(report) => {
                 accepted = true;
                 look(&contact, &report, source)?;
@@ -241,7 +241,7 @@ fn moving(source: &mut Source) -> Verdict {
     let rolling = frame == Frame::Indenter && source.chance(0.3);
     if rolling {
         let motion = SteadyMotion::new(
-            source.below(2),
+            source.choose(&Axis::BOTH),
             length * source.scale(1e-2, 1e2),
             models::load(source, length, softness),
         )

@@ -95,8 +95,8 @@ fn kernels_are_refused_before_they_are_filled() {
         let kernels = [
             ("half-space", InfluenceKernel::half_space(&grid)),
             ("periodic", InfluenceKernel::periodic(&grid)),
-            ("periodic along x1", InfluenceKernel::periodic_along(&grid, 0, 10.0)),
-            ("periodic along x2", InfluenceKernel::periodic_along(&grid, 1, 10.0)),
+            ("periodic along x1", InfluenceKernel::periodic_along(&grid, Axis::X1, 10.0)),
+            ("periodic along x2", InfluenceKernel::periodic_along(&grid, Axis::X2, 10.0)),
             ("line", InfluenceKernel::line(&grid, 10.0)),
         ];
         for (name, kernel) in kernels {

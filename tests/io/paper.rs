@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use viscocontact::ViscoelasticContact;
 use viscocontact::geometry::Geometry;
+use viscocontact::load::Load;
 use viscocontact::rheology::Rheology;
 
 fn root() -> &'static Path {
@@ -152,23 +154,25 @@ fn items_of_the_page_exist() {
     let known = items!(
         import
             analytic::AxisymmetricContact, analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
-            contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle, contact::TimeRule::RectangleUncached,
+            contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle, load::Loads,
             geometry::Geometry, load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
         functions
             InfluenceKernel::coefficient, InfluenceKernel::convolve, InfluenceKernel::half_space,
             ViscoelasticContact::contact_area, ViscoelasticContact::contact_cells, ViscoelasticContact::displacement,
             ViscoelasticContact::force, ViscoelasticContact::gap_into, ViscoelasticContact::moment,
-            ViscoelasticContact::pressure, ViscoelasticContact::step, ViscoelasticContact::step_each,
-            ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
+            ViscoelasticContact::pressure, ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
             contact::Builder::another_body,
-            contact::Settings::paper, load::Load::eccentric_force, load::Load::force,
+            contact::Settings::paper, contact::Settings::paper_literal, load::Load::eccentric_force, load::Load::force,
             rheology::Material::contact_compliance
     );
     let _ = (<dyn Geometry>::initial_gap, <dyn Rheology>::creep_compliance);
+    // generic in the loads: named by a call
+    let _ = |contact: &mut ViscoelasticContact| contact.step(0.0, Load::force(1.0));
+    let steps = ["ViscoelasticContact::step"].map(str::to_owned);
     let of_traits = ["geometry::Geometry::initial_gap", "rheology::Rheology::creep_compliance"].map(str::to_owned);
     let _ = |hertz: viscocontact::analytic::Hertz| [hertz.contact_radius, hertz.max_pressure];
     let fields = ["analytic::Hertz::contact_radius", "analytic::Hertz::max_pressure"].map(str::to_owned);
-    let known: BTreeSet<String> = known.into_iter().chain(of_traits).chain(fields).collect();
+    let known: BTreeSet<String> = known.into_iter().chain(steps).chain(of_traits).chain(fields).collect();
     let page = page();
     let listed = page.split("[`").skip(1).map(|rest| rest.split("`]").next().unwrap().to_owned());
     assert_eq!(listed.collect::<BTreeSet<_>>(), known);

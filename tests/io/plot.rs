@@ -8,7 +8,6 @@ use std::fs;
 use std::path::Path;
 
 use proptest::prelude::*;
-use viscocontact::observe::Axis;
 use viscocontact::output::Field;
 use viscocontact::plot::{
     Animation, COLORS, Chart, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style,

@@ -58,7 +58,7 @@ fn snapshots_of_other_contacts_are_refused() {
 fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool {
     let (dt, force) = (0.2 * a, 0.2 + b);
     let eccentric = || Load::eccentric_force(force, [1.0e-4 * (c - 0.5), 0.0]);
-    match (contact.settings().frame, (8.0 * kind) as usize) {
+    match (contact.settings().frame(), (8.0 * kind) as usize) {
         (_, 0) => contact.step(0.0, Load::force(force)).is_ok(),
         (_, 1) => contact.step(dt, eccentric()).is_ok(),
         (_, 2) => contact.step(dt, Load::approach(2.0e-5 * b)).is_ok(),

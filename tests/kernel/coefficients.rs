@@ -7,7 +7,7 @@ use approx::abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::rheology::{Material, Maxwell, Zener};
-use viscocontact::{Error, Grid, InfluenceKernel, KernelError, Layer};
+use viscocontact::{Axis, Error, Grid, InfluenceKernel, KernelError, Layer};
 
 /// What a convolution returns is the double sum of K(i − k, j − l) p(k, l) over all cells (k, l): equation 7.
 fn sum_defect(kernel: &InfluenceKernel, pressure: &[f64]) -> f64 {
@@ -30,8 +30,8 @@ fn kernels_without_layers(grid: &Grid) -> Vec<InfluenceKernel> {
     let made = [
         InfluenceKernel::half_space(grid),
         InfluenceKernel::periodic(grid),
-        InfluenceKernel::periodic_along(grid, 0, 20.0),
-        InfluenceKernel::periodic_along(grid, 1, 20.0),
+        InfluenceKernel::periodic_along(grid, Axis::X1, 20.0),
+        InfluenceKernel::periodic_along(grid, Axis::X2, 20.0),
         InfluenceKernel::from_coefficients(grid, |i, j| 0.1 / (1.0 + (i * i + 2 * j * j) as f64)),
         InfluenceKernel::from_spectrum(grid, spectrum),
     ];
@@ -47,8 +47,8 @@ fn kernels(grid: &Grid) -> Vec<InfluenceKernel> {
         InfluenceKernel::layer(grid, sheet),
         InfluenceKernel::layer(grid, coating),
         InfluenceKernel::layer_periodic(grid, sheet),
-        InfluenceKernel::layer_periodic_along(grid, sheet, 0, None),
-        InfluenceKernel::layer_periodic_along(grid, coating, 1, Some(20.0)),
+        InfluenceKernel::layer_periodic_along(grid, sheet, Axis::X1, None),
+        InfluenceKernel::layer_periodic_along(grid, coating, Axis::X2, Some(20.0)),
     ];
     let line = (grid.cells()[1] == 1).then(|| InfluenceKernel::layer_line(grid, sheet, None));
     let layers = layers.into_iter().chain(line).map(Result::unwrap);

@@ -172,8 +172,8 @@ fn layers_periodic_along_one_axis_are_sums_of_images() {
         for layer in layers(thickness, 0.5).into_iter().chain(layers(thickness, 0.2)) {
             let kernel = InfluenceKernel::layer(&grid, layer).unwrap();
             let datum = layer.compliance(0.0).is_infinite().then_some(10.0);
-            let periodic = InfluenceKernel::layer_periodic_along(&strips, layer, 1, datum).unwrap();
-            let of_half_space = InfluenceKernel::periodic_along(&strips, 1, 10.0).unwrap();
+            let periodic = InfluenceKernel::layer_periodic_along(&strips, layer, Axis::X2, datum).unwrap();
+            let of_half_space = InfluenceKernel::periodic_along(&strips, Axis::X2, 10.0).unwrap();
             for waves in [1.0, 2.0] {
                 let wave: Vec<f64> = (0..strips.len())
                     .map(|k| if k < 8 { (TAU * waves * strips.center(0, k)[1]).cos() } else { 0.0 })
@@ -204,7 +204,7 @@ fn layers_periodic_along_one_axis_are_lines_and_half_spaces() {
     for layer in layers(0.3, 0.4) {
         let datum = layer.compliance(0.0).is_infinite().then_some(7.0);
         let along = |grid: &Grid, axis| InfluenceKernel::layer_periodic_along(grid, layer, axis, datum).unwrap();
-        let (kernel, other) = (along(&grid, 1), along(&turned, 0));
+        let (kernel, other) = (along(&grid, Axis::X2), along(&turned, Axis::X1));
         assert_eq!((kernel.periodic_axes(), other.periodic_axes()), ([false, true], [true, false]));
         // uniform along x2: a line
         let uniform: Vec<f64> = (0..24).map(|i| ((i * i) as f64).sin() + 1.1).collect();
@@ -220,19 +220,18 @@ fn layers_periodic_along_one_axis_are_lines_and_half_spaces() {
         assert!((0..240).all(|k| (one[k] - two[k % 10 * 24 + k / 10]).abs() < 1e-13 * greatest), "{layer}");
     }
     // a layer of the material of its base, and a thick one
-    let half_space = InfluenceKernel::periodic_along(&grid, 1, 7.0).unwrap();
+    let half_space = InfluenceKernel::periodic_along(&grid, Axis::X2, 7.0).unwrap();
     let same = Layer::bonded_to_half_space(0.3, 0.3, 1.0, 0.3).unwrap();
     for layer in [same, Layer::bonded_to_half_space(1e15, 0.3, 4.0, 0.4).unwrap()] {
-        let kernel = InfluenceKernel::layer_periodic_along(&grid, layer, 1, Some(7.0)).unwrap();
+        let kernel = InfluenceKernel::layer_periodic_along(&grid, layer, Axis::X2, Some(7.0)).unwrap();
         assert!(difference(&kernel, &half_space) < 1e-12, "{layer}");
     }
     let rigid = Layer::bonded_to_rigid(0.3, 0.3).unwrap();
     for refused in [
-        InfluenceKernel::layer_periodic_along(&grid, rigid, 1, Some(7.0)),
-        InfluenceKernel::layer_periodic_along(&grid, same, 1, None),
-        InfluenceKernel::layer_periodic_along(&grid, same, 1, Some(1.9)),
-        InfluenceKernel::layer_periodic_along(&grid, rigid, 2, None),
-        InfluenceKernel::layer_periodic_along(&grid, Layer::bonded_to_rigid(1e-5, 0.3).unwrap(), 1, None),
+        InfluenceKernel::layer_periodic_along(&grid, rigid, Axis::X2, Some(7.0)),
+        InfluenceKernel::layer_periodic_along(&grid, same, Axis::X2, None),
+        InfluenceKernel::layer_periodic_along(&grid, same, Axis::X2, Some(1.9)),
+        InfluenceKernel::layer_periodic_along(&grid, Layer::bonded_to_rigid(1e-5, 0.3).unwrap(), Axis::X2, None),
     ] {
         assert!(refused.is_err());
     }

@@ -226,7 +226,7 @@ fn several_bodies_carry_their_own_loads() {
             .build()
             .unwrap();
         let loads = [Load::force(2.0), Load::eccentric_force(0.5, [0.5 * distance + 0.05e-3, 0.0])];
-        let report = contact.step_each(0.0, &loads).unwrap();
+        let report = contact.step(0.0, &loads).unwrap();
         assert_abs_diff_eq!(report.force, 2.5, epsilon = 1e-11);
         let [left, right] = [0, 1].map(|body| contact.body(body).unwrap());
         assert_abs_diff_eq!(left.force, 2.0, epsilon = 1e-11);
@@ -252,7 +252,7 @@ fn several_bodies_carry_their_own_loads() {
 #[test]
 fn wrong_numbers_of_bodies_and_loads_are_refused() {
     let mut contact = punch(16);
-    let error = contact.step_each(0.0, &[Load::force(1.0), Load::force(1.0)]).unwrap_err();
+    let error = contact.step(0.0, &[Load::force(1.0), Load::force(1.0)]).unwrap_err();
     let field = "loads of the rigid bodies";
     assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
     let shape = FlatPunch::circular(RADIUS).unwrap();

@@ -9,7 +9,6 @@ use std::time::Duration;
 use crate::common::bodies::{elastic, zener};
 use crate::common::spheres::builder_on;
 use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
-use viscocontact::observe::Axis;
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
 

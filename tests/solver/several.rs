@@ -62,7 +62,7 @@ fn steps_of_several_bodies_converge() {
                 .collect();
             let dt = if draws.chance(0.3) { 0.0 } else { draws.scale(1.0e-3, 10.0) };
             steps += 1;
-            match contact.step_each(dt, &loads) {
+            match contact.step(dt, &loads) {
                 Ok(_) => {
                     for (body, load) in loads.iter().enumerate() {
                         let Load::Force { normal, .. } = load else { continue };

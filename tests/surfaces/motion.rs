@@ -182,7 +182,7 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     let closure = Material::incompressible(FnRheology::new(|t: f64| 1e-6 * (1.0 + t.powf(0.3))));
     let built = builder(&grid, &sphere(), Frame::Indenter).material(closure).build();
     assert!(matches!(built, Err(Error::Material(MaterialError::NoExponentialSeries { .. }))));
-    let motion = SteadyMotion::new(0, 0.0, load);
+    let motion = SteadyMotion::new(Axis::X1, 0.0, load);
     assert!(matches!(moving.toward_steady(motion), Err(Error::OutOfRange { field: "velocity", .. })));
 }
 
@@ -252,7 +252,7 @@ fn power_counts_the_rim_of_a_punch() {
 fn motions_without_contact_are_refused() {
     let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();
     let cylinder = Cylinder::new(5.0e-3).unwrap();
-    let motion = |load| SteadyMotion::new(0, 0.1, load);
+    let motion = |load| SteadyMotion::new(Axis::X1, 0.1, load);
     for load in [Load::force(0.0), Load::approach(-1.0e-6)] {
         for pressed in [false, true] {
             let mut contact = builder(&grid, &cylinder, Frame::Indenter)
@@ -278,7 +278,7 @@ fn motions_without_contact_are_refused() {
         .unwrap();
     let loads = [Load::force(15.0), Load::force(10.0)];
     for _ in 0..40 {
-        two.step_each_over([1, 0], 1.0e-3, &loads).unwrap();
+        two.step_over([1, 0], 1.0e-3, &loads).unwrap();
     }
     assert_abs_diff_eq!(two.body(1).unwrap().force / 10.0, 1.0, epsilon = 1e-9);
     assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongLength { .. })));

@@ -107,7 +107,7 @@ fn check_honesty(make: impl Fn(u64, u64) -> RandomScene, count: (&'static str, u
             }
         };
         let runs = TOLERANCES.map(|tolerance| {
-            let mut contact = scene.contact(Settings::default().tolerance);
+            let mut contact = scene.contact(Settings::default().tolerance());
             watch(&scene, &mut contact, scene.load(), Stepping::adaptive(tolerance), &scene.stops, MOST_PROBLEMS)
         });
         if TOLERANCES.into_iter().zip(&runs).any(|(tolerance, run)| is_doubtful(&truth, tolerance, run)) {

@@ -182,7 +182,7 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
                     }
                 })
                 .collect();
-            twin.step_each(time - start.time(), &loads).unwrap();
+            twin.step(time - start.time(), &loads).unwrap();
             let off = differences(&seen(&within), &seen(&twin));
             let [approach, force, tilt, most] = seen(&contact).values;
             let greatest = [approach, force, approach + tilt.abs(), most, most];
@@ -191,7 +191,7 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
             }
             // it can be stepped like any other contact
             let mut further = within.clone();
-            further.step_each(report.time - time, &loads).unwrap();
+            further.step(report.time - time, &loads).unwrap();
             assert!(further.within_step(report.time).is_ok());
         }
     }
@@ -390,7 +390,7 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std:
     } else {
         inside.scene.load()
     };
-    let (until, solver) = (inside.scene.body.until, Settings::default().tolerance.min(0.01 * tolerance));
+    let (until, solver) = (inside.scene.body.until, Settings::default().tolerance().min(0.01 * tolerance));
     let Run { looks, steps, rejected, pressure } = run(inside.contact(solver), history, until, tolerance)?;
     if std::env::var("INSIDE_TRACE").is_ok() {
         let name = &inside.scene.name;

@@ -51,8 +51,8 @@ struct Scene {
 impl Scene {
     /// With a rule whose steps use only their own ends, which a jump does not reset.
     fn linear(mut self) -> Scene {
-        if self.settings.time_rule == TimeRule::Exponential {
-            self.settings.time_rule = TimeRule::ExponentialLinear;
+        if self.settings.time_rule() == TimeRule::Exponential {
+            self.settings = self.settings.with_time_rule(TimeRule::ExponentialLinear);
         }
         self
     }
@@ -297,9 +297,9 @@ proptest! {
         rises in prop::collection::vec(0.3..1.0_f64, 2),
         eccentric in any::<bool>(),
     ) {
-        scene.settings.tolerance = 1e-8;
+        scene.settings = scene.settings.with_tolerance(1e-8);
         // sums over the whole past are first order: their steps are many
-        scene.settings.time_rule = TimeRule::Exponential;
+        scene.settings = scene.settings.with_time_rule(TimeRule::Exponential);
         let protocol = |wait: &dyn Fn(usize) -> Load| {
             let mut protocol = Protocol::default();
             for (k, rise) in rises.iter().enumerate() {
@@ -348,7 +348,7 @@ proptest! {
         };
         let (mut contact, mut steps) = (build(), build());
         let apart = |k: usize| apart(loads[k].0, loads[k].1, -DEPTH);
-        contact.step_each(0.0, &[apart(0), apart(1)]).unwrap();
+        contact.step(0.0, &[apart(0), apart(1)]).unwrap();
         let held = if press_both { apart(2) } else { Load::force(0.0) };
         for (dt, pair) in [
             (DT, [Load::force(FORCE), held]),
@@ -358,9 +358,9 @@ proptest! {
             (DT, [Load::force(0.5 * FORCE), Load::force(0.5 * FORCE)]),
         ] {
             let before = contact.pressure().to_vec();
-            contact.step_each(dt, &pair).unwrap();
+            contact.step(dt, &pair).unwrap();
             if dt > 0.0 {
-                steps.step_each(dt, &pair).unwrap();
+                steps.step(dt, &pair).unwrap();
             } else if contact.material().contact_compliance(0.0) == 0.0 {
                 prop_assert!(contact.pressure() == before);
             }

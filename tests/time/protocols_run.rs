@@ -88,7 +88,7 @@ fn random_protocols_run_to_their_end() {
         let tolerance = Draws::new(number.wrapping_add(77 * seed)).power_of_ten(-4.0, -2.0);
         let name = format!("{tolerance:.0e} {}", scene.name);
         let steps = |history: &dyn LoadHistory| {
-            let mut contact = scene.contact(Settings::default().tolerance);
+            let mut contact = scene.contact(Settings::default().tolerance());
             watch(&scene, &mut contact, history, Stepping::adaptive(tolerance), &scene.stops, MOST_PROBLEMS)
         };
         let from_small = FromSmallLoad::new(scene.load(), scene.control.load(0.01), scene.body.until);

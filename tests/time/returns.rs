@@ -37,7 +37,7 @@ fn errors_are_honest_on_random_returns() {
         let scene = RandomScene::returning(seed, number);
         let mut truth = Truth::of(&scene, 0.1 * tolerances[tolerances.len() - 1], most_steps).unwrap();
         for (&tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
-            let mut contact = scene.contact(Settings::default().tolerance);
+            let mut contact = scene.contact(Settings::default().tolerance());
             let stepping = Stepping::adaptive(tolerance);
             let run = watch(&scene, &mut contact, scene.load(), stepping, &scene.stops, MOST_PROBLEMS)
                 .unwrap_or_else(|stopped| panic!("{} at {tolerance:e}: {stopped}", scene.name));

@@ -30,7 +30,7 @@ fn random_scene(number: u64) -> Scene {
         3 => ("periodic", InfluenceKernel::periodic(&grid)),
         4 => ("line", InfluenceKernel::line(&grid, 1.0)),
         5 => ("layer", InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.5, 0.4).unwrap())),
-        _ => ("strips", InfluenceKernel::periodic_along(&grid, 1, 1.0)),
+        _ => ("strips", InfluenceKernel::periodic_along(&grid, Axis::X2, 1.0)),
     };
     let depth = 0.03;
     let rough = RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(draws.power_of_ten(-3.5, -2.3))).with_seed(number);
@@ -94,7 +94,7 @@ fn springs_carry_what_their_approach_leads_to() {
                 })
                 .collect();
             let mut given = contact.clone();
-            let report = contact.step_each(dt, &loads).unwrap_or_else(|error| panic!("{name} step {step}: {error}"));
+            let report = contact.step(dt, &loads).unwrap_or_else(|error| panic!("{name} step {step}: {error}"));
             let bodies: Vec<_> = (0..loads.len()).map(|body| contact.body(body).unwrap()).collect();
             let mut approaches = Vec::new();
             for ((load, state), &tilt) in loads.iter().zip(&bodies).zip(&tilts) {
@@ -108,7 +108,7 @@ fn springs_carry_what_their_approach_leads_to() {
                 apart += usize::from(state.force == 0.0);
             }
             work[0] += report.convolutions;
-            let Ok(reference) = given.step_each(dt, &approaches) else { continue };
+            let Ok(reference) = given.step(dt, &approaches) else { continue };
             work[1] += reference.convolutions;
             let most = given.max_pressure().max(contact.max_pressure());
             if report.force == 0.0 || most == 0.0 {
@@ -147,7 +147,7 @@ fn soft_springs_are_forces_and_stiff_ones_approaches() {
                 each(&|tilt| Load::Approach { approach, tilt }),
             ];
             for (contact, loads) in [&mut soft, &mut pressed, &mut stiff, &mut lowered].into_iter().zip(&loads) {
-                contact.step_each(dt, loads).unwrap_or_else(|error| panic!("{name} step {step}: {error}"));
+                contact.step(dt, loads).unwrap_or_else(|error| panic!("{name} step {step}: {error}"));
             }
             for (one, other) in [(&soft, &pressed), (&stiff, &lowered)] {
                 greatest = greatest.max(other.force());

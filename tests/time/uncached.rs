@@ -8,10 +8,8 @@ use crate::common::step_loaded_sphere::StepLoadedSphere;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
 
-fn paper(time_rule: TimeRule) -> Settings {
-    // differences by rounding in the iterations are then below the bounds of these tests
-    Settings::paper().with_tolerance(1e-12).with_time_rule(time_rule)
-}
+/// Differences by rounding in the iterations are then below the bounds of these tests.
+const TIGHT: f64 = 1e-12;
 
 fn sphere(material: Material, settings: Settings) -> Builder {
     builder_on(Grid::new([24, 20], [5.0e-3, 4.0e-3]).unwrap(), material).settings(settings)
@@ -40,13 +38,13 @@ fn uncached_sums_differ_in_cost_only() {
     // an eccentric load ends the symmetry; periodic bodies do not tilt
     let scenes = [(maxwell(), false, 1.0e-5), (closure, true, 1.0e-5), (three_times(), false, 0.0)];
     for (material, symmetry, distance) in scenes {
-        let with = |time_rule| {
-            let builder = sphere(material.clone(), paper(time_rule).with_symmetry(symmetry));
+        let with = |settings: Settings| {
+            let builder = sphere(material.clone(), settings.with_tolerance(TIGHT).with_symmetry(symmetry));
             let grid = Grid::new([24, 20], [5.0e-3, 4.0e-3]).unwrap();
-            let kernel = || Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap());
+            let kernel = || Arc::new(InfluenceKernel::periodic_along(&grid, Axis::X2, 1.0).unwrap());
             if distance == 0.0 { builder.kernel(kernel()).build().unwrap() } else { builder.build().unwrap() }
         };
-        let (mut cached, mut uncached) = (with(TimeRule::Rectangle), with(TimeRule::RectangleUncached));
+        let (mut cached, mut uncached) = (with(Settings::paper()), with(Settings::paper_literal()));
         for (step, (dt, load)) in loads(distance).enumerate() {
             let [kept, repeated] = [&mut cached, &mut uncached].map(|contact| contact.step(dt, load).unwrap());
             let apart = difference(cached.displacement(), uncached.displacement());
@@ -67,17 +65,17 @@ fn uncached_sums_differ_in_cost_only() {
 /// N(N + 1)/2 convolutions of the past after a jump and N steps: the formula of the paper's section 4.
 #[test]
 fn uncached_sums_cost_as_many_convolutions_as_the_paper_says() {
-    let run = |steps: usize, time_rule| {
-        let mut contact = sphere(maxwell(), Settings::paper().with_time_rule(time_rule)).build().unwrap();
+    let run = |steps: usize, settings| {
+        let mut contact = sphere(maxwell(), settings).build().unwrap();
         contact.step(0.0, Load::force(0.5)).unwrap();
         let reports = (0..steps).map(|_| contact.step(1.0 / steps as f64, Load::force(0.5)).unwrap());
         let counts = reports.map(|report| [report.convolutions, report.iterations]);
         counts.fold([0; 2], |sum, count| [sum[0] + count[0], sum[1] + count[1]])
     };
     for steps in [1, 10, 40] {
-        let [cached, iterations] = run(steps, TimeRule::Rectangle);
+        let [cached, iterations] = run(steps, Settings::paper());
         assert_eq!(cached, 2 * iterations + steps);
-        let [uncached, iterations] = run(steps, TimeRule::RectangleUncached);
+        let [uncached, iterations] = run(steps, Settings::paper_literal());
         assert_eq!(uncached, 2 * iterations + steps + steps * (steps + 1) / 2);
     }
 }
@@ -91,7 +89,7 @@ fn convolutions_grow_with_the_square_of_the_steps_in_the_paper_only() {
         let [few, many] = steps.map(|steps| scene.run(cells, steps, settings).unwrap().1 * steps as f64);
         (many / few).log2() / (steps[1] as f64 / steps[0] as f64).log2()
     };
-    let literal = Settings::paper().with_time_rule(TimeRule::RectangleUncached);
+    let literal = Settings::paper_literal();
     let [paper, default] = [exponent(16, [400, 800], literal), exponent(32, [800, 3200], Settings::default())];
     println!("exponents {paper} and {default}");
     assert!((paper - 2.0).abs() < 0.1 && (default - 1.0).abs() < 0.05, "{paper} {default}");
@@ -100,7 +98,7 @@ fn convolutions_grow_with_the_square_of_the_steps_in_the_paper_only() {
 #[test]
 fn uncached_sums_are_refused_where_cached_ones_are() {
     let build = |material, settings: Settings| sphere(material, settings).build();
-    let uncached = paper(TimeRule::RectangleUncached);
+    let uncached = Settings::paper_literal().with_tolerance(TIGHT);
     let voigt = Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
     assert!(matches!(build(voigt, uncached), Err(Error::NoElasticResponse { .. })));
     let moving = uncached.with_frame(Frame::Indenter);
@@ -111,7 +109,7 @@ fn uncached_sums_are_refused_where_cached_ones_are() {
     assert!(contact.step(1.5, Load::force(0.1)).unwrap().warnings.contains(Warnings::RINGS));
     assert!(matches!(contact.step(0.1, Load::force(0.1)), Err(Error::HistoryFull { steps: 2, .. })));
     // a field more than the cached sum
-    let memory = |rule| sphere(maxwell(), paper(rule)).memory().unwrap();
-    let [cached, uncached] = [TimeRule::Rectangle, TimeRule::RectangleUncached].map(memory);
+    let memory = |settings: Settings| sphere(maxwell(), settings.with_tolerance(TIGHT)).memory().unwrap();
+    let [cached, uncached] = [Settings::paper(), Settings::paper_literal()].map(memory);
     assert_eq!((uncached.total(), uncached.each_step), (cached.total() + 8 * 480, cached.each_step));
 }

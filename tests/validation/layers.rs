@@ -342,7 +342,7 @@ fn cylinders_and_chains_of_balls_on_periodic_layers() {
     };
     let (rows, line) = (Grid::new([64, 12], [2.0e-3, 1.0e-3]).unwrap(), Grid::new([64, 1], [2.0e-3, 1.0e-3]).unwrap());
     let cylinder = Cylinder::new(10.0e-3).unwrap();
-    let one = press(InfluenceKernel::layer_periodic_along(&rows, layer, 1, None).unwrap(), &cylinder);
+    let one = press(InfluenceKernel::layer_periodic_along(&rows, layer, Axis::X2, None).unwrap(), &cylinder);
     let other = press(InfluenceKernel::layer_line(&line, layer, None).unwrap(), &cylinder);
     assert!((one.force() / other.force() - 1.0).abs() < 1e-9, "{} {}", one.force(), other.force());
     let peak = other.max_pressure();
@@ -350,7 +350,7 @@ fn cylinders_and_chains_of_balls_on_periodic_layers() {
     // balls so far apart that the layer does not feel the next one
     let apart = Grid::new([40, 96], [1.25e-3, 3.0e-3]).unwrap();
     let ball = Sphere::new(10.0e-3).unwrap();
-    let chain = press(InfluenceKernel::layer_periodic_along(&apart, layer, 1, None).unwrap(), &ball);
+    let chain = press(InfluenceKernel::layer_periodic_along(&apart, layer, Axis::X2, None).unwrap(), &ball);
     let alone = press(InfluenceKernel::layer(&apart, layer).unwrap(), &ball);
     println!("a chain over one ball: {:e}", chain.force() / alone.force() - 1.0);
     assert!((chain.force() / alone.force() - 1.0).abs() < 2e-3, "{} {}", chain.force(), alone.force());

@@ -145,7 +145,7 @@ impl Shape {
         let settings = Settings::default().with_tolerance(1e-7).with_edge(edge);
         let mut builder = ViscoelasticContact::builder(grid.clone()).geometry(&*self.geometry);
         if self.periodic {
-            builder = builder.kernel(Arc::new(InfluenceKernel::periodic(grid)?));
+            builder = builder.kernel(InfluenceKernel::periodic(grid)?);
         }
         builder.material(material).settings(settings).build()
     }

@@ -57,7 +57,7 @@ pub(super) fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Roll
         .build()
         .unwrap();
     let velocity = direction * scene.reach / TAU;
-    let motion = SteadyMotion::new(0, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
+    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
     contact.toward_steady(motion).unwrap().run().unwrap();
     Rolled { contact, shape, at }
 }

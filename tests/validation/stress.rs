@@ -9,7 +9,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use viscocontact::KernelError;
 use viscocontact::analytic::Hertz;
 use viscocontact::contact::StressHistory;
-use viscocontact::observe::{Axis, Stress, SubsurfaceStress};
+use viscocontact::observe::{Stress, SubsurfaceStress};
 use viscocontact::prelude::*;
 use viscocontact::rheology::MaterialError;
 
@@ -100,7 +100,7 @@ fn a_cylinder_yields_where_hertz_says() {
         let along = |of_axis: f64, other: f64| if axis == 0 { [of_axis, other] } else { [other, of_axis] };
         let cells = if axis == 0 { [256, 1] } else { [1, 256] };
         let grid = Grid::new(cells, along(2.6 * a, 1.0)).unwrap();
-        let kernel = InfluenceKernel::periodic_along(&grid, 1 - axis, 1.0).unwrap();
+        let kernel = InfluenceKernel::periodic_along(&grid, Axis::BOTH[1 - axis], 1.0).unwrap();
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(&FnGeometry::new(move |x1, x2| [x1, x2][axis].powi(2) / (2.0 * RADIUS)))
             .material(Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap())

@@ -220,7 +220,7 @@ impl Scene {
         let loads = [Load::approach(RADIUS - center.z), Load::approach_and_tilt(-face.z - tilt[0] * START[1], tilt)];
         let cap = ball_at([center.x, center.y]);
         self.floor.set_geometries(&[&cap, &self.face])?;
-        self.floor.step_each(args.dt, &loads)?;
+        self.floor.step(args.dt, &loads)?;
 
         let [(ball_force, _), (block_force, moment)] = self.forces();
         let [x, y] = self.floor.lateral_force(&cap);

@@ -251,11 +251,9 @@ fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> 
             })
         }
         _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
-        TimeRule::Rectangle | TimeRule::RectangleUncached if glassy == 0.0 => {
-            Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" })
-        }
+        TimeRule::Rectangle if glassy == 0.0 => Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" }),
+        TimeRule::Rectangle if settings.repeats_past => Ok(History::direct_sum(Weighting::EndUncached)),
         TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
-        TimeRule::RectangleUncached => Ok(History::direct_sum(Weighting::EndUncached)),
         TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),
     }
 }

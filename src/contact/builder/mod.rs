@@ -63,7 +63,7 @@ impl Builder {
     }
 
     /// A further rigid body on the same creeping body, with a force, approach and tilt of its own: see
-    /// [`ViscoelasticContact::step_each`]. Gaps are measured from the same plane; a cell can be touched by one
+    /// [`ViscoelasticContact::step`]. Gaps are measured from the same plane; a cell can be touched by one
     /// body only, the one whose gap is lowest there.
     pub fn another_body(mut self, geometry: &dyn Geometry) -> Builder {
         let cells = self.grid.cells();
@@ -142,10 +142,10 @@ impl Builder {
         Builder { temperature: Some(history), ..self }
     }
 
-    /// An influence kernel to share with other contacts on the same grid; without one,
+    /// An influence kernel, or an [`Arc`] of one that other contacts on the same grid share; without one,
     /// [`InfluenceKernel::half_space`] is made.
-    pub fn kernel(self, kernel: Arc<InfluenceKernel>) -> Builder {
-        Builder { kernel: Some(kernel), ..self }
+    pub fn kernel(self, kernel: impl Into<Arc<InfluenceKernel>>) -> Builder {
+        Builder { kernel: Some(kernel.into()), ..self }
     }
 
     /// Settings other than the defaults.

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
+use crate::Axis;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
-use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 use crate::parallel::Rows;
 use crate::sum;

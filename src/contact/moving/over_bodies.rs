@@ -4,11 +4,11 @@ use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
-use crate::load::Load;
+use crate::load::Loads;
 
 impl ViscoelasticContact {
     /// Takes a step in which the indenter and the grid move over the bodies by whole cells along x1 and x2: the
-    /// material under the cell `[i, j] + cells` moves under `[i, j]`. At a velocity v along x1, one cell per step takes
+    /// material under the cell `[i, j] + cells` moves under `[i, j]`. All rigid bodies move alike. At a velocity v along x1, one cell per step takes
     /// dt = Δ1/v.
     ///
     /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
@@ -37,19 +37,12 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
-    pub fn step_over(&mut self, cells: [isize; 2], dt: f64, load: Load) -> Result<StepReport> {
-        self.step_each_over(cells, dt, &[load])
-    }
-
-    /// [`ViscoelasticContact::step_over`] with a load for each rigid body; all bodies move by the same cells.
-    ///
-    /// # Errors
-    /// As [`ViscoelasticContact::step_over`], or if there is not one load per body.
-    pub fn step_each_over(&mut self, cells: [isize; 2], dt: f64, loads: &[Load]) -> Result<StepReport> {
+    pub fn step_over<'a>(&mut self, cells: [isize; 2], dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a step over the bodies" });
         }
-        let mut step = self.request_next(dt, loads)?;
+        let loads = loads.into();
+        let mut step = self.request_next(dt, loads.as_slice())?;
         step.interval.stride = cells;
         self.take(step)
     }

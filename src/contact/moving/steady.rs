@@ -1,9 +1,10 @@
 //! Motion over the bodies to the steady state.
 
+use crate::axis::Axis;
 use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, count_within, finite, within};
+use crate::error::{Error, Result, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
 
@@ -15,33 +16,30 @@ const CONTACT_LENGTHS_PER_STRIDE: usize = 2;
 /// Grid lengths after which a motion that is not yet steady fails.
 const MAX_GRID_LENGTHS: usize = 10;
 
+value! {
 /// A steady motion of the indenter over the bodies, and the tolerance of the steady state; made by
 /// [`SteadyMotion::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct SteadyMotion {
-    /// Axis of the motion, 0 for x1 and 1 for x2.
-    pub axis: usize,
+    /// Axis of the motion.
+    axis: Axis;
     /// Velocity of the indenter over the bodies \[m/s\], of either sign.
-    pub velocity: f64,
+    velocity: f64;
     /// Load on the indenter.
-    pub load: Load,
+    load: Load;
     /// Greatest change of the pressure while the indenter travels by the length of the contact, in (0, 1) (default: 1e-3):
     /// Σ |Δp| over Σ p. The noise of the solver is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
-    pub tolerance: f64,
+    tolerance: f64, with_tolerance;
+}
 }
 
 impl SteadyMotion {
-    /// A motion along `axis`, 0 for x1 and 1 for x2, with a `velocity` \[m/s\] of either sign, under a `load`.
-    pub const fn new(axis: usize, velocity: f64, load: Load) -> SteadyMotion {
+    /// A motion along `axis`, with a `velocity` \[m/s\] of either sign, under a `load`.
+    pub const fn new(axis: Axis, velocity: f64, load: Load) -> SteadyMotion {
         SteadyMotion { axis, velocity, load, tolerance: 1e-3 }
     }
 }
-
-setters! { SteadyMotion {
-    with_tolerance: tolerance, f64;
-} }
 
 /// A contact on its way to a steady state, made by [`ViscoelasticContact::toward_steady`].
 #[derive(Debug)]
@@ -79,19 +77,18 @@ impl ViscoelasticContact {
     /// let mut contact = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&cylinder)
     ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.005e6)?))
-    ///     .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0)?))
+    ///     .kernel(InfluenceKernel::line(&grid, 1.0)?)
     ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;
-    /// let motion = SteadyMotion::new(0, 0.1, Load::force(100.0)).with_tolerance(1.0e-4);
+    /// let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(100.0)).with_tolerance(1.0e-4);
     /// contact.toward_steady(motion)?.run()?;
     /// assert!(contact.lateral_force(&cylinder)[0] > 0.01 * contact.force());
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
-    /// If the grid is fixed to the bodies, the axis is neither 0 nor 1, the velocity zero or not finite, or the tolerance not in (0, 1).
+    /// If the grid is fixed to the bodies, the velocity zero or not finite, or the tolerance not in (0, 1).
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<SteadyRun<'_>> {
-        count_within("axis of the motion", motion.axis, motion.axis <= 1, "0 (x1) or 1 (x2)")?;
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a motion to its steady state" });
         }
@@ -132,7 +129,8 @@ impl SteadyRun<'_> {
             return Ok(None);
         }
         self.tried_to_touch |= apart;
-        let SteadyMotion { axis, velocity, load, .. } = self.motion;
+        let SteadyMotion { velocity, load, .. } = self.motion;
+        let axis = self.motion.axis.index();
         // bodies that are apart touch in place, within the time for one cell
         let (stride, lasts) = if apart { (0, 1) } else { (self.stride, self.stride) };
         let mut cells = [0; 2];
@@ -165,12 +163,12 @@ impl SteadyRun<'_> {
 
     /// Distance travelled by the indenter \[m\].
     pub fn distance(&self) -> f64 {
-        self.travelled as f64 * self.contact.grid().spacing()[self.motion.axis]
+        self.travelled as f64 * self.contact.grid().spacing()[self.motion.axis.index()]
     }
 
     /// Sets the next stride and the cells to travel with it; false if the motion is steady.
     fn next_stride(&mut self) -> Result<bool> {
-        let (axis, grid) = (self.motion.axis, self.contact.grid());
+        let (axis, grid) = (self.motion.axis.index(), self.contact.grid());
         let (cells, contact) = (grid.cells()[axis], self.length_of_contact());
         let limit = self.motion.tolerance;
         (self.stride, self.left) = match self.stride {
@@ -198,7 +196,7 @@ impl SteadyRun<'_> {
 
     /// Cells between the ends of the contact along the axis of the motion.
     fn length_of_contact(&self) -> usize {
-        let along = |Extent { low, high }| high[self.motion.axis] + 1 - low[self.motion.axis];
+        let along = |Extent { low, high }| high[self.motion.axis.index()] + 1 - low[self.motion.axis.index()];
         self.contact.extent_of_contact().map_or(1, along)
     }
 }

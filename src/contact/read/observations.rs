@@ -1,5 +1,6 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
+use crate::Axis;
 use crate::contact::settings::Solver;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
@@ -8,7 +9,7 @@ use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
 use crate::observe::profile::line_through;
-use crate::observe::{Asymmetry, Axis, Distribution, LineProfile, Patches};
+use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 impl ViscoelasticContact {
@@ -166,7 +167,7 @@ impl ViscoelasticContact {
     /// [`LineProfile::at`] is the coordinate of the cell centres.
     ///
     /// ```
-    /// use viscocontact::{observe::Axis, prelude::*};
+    /// use viscocontact::prelude::*;
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(33, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)

@@ -79,7 +79,7 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
     let has_memory = !state.is_undisturbed();
     let uncertain = material.fit_reports().any(|report| report.warning().is_some());
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
-    let oscillates = matches!(scene.settings.time_rule, TimeRule::Rectangle | TimeRule::RectangleUncached)
+    let oscillates = scene.settings.time_rule == TimeRule::Rectangle
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
     let reasons = [
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),

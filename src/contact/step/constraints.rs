@@ -1,6 +1,7 @@
 //! The free motions of a step, and checks of its loads and results.
 
 use crate::Grid;
+use crate::axis::Axis;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, Solver};
 use crate::contact::state::State;
@@ -21,7 +22,8 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
         load.validate()?;
         let Freedom { translation, tilt, point, total } = freedom(load, grid);
         let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
-        if let Some(axis) = (0..2).find(|&axis| tilts[axis] && scene.kernel.periodic_axes()[axis]) {
+        let tilts_of_periodic = |axis: &Axis| tilts[axis.index()] && scene.kernel.periodic_axes()[axis.index()];
+        if let Some(axis) = Axis::BOTH.into_iter().find(tilts_of_periodic) {
             return Err(Error::TiltOfPeriodic { time, axis });
         }
         let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);

@@ -37,7 +37,7 @@ use crate::error::{Error, Result, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
-use crate::load::Load;
+use crate::load::{Load, Loads};
 use crate::parallel::in_pool;
 use crate::solver::{Solution, Stop};
 use accept::collect_warnings;
@@ -59,7 +59,8 @@ pub(in crate::contact) struct Attempt {
 }
 
 impl ViscoelasticContact {
-    /// Advances by `dt` \[s\] to a state that carries `load`. `dt` = 0 is a jump of the load: the bodies respond
+    /// Advances by `dt` \[s\] to a state that carries `loads`: one [`Load`], or a load for each rigid body in the order in which
+    /// the builder was given them ([`Loads`]). `dt` = 0 is a jump of the load: the bodies respond
     /// elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump. It accepts jumps to zero
     /// pressure, and jumps to a load that the present pressure satisfies to within
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present approach in place of the force.
@@ -69,20 +70,13 @@ impl ViscoelasticContact {
     /// has no elastic response for the pressure that the load needs, contact reaches the edge of the grid (unless
     /// [`Edge::Allow`](crate::contact::Edge::Allow)), the solver does not converge, a creep closure returns an impossible
     /// value, the material is not known for so long a time, a direct sum has filled its memory, there is no memory for the
-    /// cells that the contact reaches ([`Error::OutOfMemory`]), or there are several rigid bodies. The contact is then
+    /// cells that the contact reaches ([`Error::OutOfMemory`]), or there is not one load per body. The contact is then
     /// unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last step.
-    pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        self.step_each(dt, &[load])
-    }
-
-    /// [`ViscoelasticContact::step`] with a load for each rigid body, in the order in which the builder was given them.
-    ///
-    /// # Errors
-    /// As [`ViscoelasticContact::step`], or if there is not one load per body.
-    pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
+    pub fn step<'a>(&mut self, dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
+        let loads = loads.into();
         let rows = self.computation.state.region.rows();
         rows.together(|| {
-            let requested = self.request_next(dt, loads);
+            let requested = self.request_next(dt, loads.as_slice());
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
             let step = rows.agree(requested)?;
             self.take(step)

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use crate::Grid;
 use crate::error::{Result, finite, positive, within};
 
+value! {
 /// Specification of a self-affine random surface, [`Rough`](crate::geometry::Rough).
 ///
 /// With the wave numbers q_l, q_r and q_s, 2π/λ of `longest`, `roll_off` and `shortest`, the power spectral density is
@@ -23,38 +24,39 @@ use crate::error::{Result, finite, positive, within};
 ///
 /// // waves of 2 mm to 40 µm, the longest of the same strength down to 0.5 mm
 /// let spec = RoughSpec::new(2.0e-3, 40.0e-6, Roughness::RmsHeight(1.0e-6)).with_roll_off(0.5e-3).with_seed(7);
-/// assert_eq!(spec.hurst, 0.8);
+/// assert_eq!(spec.hurst(), 0.8);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub struct RoughSpec {
     /// Hurst exponent H, in (0, 1] (default: 0.8, as of many fractured, blasted and worn surfaces).
-    pub hurst: f64,
+    hurst: f64, with_hurst;
     /// Longest wavelength \[m\].
-    pub longest: f64,
+    longest: f64;
     /// Wavelength \[m\] above which the spectrum is constant (default: `longest`, a spectrum without plateau).
-    pub roll_off: f64,
+    roll_off: f64, with_roll_off;
     /// Shortest wavelength \[m\], at least two cells of the grid.
-    pub shortest: f64,
+    shortest: f64, with_shortest;
     /// Anisotropy of the spectrum (default: isotropic).
-    pub anisotropy: Anisotropy,
+    anisotropy: Anisotropy, with_anisotropy;
     /// Roughness.
-    pub roughness: Roughness,
+    roughness: Roughness, with_roughness;
     /// Seed of the random numbers (default: 0): the same seed and lengths give the same surface on every mesh that resolves it.
-    pub seed: u64,
+    seed: u64, with_seed;
+}
 }
 
+value! {
 /// Waves that are longer along one direction than across it, for instance after grinding. The spectrum is evaluated at
 /// q = √((γ q_along)² + q_across²): the wavelengths of the [`RoughSpec`] are the wavelengths across.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub struct Anisotropy {
     /// Ratio γ ≥ 1 of a wavelength along the direction to the wavelength across (default: 1).
-    pub ratio: f64,
+    ratio: f64;
     /// Angle of the direction from x1 towards x2 \[rad\] (default: 0).
-    pub direction: f64,
+    direction: f64;
+}
 }
 
 impl Anisotropy {
@@ -80,15 +82,6 @@ pub enum Roughness {
     /// Root mean square of the slope, the magnitude of the gradient.
     RmsSlope(f64),
 }
-
-setters! { RoughSpec {
-    with_hurst: hurst, f64;
-    with_roll_off: roll_off, f64;
-    with_shortest: shortest, f64;
-    with_anisotropy: anisotropy, Anisotropy;
-    with_roughness: roughness, Roughness;
-    with_seed: seed, u64;
-} }
 
 /// Waves of 1 mm to 10 µm, with a height of 1 µm in the root mean square.
 impl Default for RoughSpec {

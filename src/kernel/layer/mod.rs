@@ -61,7 +61,7 @@ const SAME_POISSON: f64 = 1e-9;
 /// let mut contact = ViscoelasticContact::builder(grid)
 ///     .geometry(&Sphere::new(50.0e-6)?)
 ///     .material(Material::incompressible(Zener::new(1.0e3, 1.0e3, 1.0e3)?))
-///     .kernel(kernel.into())
+///     .kernel(kernel)
 ///     .build()?;
 /// contact.step(0.0, Load::force(50.0e-9))?;
 /// contact.step(1.0, Load::force(50.0e-9))?;

@@ -14,10 +14,11 @@ pub use tensor::Stress;
 
 use num_complex::Complex64;
 
+use crate::axis::Axis;
 use crate::error::{KernelError, Result, exact_length, in_order, least_length, within};
 use crate::fft::Plane;
 use crate::kernel::{HalfSpace, fast_length};
-use crate::observe::profile::{Axis, line_through};
+use crate::observe::profile::line_through;
 use crate::{Grid, InfluenceKernel, memory};
 use line::LineBelow;
 use rectangle::Weights;

@@ -1,8 +1,8 @@
 //! The stress on a section, and in a volume.
 
 use super::Stress;
+use crate::Axis;
 use crate::Grid;
-use crate::observe::Axis;
 
 /// The stress on a vertical section, see [`SubsurfaceStress::on_section`](super::SubsurfaceStress::on_section).
 #[derive(Debug, Clone, PartialEq)]

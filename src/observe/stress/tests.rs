@@ -15,7 +15,7 @@ fn kernels() -> Vec<InfluenceKernel> {
         InfluenceKernel::half_space(&grid([1, 6], [0.2, 0.6])).unwrap(),
         InfluenceKernel::half_space(&grid([1, 1], [0.2, 0.6])).unwrap(),
         InfluenceKernel::line(&grid([12, 1], [1.2, 1.0]), 10.0).unwrap(),
-        InfluenceKernel::periodic_along(&grid([1, 9], [3.0, 0.9]), 0, 10.0).unwrap(),
+        InfluenceKernel::periodic_along(&grid([1, 9], [3.0, 0.9]), Axis::X1, 10.0).unwrap(),
         InfluenceKernel::periodic(&grid([8, 5], [0.8, 0.6])).unwrap(),
         InfluenceKernel::periodic(&grid([9, 1], [0.8, 0.6])).unwrap(),
         InfluenceKernel::periodic(&grid([6, 6], [0.8, 0.6])).unwrap(),
@@ -195,7 +195,7 @@ fn bodies_without_a_closed_form_are_refused() {
     };
     let layer = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 1.0 } else { 0.0 }).unwrap();
     assert!(refused(SubsurfaceStress::new(&layer, &[0.0; 16], 0.3)).contains("user-defined"));
-    let strips = InfluenceKernel::periodic_along(&grid, 1, 2.0).unwrap();
+    let strips = InfluenceKernel::periodic_along(&grid, Axis::X2, 2.0).unwrap();
     assert!(refused(SubsurfaceStress::new(&strips, &[0.0; 16], 0.3)).contains("periodic along x2"));
     let periodic = InfluenceKernel::periodic(&grid).unwrap();
     let changing = SubsurfaceStress::with_changing_poisson(&periodic, &[0.0; 16], &[0.0; 16]);

@@ -77,7 +77,7 @@ fn random_scenes_are_told_apart() {
         let undisturbed = gap(&contact);
         let loads = vec![Load::force(0.02); bodies.len()];
         for _ in 0..2 {
-            let _ = contact.step_each(0.1, &loads);
+            let _ = contact.step(0.1, &loads);
         }
         contact.save(&path).unwrap();
         build(&grid, &all(&bodies)).unwrap().resume(&path).unwrap_or_else(|error| panic!("seed {seed}: {error}"));

@@ -43,7 +43,7 @@ fn decimal_commas_and_fortran_exponents_are_read() {
     ] {
         assert_eq!(samples(text, format), expected, "{text:?}");
         // decimal commas read as points are refused by the name of an option
-        if format.decimal_comma {
+        if format.decimal_comma() {
             let error = creep(text, Units::SI, format.with_decimal_comma(false)).unwrap_err().to_string();
             let named = ["TextFormat::decimal_comma", "TextFormat::delimiter"];
             assert!(named.iter().any(|option| error.contains(option)), "{text:?}: {error}");

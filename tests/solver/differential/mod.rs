@@ -27,7 +27,7 @@ fn eccentric_loads_may_jump() {
         let scene = Scene::eccentric(seed, STEPS);
         let mut contact = scene.contact(settings).unwrap();
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
-            match contact.step_each(*dt, loads) {
+            match contact.step(*dt, loads) {
                 Ok(report) => {
                     taken += 1;
                     let cost = report.convolution_equivalents();
@@ -82,7 +82,7 @@ fn more_iterations_help_where_the_error_advises_them() {
         let (mut hasty, mut patient) =
             (scene.contact(settings.with_max_iterations(6)).unwrap(), scene.contact(settings).unwrap());
         for (dt, loads) in &scene.steps {
-            if let Err(Error::NotConverged { convergence, .. }) = hasty.step_each(*dt, loads) {
+            if let Err(Error::NotConverged { convergence, .. }) = hasty.step(*dt, loads) {
                 short += 1;
                 assert!(
                     convergence.to_string().contains("raise Settings::max_iterations"),
@@ -90,7 +90,7 @@ fn more_iterations_help_where_the_error_advises_them() {
                     scene.name
                 );
             }
-            solved += usize::from(patient.step_each(*dt, loads).is_ok());
+            solved += usize::from(patient.step(*dt, loads).is_ok());
             if hasty.time() != patient.time() {
                 break; // the histories part
             }
@@ -129,7 +129,7 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
         };
         let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology, time_rule);
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
-            match contact.step_each(*dt, loads) {
+            match contact.step(*dt, loads) {
                 Ok(_) => {}
                 Err(Error::LoadOutsideHull { .. }) => {
                     refused += 1;

@@ -1,0 +1,29 @@
+//! Values that users write: fields that are read and changed by methods.
+
+/// Declares a struct whose fields are read by methods named as they are, with their documentation, and changed by methods
+/// `with_field(self, field) -> Self` where one is named. Such types may get more fields.
+macro_rules! value {
+    ($(#[$about:meta])* pub struct $type:ident { $($(#[$doc:meta])* $field:ident: $value:ty $(, $with:ident)?;)* }) => {
+        $(#[$about])*
+        pub struct $type {
+            $($(#[$doc])* pub(crate) $field: $value,)*
+        }
+
+        impl $type {
+            $(
+                $(#[$doc])*
+                pub const fn $field(&self) -> $value {
+                    self.$field
+                }
+
+                $(
+                    #[doc = concat!("The same with another [`", stringify!($field), "`](", stringify!($type), "::", stringify!($field), ").")]
+                    #[must_use]
+                    pub const fn $with(self, $field: $value) -> $type {
+                        $type { $field, ..self }
+                    }
+                )?
+            )*
+        }
+    };
+}
