@@ -161,6 +161,7 @@
 #[macro_use]
 mod values;
 
+pub mod adhesion;
 pub mod analytic;
 mod ascending;
 mod axis;

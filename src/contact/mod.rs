@@ -52,4 +52,5 @@ pub use run::follow::Run;
 pub use run::progress::{ErrorBudget, Stepping};
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
+pub use step::attraction::PassReport;
 pub use stepper::ViscoelasticContact;

@@ -38,7 +38,7 @@ macro_rules! fmt_fields {
 }
 
 fmt_fields! {
-    Kernel Load Map Material Output Ranks States Table Text;
+    Adhesion Kernel Load Map Material Output Ranks States Table Text;
     BeyondFullContact { time approach greatest }
     BeyondMaterial { time age known_until }
     BeyondReach { time reach }

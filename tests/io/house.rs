@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md describes them.
-const ORDER: [&str; 32] = [
+const ORDER: [&str; 33] = [
     "values",
     "axis",
     "extent",
@@ -27,6 +27,7 @@ const ORDER: [&str; 32] = [
     "kernel",
     "load",
     "rheology",
+    "adhesion",
     "hereditary",
     "solver",
     "analytic",

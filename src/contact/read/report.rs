@@ -157,11 +157,14 @@ bitflags! {
         /// times the displacement due to the pressure, as where little pressure is left on bodies that were pressed much
         /// harder before: the error of pressure and force exceeds the residual.
         const ROUNDING = 1 << 8;
+        /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
+        /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
+        const COARSE_ZONE = 1 << 9;
     }
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 9] = [
+const MESSAGES: [(Warnings, &str); 10] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -171,6 +174,7 @@ const MESSAGES: [(Warnings, &str); 9] = [
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
     (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain"),
+    (Warnings::COARSE_ZONE, "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range"),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.
