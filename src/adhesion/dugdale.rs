@@ -2,7 +2,8 @@ use crate::adhesion::{Attraction, Scales};
 use crate::error::{Result, within};
 
 /// The constant attraction of Dugdale and Maugis, s = w/ρ up to the gap ρ, with an end of stated width: over the gaps ρ (1 ± b/2) it falls
-/// linearly to zero. A sharp end would make cells at it switch back and forth for ever.
+/// linearly to zero. At a sharp end single cells would jump, each at a load of its own, and pull harder than the law: the end of
+/// b E* ρ²/w must be as long as 4 cells or more.
 ///
 /// ```
 /// use viscocontact::adhesion::{Attraction, Dugdale};
@@ -19,10 +20,10 @@ pub struct Dugdale {
 }
 
 /// Width of the end over the range, unless another is given.
-const WIDTH: f64 = 0.25;
+const WIDTH: f64 = 0.5;
 
 impl Dugdale {
-    /// A law of the `work` of separation w \[J/m²\] and the `range` ρ \[m\], with an end of width b = 1/4 of the range.
+    /// A law of the `work` of separation w \[J/m²\] and the `range` ρ \[m\], with an end of width b = 1/2 of the range.
     ///
     /// # Errors
     /// If one of them is not finite and positive, or w/ρ is not.
@@ -30,7 +31,7 @@ impl Dugdale {
         Ok(Dugdale { scales: Scales::new(work, range)?, width: WIDTH })
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\], with an end of width b = 1/4 of the range.
+    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\], with an end of width b = 1/2 of the range.
     ///
     /// # Errors
     /// As [`Dugdale::new`].

@@ -69,9 +69,9 @@ fn a_wrong_law_is_found() {
     assert_eq!(violation.law, "the energy is the integral of the traction");
     assert!(violation.to_string().contains("at a gap of"), "{violation}");
     assert_eq!(broken(|h| (-h).exp() / 1.1, |h| ((-h).exp() + 0.1) / 1.1).law, "the energy vanishes far away");
-    let growing = broken(|h| (-h).exp() + if h > 2.0 { 1e-3 } else { 0.0 }, exponential);
+    let growing = broken(|h| (-h).exp() + if h > 2.0 { 0.1 } else { 0.0 }, exponential);
     assert_eq!(growing.law, "the traction does not grow with the gap");
-    assert_eq!(broken(|h| (1.0 - h) * (-h).exp(), |h| h * (-h).exp() + 1e-9).law, "the traction is not negative");
+    assert_eq!(broken(|h| 1.0 - h, |h| 0.5 * (1.0 - h).powi(2)).law, "the traction is not negative");
     assert_eq!(broken(|_| 0.0, exponential).quantity, "range");
 }
 
@@ -93,8 +93,11 @@ fn scales_out_of_range_are_refused() {
 #[test]
 fn random_attractions_obey_every_law() {
     use proptest::prelude::*;
-    let config =
-        ProptestConfig { failure_persistence: None, rng_seed: proptest::test_runner::RngSeed::Fixed(38), ..ProptestConfig::with_cases(60) };
+    let config = ProptestConfig {
+        failure_persistence: None,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(38),
+        ..ProptestConfig::with_cases(60)
+    };
     proptest!(config, |(law in viscocontact::laws::strategies::attractions(0.1, 1.0e-8))| {
         laws::all(&*law).map_err(|violation| TestCaseError::fail(format!("{law:?}: {violation}")))?;
     });

@@ -32,7 +32,7 @@ use crate::solver::{Bands, Extension};
 /// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
-/// | attraction between surfaces | 104 |
+/// | attraction between surfaces | 168 |
 ///
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
@@ -192,7 +192,8 @@ mod tests {
             let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
             let kernel = InfluenceKernel::half_space(&grid).unwrap();
             let all = cells[0] * cells[1];
-            let footprint = Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history, attracts: false };
+            let footprint =
+                Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history, attracts: false };
             let refused = footprint.check(&Region::whole(&grid, [false; 2]), 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
             // a small part of them may be, in the memory of gap and pressure

@@ -174,7 +174,10 @@ const MESSAGES: [(Warnings, &str); 10] = [
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
     (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain"),
-    (Warnings::COARSE_ZONE, "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range"),
+    (
+        Warnings::COARSE_ZONE,
+        "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
+    ),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.

@@ -132,7 +132,8 @@ impl State {
     /// Bodies without load, where they just touch, by the time rule of a history.
     pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
         let cells = region.len();
-        State::layout(indenter, region.clone(), history, attracts).map(&region, &mut |field| vec![0.0; cells * field.per_cell])
+        State::layout(indenter, region.clone(), history, attracts)
+            .map(&region, &mut |field| vec![0.0; cells * field.per_cell])
     }
 
     /// How many values the state has for each cell.

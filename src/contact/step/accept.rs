@@ -85,9 +85,10 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = scene.settings.time_rule == TimeRule::Rectangle
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
-    let coarse = scene.attraction.as_deref().is_some_and(|law| {
-        cells_in_zone(law, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE
-    });
+    let coarse = scene
+        .attraction
+        .as_deref()
+        .is_some_and(|law| cells_in_zone(law, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE);
     let reasons = [
         (Warnings::COARSE_ZONE, coarse),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),

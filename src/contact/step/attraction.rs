@@ -20,7 +20,7 @@ use crate::error::{AdhesionError, Error, Result};
 use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::for_each_band;
-use crate::solver::{Counts, Freedom, Outcome, Stop};
+use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Stop};
 
 /// Greatest number of passes of a step.
 const MAX_PASSES: usize = 500;
@@ -28,13 +28,14 @@ const MAX_PASSES: usize = 500;
 const CHANGE: f64 = 100.0;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.01;
-const LOOSEST: f64 = 1e-3;
+const LOOSEST: f64 = 1e-5;
 /// Passes that are extrapolated from.
 const KEPT: usize = 4;
 /// Share of the square of a change, independent of the other changes, that counts as zero.
 const DEPENDENT: f64 = 1e-10;
-/// An energy falls that grows by less than this part of the energy of the traction: rounding.
-const ROUNDING: f64 = 1e-11;
+/// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
+/// penetrate by so much.
+const UNSURE: f64 = PENETRATION_SLACK;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
 const GREATEST_CHANGE: f64 = 0.5;
 
@@ -60,7 +61,7 @@ pub struct PassReport {
     pub passes: usize,
     /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up.
     pub rejected: usize,
-    /// The greatest rise of the energy from pass to pass, over the sum of its parts: rounding.
+    /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
     pub rise: f64,
 }
 
@@ -68,7 +69,7 @@ pub struct PassReport {
 struct Found {
     /// Energy over the area of a cell.
     energy: f64,
-    /// Σ ∫ₕ^∞ s dh + ½ Σ c |p K p|, the scale of its rounding.
+    /// The sum of its parts, and of c z K z.
     scale: f64,
     /// The greatest change of s over the greatest traction.
     change: f64,
@@ -147,7 +148,9 @@ impl AttractedStep<'_> {
         (own.known, own.report) = (0, PassReport::default());
         let mut counts = self.guess(own, window, trial, greatest);
         let (mut least, mut inner, mut plain, mut convolved) = (f64::INFINITY, LOOSEST, true, true);
-        let mut change = f64::INFINITY;
+        let (mut change, mut exactness) = (f64::INFINITY, 0.0);
+        // plain passes that are to follow, and after the next extrapolation that gains nothing
+        let (mut wait, mut penalty) = (0_usize, 1);
         while own.report.passes < MAX_PASSES {
             own.report.passes += 1;
             if !std::mem::replace(&mut convolved, false) {
@@ -174,18 +177,23 @@ impl AttractedStep<'_> {
             }
             own.kept.rotate_right(1);
             let found = if outcome == Outcome::Converged { Some(self.find(wanted, own, trial)) } else { None };
-            let kept = found.filter(|found| plain || found.energy <= least + ROUNDING * found.scale);
+            let unsure = UNSURE * tolerance.max(std::mem::replace(&mut exactness, tolerance));
+            let kept = found.filter(|found| plain || found.energy <= least + unsure * found.scale);
             let Some(found) = kept else {
                 // the plain pass from the last state that was kept
                 own.kept.rotate_left(1);
                 own.known = 1;
                 own.report.rejected += 1;
                 trial.solution.attraction.copy_from_slice(&own.kept[0][1]);
-                plain = true;
+                (plain, wait, penalty) = (true, penalty, 2 * penalty);
                 continue;
             };
             if least.is_finite() {
-                own.report.rise = own.report.rise.max((found.energy - least) / found.scale);
+                own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
+            }
+            if !plain && found.change >= change {
+                // it gained nothing: the more often, the more plain passes follow
+                (wait, penalty) = (penalty, 2 * penalty);
             }
             (least, change) = (found.energy, found.change);
             own.known = (own.known + 1).min(KEPT);
@@ -203,7 +211,8 @@ impl AttractedStep<'_> {
                 own.known -= 1;
                 continue;
             }
-            plain = own.known == 1;
+            plain = own.known == 1 || wait > 0;
+            wait = wait.saturating_sub(1);
             if plain {
                 trial.solution.attraction.copy_from_slice(&own.kept[0][1]);
             } else {
@@ -223,6 +232,9 @@ impl AttractedStep<'_> {
         if changes.fold(0.0, f64::max) > GREATEST_CHANGE * greatest {
             reach = 0.0;
         }
+        if state.is_undisturbed() {
+            return self.first_guess(own, window, trial);
+        }
         trial.reach = reach;
         fill_guess(state, window, trial, |now, before| now + reach * (now - before));
         let afresh = state.extrapolation.refresh_is_due();
@@ -236,6 +248,24 @@ impl AttractedStep<'_> {
             // the potential of a state is K (z − s)
             solution.potential.iter_mut().zip(&own.image).for_each(|(v, image)| *v += image);
         }
+        solution.counts
+    }
+
+    /// Writes the guess of a first step: no pressure, and s of undeformed bodies, which just touch under a force.
+    fn first_guess(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Counts {
+        let lowest = self.state.region.rows().least(own.open.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
+        let motion = match self.step.loads[0] {
+            Load::Approach { .. } => 0.0,
+            _ => lowest,
+        };
+        let solution = &mut trial.solution;
+        solution.release();
+        for (s, &open) in solution.attraction.iter_mut().zip(&own.open) {
+            *s = if open.is_finite() { self.law.traction((open - motion).max(0.0)) } else { 0.0 };
+        }
+        let (kernel, work) = window.kernel_and_work();
+        kernel.apply(&solution.attraction, &mut own.image, work);
+        solution.counts.convolutions += 1;
         solution.counts
     }
 
@@ -259,7 +289,8 @@ impl AttractedStep<'_> {
                 trial.free[0].total = total;
                 if wanted.tilts() && total > 0.0 {
                     let moments = [moment1, moment2];
-                    trial.free[0].point = [0, 1].map(|axis| (wanted.total * wanted.point[axis] + moments[axis]) / total);
+                    trial.free[0].point =
+                        [0, 1].map(|axis| (wanted.total * wanted.point[axis] + moments[axis]) / total);
                 }
             }
             // the search for the force of the wall begins at its present pressure
@@ -283,7 +314,9 @@ impl AttractedStep<'_> {
         let solve = |trial: &mut Trial| window.solve(&self.step.indenter, self.given, stop, trial);
         // a spring holds the wall against load and attraction: as if its end were nearer
         let loads = match self.step.loads[0] {
-            Load::Spring { stiffness, drive, tilt } => [Load::Spring { stiffness, drive: drive + pulled / stiffness, tilt }],
+            Load::Spring { stiffness, drive, tilt } => {
+                [Load::Spring { stiffness, drive: drive + pulled / stiffness, tilt }]
+            }
             load => [load],
         };
         let indenter = std::sync::Arc::clone(&self.step.indenter);
@@ -307,11 +340,12 @@ impl AttractedStep<'_> {
             }
         });
         let (s, g, image) = (&*s, &*g, &own.image);
-        let [elastic, attracted, wall] = rows.sum_terms(|k| {
+        let [elastic, attracted, wall, pressed] = rows.sum_terms(|k| {
             let (z, h) = (solution.pressure[k], height(k));
             let stored = 0.5 * c * (z - s[k]) * (solution.potential[k] - image[k]);
             let open = if z > 0.0 { 0.0 } else { h.max(0.0) };
-            h.is_finite().then(|| [stored, law.energy(open), if z > 0.0 { z * h } else { 0.0 }])
+            let wall = if z > 0.0 { z * h } else { 0.0 };
+            h.is_finite().then(|| [stored, law.energy(open), wall, c * z * solution.potential[k]])
         });
         let area = self.scene.grid.cell_area() * state.region.images() as f64;
         let position = modes.physical(motion);
@@ -325,7 +359,7 @@ impl AttractedStep<'_> {
         };
         let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
         let change = changes.fold(0.0, f64::max) / law.traction(0.0);
-        let scale = elastic.abs() + attracted + of_load.abs() + f64::MIN_POSITIVE;
+        let scale = elastic.abs() + attracted + pressed.abs() + of_load.abs() + f64::MIN_POSITIVE;
         Found { energy: elastic - attracted - wall + of_load, scale, change }
     }
 }
