@@ -269,5 +269,5 @@ pub(super) fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
     let reaches = datum >= grid.lengths()[axis];
     within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;
     within("datum of a line load", datum, datum <= FARTHEST_DATUM, "at most 1e120 m")?;
-    Ok(Strip::new(grid.spacing()[axis], datum))
+    Ok(Strip { side: grid.spacing()[axis], datum })
 }

@@ -61,11 +61,6 @@ impl InfluenceKernel {
         }
     }
 
-    /// Whether the body is a half-space, whose displacement is positive everywhere around a load.
-    pub(crate) fn is_half_space(&self) -> bool {
-        self.half_space_below() == Some(HalfSpace::LoadedOnGrid)
-    }
-
     /// The layer, if the body is one: its Poisson's ratio must equal the material's.
     pub(crate) fn layer_of(&self) -> Option<&Layer> {
         if let Body::Layer(layer) = &self.body { Some(layer) } else { None }
@@ -148,7 +143,7 @@ impl InfluenceKernel {
     }
 
     /// The greatest compliance of a wave \[m\], if the mean has none.
-    pub(super) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
+    pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         *self.facts.softest.get_or_init(|| match self.body {
             _ if self.periodic != [true; 2] || (self.response)([0, 0]) != 0.0 => None,
             // the longest wave: 2/q = L/π
@@ -157,9 +152,14 @@ impl InfluenceKernel {
         })
     }
 
+    /// Whether the mean displacement is fixed: then the approach cannot exceed the approach of full contact.
+    pub(crate) fn mean_is_held(&self) -> bool {
+        self.softest_wave_if_mean_is_held().is_some()
+    }
+
     /// Whether a pressure raises the surface somewhere, as beside the load on a layer that bulges, or to keep the mean.
     /// Costs a line of coefficients, more where each is a sum over waves: computed at the first call.
-    pub(super) fn raises(&self) -> bool {
+    pub(crate) fn raises(&self) -> bool {
         let [n1, n2] = self.grid.cells();
         let negative = |at: [usize; 2]| self.coefficient_at(at) < 0.0;
         *self.facts.raises.get_or_init(|| match (self.body, self.periodic) {

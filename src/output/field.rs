@@ -23,25 +23,21 @@ pub enum Field {
     Gap,
 }
 
+/// Name in files and SI unit of each field.
+const NAMES_AND_UNITS: [(&str, &str); 3] = [("pressure", "Pa"), ("displacement", "m"), ("gap", "m")];
+
 impl Field {
     /// All fields.
     pub const ALL: [Field; 3] = [Field::Pressure, Field::Displacement, Field::Gap];
 
     /// Name in files.
     pub fn name(self) -> &'static str {
-        match self {
-            Field::Pressure => "pressure",
-            Field::Displacement => "displacement",
-            Field::Gap => "gap",
-        }
+        NAMES_AND_UNITS[self as usize].0
     }
 
     /// SI unit.
     pub fn unit(self) -> &'static str {
-        match self {
-            Field::Pressure => "Pa",
-            Field::Displacement | Field::Gap => "m",
-        }
+        NAMES_AND_UNITS[self as usize].1
     }
 
     /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the values of

@@ -12,8 +12,7 @@ use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
 use crate::plot::picture::check_extension;
-use crate::plot::quantity::color_scale;
-use crate::plot::{Map, Picture};
+use crate::plot::{Map, Picture, color_scale};
 
 /// A run as an animated GIF that repeats endlessly.
 ///

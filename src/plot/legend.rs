@@ -1,10 +1,7 @@
 //! The legend of a chart, and where it hides least.
 
-use crate::plot::axis::TICK_SIZE;
-use crate::plot::canvas::{Anchor, Canvas};
 use crate::plot::chart::Curve;
-use crate::plot::frame::Frame;
-use crate::plot::{Color, Legend, font};
+use crate::plot::{Anchor, Canvas, Color, Frame, Legend, TICK_SIZE, font};
 
 /// Height of an entry, length of its line, and the space around entries in pixels.
 const ENTRY: f64 = 34.0;

@@ -9,7 +9,8 @@ use base64::prelude::BASE64_STANDARD;
 
 use crate::error::{Error, Result, count_within, least_length};
 use crate::file::replace;
-use crate::plot::canvas::{Canvas, Element, png_file};
+use crate::plot::Canvas;
+use crate::plot::canvas::{Element, png_file};
 
 /// Greatest width of a picture in pixels.
 const MAX_SIDE: usize = 16_384;

@@ -29,10 +29,12 @@ pub(super) struct Saved<'a> {
 impl<'a> Saved<'a> {
     pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
         let (state, grid) = (&contact.computation.state, &contact.scene.grid);
+        let folded = state.region.folded();
+        let all = if state.region.is_shared() { Region::whole(grid, folded) } else { state.region.clone() };
         Saved {
             scene: Fingerprint::of(&contact.scene),
-            state: state.map(&state.region.of_all_ranks(), &mut |_| Vec::new()),
-            gap_folded: state.indenter.keeps_folded(state.region.folded(), grid),
+            state: state.map(&all, &mut |_| Vec::new()),
+            gap_folded: state.indenter.keeps_folded(folded, grid),
             progress: progress.map(Cow::Borrowed),
         }
     }

@@ -47,7 +47,7 @@ impl Built {
     /// Of a gap on the whole grid, or on a region of local rows: a call of all ranks.
     pub(crate) fn new(gap: &Gap, region: &Region) -> Built {
         let (mut known, mut open, mut touchable) = ([0.0; MOMENTS], [0.0; MOMENTS], 0);
-        let [_, n2] = region.whole_cells();
+        let [_, n2] = region.whole.cells();
         for (k, &h) in gap.above.iter().enumerate() {
             for [i, j] in region.images_of(k) {
                 let [own, infinite] = if h.is_finite() { [h, 0.0] } else { [0.0, 1.0] };

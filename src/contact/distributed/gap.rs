@@ -5,10 +5,7 @@ use std::hash::{DefaultHasher, Hasher};
 use std::ops::Range;
 
 use crate::Grid;
-use crate::contact::indenter::Indenter;
-use crate::contact::indenter::hull::Hull;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
+use crate::contact::{Hull, Indenter, Region, ViscoelasticContact};
 use crate::error::{Error, RanksError, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;

@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use crate::Axis;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{State, ViscoelasticContact};
 use crate::error::{RanksError, Result, count_within, exact_length};
 #[cfg(any(feature = "npy", feature = "vtk"))]
 use crate::parallel::Rows;

@@ -4,12 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::contact::read::report::BodyState;
-use crate::contact::scene::Scene;
-use crate::contact::settings::Settings;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
+use crate::contact::{BodyState, Region, Scene, Settings, State, ViscoelasticContact};
 use crate::error::{Result, exact_length};
 use crate::extent::Extent;
 use crate::kernel::InfluenceKernel;
@@ -123,8 +118,8 @@ impl ViscoelasticContact {
 
     /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper).
     pub fn force(&self) -> f64 {
-        let state = &self.computation.state;
-        state.force_of(&state.current)
+        let State { region, current, .. } = &self.computation.state;
+        current.sum * region.grid().cell_area() * region.images() as f64
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\], Eq. 5 of the [paper](crate::paper).

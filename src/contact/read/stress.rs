@@ -1,6 +1,6 @@
 //! The stress in bodies whose Poisson's ratio changes as they creep.
 
-use crate::contact::settings::Frame;
+use crate::contact::Frame;
 use crate::error::{Error, MaterialError, Result, within};
 use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;

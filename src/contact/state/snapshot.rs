@@ -3,10 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::contact::run::follow::Run;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Run, Scene, State, ViscoelasticContact};
 use crate::error::{Error, Result, within};
 use crate::load::{Load, Tilt};
 

@@ -11,7 +11,7 @@ use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::tasks::{ColumnsInPlace, RowsForward};
 use super::{AREA, SpectralOperator, TransformWorkspace};
-use crate::kernel::layout::Layout;
+use crate::kernel::Layout;
 use crate::parallel::{Rows, TILE, for_each_share, part, rows_in_a_tile};
 
 /// The tiles of rows and the panels of columns that each rank has.
