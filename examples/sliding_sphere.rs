@@ -153,7 +153,6 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     let mut map = Map::pressure(&contact)?;
     map.title = format!("Pressure of a sphere that slides to the right, friction {friction:.3}");
     map.save(output.join("pressure.png"))?;
-    #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());

@@ -1,6 +1,5 @@
 //! The fields of a contact that can be written.
 
-#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
 use crate::{Result, ViscoelasticContact};
 
 /// A field that can be written, with one value per cell.
@@ -42,7 +41,6 @@ impl Field {
 
     /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the values of
     /// a field that the contact does not store.
-    #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {
             Field::Pressure => Ok(contact.pressure()),

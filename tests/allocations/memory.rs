@@ -1,6 +1,6 @@
 //! The memory that a builder predicts, against the bytes that are allocated.
 
-use crate::common::bodies::elastic;
+use crate::common::elastic;
 use std::alloc::System;
 use std::sync::Arc;
 

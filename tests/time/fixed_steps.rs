@@ -1,6 +1,6 @@
 //! Whether the error estimated for steps of given length is the one they make.
 
-use crate::common::spheres::sphere_on;
+use crate::common::sphere_on;
 use viscocontact::prelude::*;
 
 /// Approach, or force where the approach is given, at every multiple of `dt` by steps of that over `parts`, and the greatest
