@@ -3,12 +3,8 @@
 use std::sync::Arc;
 
 use super::definiteness::least_eigenvalue;
-use super::influence::{Body, indices, magnitude};
-use super::layer::Remainder;
-use super::layout::{Ends, Layout};
-use super::line_load::{Strip, wave_number};
-use super::love::Love;
-use super::{InfluenceKernel, MEMORY_WHILE_MADE};
+use super::influence::indices;
+use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Remainder, Strip, magnitude, wave_number};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};

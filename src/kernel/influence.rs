@@ -4,12 +4,10 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
-use super::InfluenceKernel;
 use super::even_spectrum::{Symbol, even_spectrum};
-use super::layer::Layer;
-use super::layout::{Ends, Layout, is_fast, waves_at};
-use super::line_load::{uniform, wave_number};
-use super::transform::Shares;
+use super::layout::{is_fast, waves_at};
+use super::line_load::uniform;
+use super::{Ends, InfluenceKernel, Layer, Layout, Shares, wave_number};
 use crate::Grid;
 
 /// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance in cells
@@ -211,14 +209,7 @@ impl fmt::Display for InfluenceKernel {
     }
 }
 
-impl fmt::Debug for InfluenceKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("InfluenceKernel")
-            .field("grid", &self.grid)
-            .field("body", &self.to_string())
-            .finish_non_exhaustive()
-    }
-}
+debug_by!(self: InfluenceKernel => grid: self.grid, body: self.to_string());
 
 /// |q| \[1/m\] of the wave numbers of periods \[cells\].
 pub(super) fn magnitude(grid: &Grid, period: [usize; 2]) -> impl Fn([usize; 2]) -> f64 + 'static {

@@ -1,11 +1,8 @@
 //! Constructors of the kernels of layers.
 
-use super::InfluenceKernel;
 use super::constructors::{check_line, representable, strip};
-use super::influence::{Body, longest_side, magnitude};
-use super::layer::{Layer, Remainder};
-use super::line_load::{Strip, wave_number};
-use super::love::Love;
+use super::influence::longest_side;
+use super::{Body, InfluenceKernel, Layer, Love, Remainder, Strip, magnitude, wave_number};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};

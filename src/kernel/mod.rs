@@ -39,8 +39,13 @@ use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
 use crate::parallel::Rows;
+use influence::magnitude;
 use influence::{Body, Response};
+use layer::Remainder;
+use layout::Ends;
 use layout::Layout;
+use line_load::{Strip, wave_number};
+use love::Love;
 use transform::Shares;
 
 /// Memory that making an operator takes, relative to the memory of the operator: its spectrum, and the transform that yields

@@ -1,6 +1,5 @@
 //! Pictures in memory, and as PNG and SVG files.
 
-use std::fmt;
 use std::io;
 use std::path::Path;
 
@@ -119,11 +118,7 @@ pub(super) fn check_extension(path: &Path, allowed: &'static [&'static str]) -> 
     allowed.iter().position(|allowed| *allowed == extension).ok_or_else(unknown)
 }
 
-impl fmt::Debug for Picture {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Picture").field("size", &self.size).finish_non_exhaustive()
-    }
-}
+debug_by!(self: Picture => size: self.size);
 
 #[cfg(test)]
 mod tests {

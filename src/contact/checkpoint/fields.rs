@@ -4,7 +4,7 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use super::format::{Input, Output};
+use super::{Input, Output};
 use crate::contact::{Region, State};
 use crate::error::CheckpointError;
 use crate::hereditary::{Role, interleaved, runs};

@@ -1,6 +1,5 @@
 //! Read-only accessors, and the fields of a contact on the whole grid, or on the local rows of a rank.
 
-use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -178,18 +177,14 @@ impl ViscoelasticContact {
     }
 }
 
-impl fmt::Debug for ViscoelasticContact {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let state = &self.computation.state;
-        f.debug_struct("ViscoelasticContact")
-            .field("grid", &self.scene.grid)
-            .field("settings", &self.scene.settings)
-            .field("time", &state.clock.time)
-            .field("loads", &state.loads)
-            .field("motions", &state.current.motions)
-            .field("contact_cells", &state.current.contact_cells)
-            .finish_non_exhaustive()
-    }
+debug_by! {
+    self: ViscoelasticContact =>
+    grid: self.scene.grid,
+    settings: self.scene.settings,
+    time: self.computation.state.clock.time,
+    loads: self.computation.state.loads,
+    motions: self.computation.state.current.motions,
+    contact_cells: self.computation.state.current.contact_cells
 }
 
 /// Pressure and displacement on the whole grid, where only a region is computed; on the local rows, where ranks share

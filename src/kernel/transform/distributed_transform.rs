@@ -9,8 +9,7 @@ use std::ops::Range;
 use num_complex::Complex64;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
-use super::tasks::{ColumnsInPlace, RowsForward};
-use super::{AREA, SpectralOperator, TransformWorkspace};
+use super::{AREA, ColumnsInPlace, RowsForward, SpectralOperator, TransformWorkspace};
 use crate::kernel::Layout;
 use crate::parallel::{Rows, TILE, for_each_share, part, rows_in_a_tile};
 

@@ -1,7 +1,5 @@
 //! Buffers of an operator: one set for each thread, aligned to cache lines.
 
-use std::fmt;
-
 use num_complex::Complex64;
 
 use super::column::ColumnWorkspace;
@@ -99,8 +97,4 @@ impl TransformWorkspace {
     }
 }
 
-impl fmt::Debug for TransformWorkspace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
-    }
-}
+debug_by!(self: TransformWorkspace => layout: self.layout);

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::basis::{FittedSeries, MaterialFunction, Sample};
+use super::{FittedSeries, MaterialFunction, Sample};
 
 /// One given value and the value of the fitted series.
 #[derive(Debug, Clone, Copy, PartialEq)]
