@@ -79,13 +79,12 @@ impl Shares {
     /// The numbers that go to the other ranks: where they lie rank by rank, tile by tile, and where in local rows of tiles.
     fn pieces(&self, across: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         let (rows, mut packed) = (self.down[self.rows.rank()].len(), 0);
-        self.across.iter().flat_map(move |panels| (0..rows).map(move |row| (row, panels.clone()))).map(
-            move |(row, panels)| {
-                let (from, length) = ((row * across + panels.start) * AREA, panels.len() * AREA);
-                packed += length;
-                (packed - length..packed, from..from + length)
-            },
-        )
+        let all = self.across.iter().flat_map(move |panels| (0..rows).map(move |row| (row, panels)));
+        all.map(move |(row, panels)| {
+            let (from, length) = ((row * across + panels.start) * AREA, panels.len() * AREA);
+            packed += length;
+            (packed - length..packed, from..from + length)
+        })
     }
 
     /// Most complex values that this rank has at a time, of local rows or of local columns.
