@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, StatesError, non_negative};
+use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
 use crate::load::Load;
@@ -104,7 +104,11 @@ impl StatesContact {
         };
         let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
         if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::BeyondMaterial { time, age: reduced, known_until: self.scene.known_until });
+            return Err(Error::Step(StepError::BeyondMaterial {
+                time,
+                age: reduced,
+                known_until: self.scene.known_until,
+            }));
         }
         let demand = self.demand(load)?;
         self.levels.step(&self.scene.states, (time, length), self.scene.interpolant, demand)?;
