@@ -293,7 +293,8 @@ fn a_program_that_returns_an_error_says_what_to_do() {
 #[test]
 fn an_error_prints_its_fields_when_asked() {
     let edge = Error::Step(StepError::ContactAtEdge { time: 0.5, cells: 12 });
-    assert_eq!(format!("{edge:#?}"), "ContactAtEdge {\n    time: 0.5,\n    cells: 12,\n}");
+    let fields = "ContactAtEdge {\n        time: 0.5,\n        cells: 12,\n    }";
+    assert_eq!(format!("{edge:#?}"), format!("Step(\n    {fields},\n)"));
     assert_eq!(format!("{:#?}", Error::OtherContact), "OtherContact");
     let load = Error::from(LoadError::InvalidBreakpoint { after: 1.0, breakpoint: 0.5 });
     let fields = "InvalidBreakpoint {\n        after: 1.0,\n        breakpoint: 0.5,\n    }";
