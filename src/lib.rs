@@ -213,7 +213,7 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, KernelError, OutputError, Result, TextError, Trend};
+pub use error::{Convergence, Error, FileError, KernelError, OutputError, Result, TextError, Trend};
 pub use grid::Grid;
 pub use input::{Delimiter, TextFormat};
 pub use kernel::{InfluenceKernel, Layer, Workspace};
@@ -232,8 +232,8 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepReport, Stepping, TimeRule,
-        ViscoelasticContact, Warnings,
+        BodyState, Builder, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepError, StepReport,
+        Stepping, TimeRule, ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,

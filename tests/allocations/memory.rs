@@ -149,7 +149,7 @@ pub fn builders_announce_what_is_counted() {
         let memory: Memory = match builder.memory() {
             Ok(memory) => memory,
             Err(error) => {
-                assert!(scene.fitted || matches!(error, Error::NoElasticResponse { .. }), "{error}");
+                assert!(scene.fitted || matches!(error, Error::Step(StepError::NoElasticResponse { .. })), "{error}");
                 assert_eq!(builder.build().unwrap_err().to_string(), error.to_string());
                 continue;
             }

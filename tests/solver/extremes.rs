@@ -256,7 +256,7 @@ fn contact_grows_from_one_cell_to_all() {
     );
     // and what cannot be represented is said
     let error = contact.step(0.0, Load::force(1e-323)).and_then(|_| contact.step(0.0, Load::force(1e308))).unwrap_err();
-    assert!(matches!(error, Error::Overflow { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::Overflow { .. })), "{error}");
 }
 
 /// Loads and steps at the ends of the range: whatever a step accepts is a number.
@@ -309,7 +309,7 @@ fn moments_beyond_numbers_are_refused() {
         .build()
         .unwrap();
     let error = contact.step(0.0, Load::force(1.0e220)).unwrap_err();
-    assert!(matches!(error, Error::Overflow { what: "the moment of the force", .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::Overflow { what: "the moment of the force", .. })), "{error}");
     contact.step(0.0, Load::force(1.0e215)).unwrap();
     assert_abs_diff_eq!(contact.moment()[0], 0.3e305, epsilon = 0.1 * 0.3e305);
 }

@@ -166,7 +166,7 @@ fn tolerances_and_impossible_loads_are_refused() {
             Err(error) => break error,
         }
     };
-    assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
 
     // nor where the series of the body resolves longer times only: an end, not a step tried for ever
     let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
@@ -178,7 +178,7 @@ fn tolerances_and_impossible_loads_are_refused() {
             Err(error) => break error,
         }
     };
-    assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
 }
 
 /// Area by p² extrapolated to the edge, against Hertz, wherever the contact lies on the mesh.
@@ -249,7 +249,9 @@ fn steps_of_the_last_digit_come_to_an_end() {
             };
             match end {
                 Ok(_) => {}
-                Err(Error::StepTooShort { time, .. }) if (time / at - 1.0).abs() < 1e-9 => stopped += 1,
+                Err(Error::Step(StepError::StepTooShort { time, .. })) if (time / at - 1.0).abs() < 1e-9 => {
+                    stopped += 1
+                }
                 Err(error) => panic!("{jump} at {at} s: {error}"),
             }
         }
