@@ -6,8 +6,8 @@ use std::io;
 
 use crate::common::{maxwell, sphere_on};
 use viscocontact::Error;
-use viscocontact::TextFormat;
 use viscocontact::rheology::{Experiment, Units};
+use viscocontact::{FileError, TextFormat};
 
 /// Names that the prelude leaves to others: an ambiguous one would not compile.
 mod names {
@@ -203,6 +203,6 @@ mod outputs {
         assert_eq!(fs::read_to_string(archives.join("notes.txt")).unwrap(), "kept");
 
         let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
-        assert!(matches!(error, Error::NotAFile { .. }), "{error}");
+        assert!(matches!(error, Error::File(FileError::NotAFile { .. })), "{error}");
     }
 }

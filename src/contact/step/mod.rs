@@ -27,7 +27,7 @@ use std::sync::Arc;
 
 use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::{Computation, Equilibrium, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact};
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
@@ -224,7 +224,7 @@ fn compute(
         let grown = match at.solve(scene, step) {
             Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
             // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::LoadOutsideHull { .. }) if at.state.history.far_source().is_some() => {
+            Err(Error::Step(StepError::LoadOutsideHull { .. })) if at.state.history.far_source().is_some() => {
                 Some(Region::whole(&scene.grid, at.state.region.folded()))
             }
             Err(error) => return Err(error),
