@@ -213,8 +213,8 @@ impl History {
                     return Ok((own.compliance(), convolutions));
                 }
                 // the sign of u is no criterion where pressures raise the surface
-                displacement
-                    .predict_non_negative(own, inputs.least_side, kernel.rows(), || !kernel.raises() && !inputs.pulls);
+                let sign_counts = !kernel.whole.raises() && !inputs.pulls;
+                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || sign_counts);
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
+use viscocontact::contact::StepError;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -133,7 +134,7 @@ fn random_scenes() {
                     break;
                 }
                 // full contact of a periodic body has no greater approach
-                Err(Error::BeyondFullContact { .. }) if periodic => break,
+                Err(Error::Step(StepError::BeyondFullContact { .. })) if periodic => break,
                 Err(error) => panic!("{name}, step {k}: {error}"),
             }
         }

@@ -16,7 +16,7 @@ use crate::contact::step::initial_guess::{begin, fill_guess};
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
 use crate::contact::window::window::Window;
-use crate::error::{AdhesionError, Error, Result};
+use crate::error::{AdhesionError, Result, StepError};
 use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::for_each_band;
@@ -129,7 +129,7 @@ impl AttractedStep<'_> {
         let time = self.step.interval.time;
         if self.given[0] == 0.0 {
             let what = "a jump of surfaces that attract each other (take a short step instead)";
-            return Err(Error::NoElasticResponse { time, what });
+            return Err(StepError::NoElasticResponse { time, what }.into());
         }
         begin(self.state, trial, self.step);
         let cells = trial.gap.len();
@@ -154,7 +154,7 @@ impl AttractedStep<'_> {
         while own.report.passes < MAX_PASSES {
             own.report.passes += 1;
             if !std::mem::replace(&mut convolved, false) {
-                let (kernel, work) = window.kernel_and_work();
+                let Window { kernel, work, .. } = &mut *window;
                 kernel.apply(&trial.solution.attraction, &mut own.image, work);
                 counts.convolutions += 1;
             }
@@ -241,7 +241,7 @@ impl AttractedStep<'_> {
         let solution = &mut trial.solution;
         let states = now.attraction.iter().zip(&before.attraction);
         solution.attraction.iter_mut().zip(states).for_each(|(s, (&now, &before))| *s = now + reach * (now - before));
-        let (kernel, work) = window.kernel_and_work();
+        let Window { kernel, work, .. } = &mut *window;
         kernel.apply(&solution.attraction, &mut own.image, work);
         solution.counts.convolutions += 1;
         if !afresh {
@@ -263,7 +263,7 @@ impl AttractedStep<'_> {
         for (s, &open) in solution.attraction.iter_mut().zip(&own.open) {
             *s = if open.is_finite() { self.law.traction((open - motion).max(0.0)) } else { 0.0 };
         }
-        let (kernel, work) = window.kernel_and_work();
+        let Window { kernel, work, .. } = &mut *window;
         kernel.apply(&solution.attraction, &mut own.image, work);
         solution.counts.convolutions += 1;
         solution.counts
