@@ -16,7 +16,7 @@ pub enum StepError {
     },
 
     /// A force acts outside the convex hull of the cells that the body may touch, so that no pressure balances it.
-    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would tip over; move it inside, or prescribe the tilt", rounded(.at[0], 4), rounded(.at[1], 4), time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load acts at ({}, {}) m, outside the convex hull of the cells that body {body} may touch: it would tip over; move it inside, or prescribe the tilt", rounded(.at[0], 4), rounded(.at[1], 4), time = rounded(*.time, TIME))]
     LoadOutsideHull {
         /// End of the step \[s\].
         time: f64,
@@ -59,7 +59,7 @@ pub enum StepError {
     /// series was fitted over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or extrapolate
     /// the table.
     #[error(
-        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
+        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table (CreepSeries::extrapolated)", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
     BeyondMaterial {
         /// End of the step \[s\].
         time: f64,

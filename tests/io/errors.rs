@@ -280,11 +280,12 @@ fn a_program_that_returns_an_error_says_what_to_do() {
         assert!(!ended.status.success() && ended.stdout.is_empty());
         String::from_utf8(ended.stderr).unwrap()
     };
+    let widths = "the grid is 4e-3 m × 4e-3 m, the load needs about 1.1e-2 m × 1.1e-2 m";
     let advice = "enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there";
-    let expected = format!("Error: at t = 0 s the contact touches the edge of the grid on 60 cells: {advice}\n");
+    let expected = format!("Error: at t = 0 s the contact touches the edge of the grid on 60 cells; {widths}: {advice}\n");
     assert_eq!(printed(&[]), expected);
     if cfg!(feature = "csv") {
-        let (path, cause) = ("no/such/folder/history.csv", "No such file or directory (os error 2)");
+        let (path, cause) = ("no/such/folder/history.csv", "the folder no/such/folder does not exist: create it first");
         assert_eq!(printed(&[path]), format!("Error: {path} cannot be written: {cause}\n"));
     }
 }
