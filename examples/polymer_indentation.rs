@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style, scientific};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -128,7 +128,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut chart = Chart::new(&title, "x1 [mm]", "pressure [MPa]", Legend::UpperRight);
     let profiles = &runs[0].profiles;
     for (k, (time, profile)) in profiles.iter().step_by(2).take(COLORS.len()).enumerate() {
-        chart.add(format!("{} s", scientific(*time, 0)), COLORS[k], Style::Line, profile.clone());
+        chart.add(format!("{time:.0e} s"), COLORS[k], Style::Line, profile.clone());
     }
     chart.save(args.output.join("profiles.png"))?;
     println!("tables and pictures are in {}", args.output.display());

@@ -237,7 +237,7 @@ pub mod prelude {
     #[cfg(feature = "csv")]
     pub use crate::output::CsvHistory;
     #[cfg(any(feature = "npy", feature = "vtk"))]
-    pub use crate::output::{Field, Metadata};
+    pub use crate::output::{Field, FrameSeries, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,

@@ -181,7 +181,7 @@ impl AxisymmetricContact {
         if c == 0.0 && dt == 0.0 {
             return Err(Error::Step(StepError::NoElasticResponse {
                 time,
-                what: "a jump of the foundation (ramp the load instead)",
+                what: "a jump of the foundation",
             }));
         }
         for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(self.displacement.trial()) {

@@ -121,7 +121,7 @@ impl Levels {
         if compliance == 0.0 {
             return Err(Error::Step(StepError::NoElasticResponse {
                 time,
-                what: "a jump of the load (ramp it instead)",
+                what: "a jump of the load",
             }));
         }
         if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {

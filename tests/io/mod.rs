@@ -13,6 +13,8 @@ mod invalid_loads;
 mod output;
 #[cfg(all(feature = "csv", feature = "npy", feature = "vtk"))]
 mod output_of_ranks;
+#[cfg(all(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot"))]
+mod mistakes;
 mod paper;
 #[cfg(feature = "plot")]
 mod plot;

@@ -5,6 +5,7 @@ use crate::axis::Axis;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, Solver};
 use crate::contact::state::State;
+use crate::contact::step::needed_width::needed_lengths;
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
@@ -145,7 +146,8 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
     if edge == Edge::Refuse {
         let cells = state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
         if cells > 0 {
-            return Err(Error::Step(StepError::ContactAtEdge { time, cells }));
+            let (lengths, needed) = (scene.grid.lengths(), needed_lengths(scene, state, trial, step));
+            return Err(Error::Step(StepError::ContactAtEdge { time, cells, lengths, needed }));
         }
     }
     Ok(sum_of_pressure)
