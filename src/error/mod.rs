@@ -159,7 +159,9 @@ pub enum Error {
 
     /// A call needs the grid in the other [`Frame`](crate::contact::Frame): fixed to the indenter for a step over the
     /// bodies, fixed to the bodies for a path or a direct sum.
-    #[error("{what} is not possible in the frame that Settings::frame chooses: choose the other Frame with Settings::with_frame")]
+    #[error(
+        "{what} is not possible in the frame that Settings::frame chooses: choose the other Frame with Settings::with_frame"
+    )]
     WrongFrame {
         /// The call.
         what: &'static str,

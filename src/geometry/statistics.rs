@@ -60,8 +60,11 @@ impl HeightMap {
         let rms_height = positive("rms height", if rms_height <= FLAT * mean.abs() { 0.0 } else { rms_height })?;
         // In units of the rms height, whose fourth power may underflow.
         let scaled = |power: i32| self.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
-        let [slope1, slope2, curvature] =
-            if self.is_periodic() && self.missing() == 0 { spectral_derivatives(self) } else { central_differences(self) };
+        let [slope1, slope2, curvature] = if self.is_periodic() && self.missing() == 0 {
+            spectral_derivatives(self)
+        } else {
+            central_differences(self)
+        };
         let rms_slopes = [finite("rms slope along x1", slope1.sqrt())?, finite("rms slope along x2", slope2.sqrt())?];
         Ok(SurfaceStatistics {
             mean,
@@ -260,11 +263,7 @@ mod tests {
         let mut holed = map.heights().to_vec();
         holed[100] = f64::NAN;
         let holed = HeightMap::new([32, 24], [1.0, 2.0], holed).unwrap().periodic();
-        assert_abs_diff_eq!(
-            holed.statistics().unwrap().rms_slopes[0],
-            seen.rms_slopes[0],
-            epsilon = 2e-2 * rms * q1
-        );
+        assert_abs_diff_eq!(holed.statistics().unwrap().rms_slopes[0], seen.rms_slopes[0], epsilon = 2e-2 * rms * q1);
     }
 
     #[test]

@@ -10,7 +10,6 @@ use crate::file::{check_regular, failed, replace};
 use crate::output::field_values::write_fields;
 #[cfg(feature = "npy")]
 use crate::output::npz;
-#[cfg(feature = "vtk")]
 use crate::output::vtk;
 use crate::output::{Field, Metadata};
 
@@ -34,7 +33,7 @@ pub enum Format {
     /// ```
     #[cfg(feature = "npy")]
     Npz,
-    /// Files of VTK. Needs the feature `vtk`.
+    /// Files of VTK.
     ///
     /// Frames are images `frame_000000.vti` and so on, and `series.pvd` lists them with their times. Open this file in
     /// ParaView, even while the run continues. An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1
@@ -45,7 +44,6 @@ pub enum Format {
     ///
     /// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView
     /// shows one of them.
-    #[cfg(feature = "vtk")]
     Vtk,
 }
 
@@ -54,7 +52,6 @@ impl Format {
         match self {
             #[cfg(feature = "npy")]
             Format::Npz => "npz",
-            #[cfg(feature = "vtk")]
             Format::Vtk => "vti",
         }
     }
@@ -69,15 +66,12 @@ impl Format {
         match self {
             #[cfg(feature = "npy")]
             Format::Npz => true,
-            #[cfg(feature = "vtk")]
             Format::Vtk => false,
         }
     }
 }
 
 /// A run as a folder of files, one per frame, with the same fields and metadata in each.
-///
-/// Needs the feature `npy` or `vtk`.
 ///
 /// ```
 /// # #[cfg(feature = "npy")] {
@@ -160,7 +154,8 @@ impl FrameSeries {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let is_frame = name.starts_with("frame_") && name.ends_with(&format!(".{}", format.extension()));
             if is_frame && !replaced {
-                let reason = format!("the folder contains {name} of another run: FrameSeries::create_or_replace removes it");
+                let reason =
+                    format!("the folder contains {name} of another run: FrameSeries::create_or_replace removes it");
                 return refused(io::ErrorKind::AlreadyExists, reason);
             }
             if is_frame || replaced && format.has_collection() && name == COLLECTION {
@@ -189,7 +184,6 @@ impl FrameSeries {
         write_fields(&path, (contact, fields, *format), buffer, |out, values| match format {
             #[cfg(feature = "npy")]
             Format::Npz => npz::write_frame(out, (contact, area), metadata, values),
-            #[cfg(feature = "vtk")]
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
         if format.has_collection() {

@@ -1,7 +1,6 @@
 //! Warnings of steps, and the reasons of failed steps.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{builder_of, sphere_on};
+use crate::common::{builder_of, elastic, maxwell, sphere_on};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::{Error, Trend};
@@ -168,7 +167,10 @@ fn contact_at_the_edge_estimates_the_width_that_it_needs() {
         let radius = 0.5 * length * wider;
         let sphere = Sphere::new(10.0e-3).unwrap();
         let cone = Cone::new(0.1).unwrap();
-        let force = [4.0 / 3.0 * modulus * radius.powi(3) / 10.0e-3, std::f64::consts::FRAC_PI_2 * 0.1 * modulus * radius.powi(2)];
+        let force = [
+            4.0 / 3.0 * modulus * radius.powi(3) / 10.0e-3,
+            std::f64::consts::FRAC_PI_2 * 0.1 * modulus * radius.powi(2),
+        ];
         let depth = [radius.powi(2) / 10.0e-3, std::f64::consts::FRAC_PI_2 * 0.1 * radius];
         for (shape, which) in [(&sphere as &dyn Geometry, 0), (&cone, 1)] {
             for load in [Load::force(force[which]), Load::approach(depth[which])] {

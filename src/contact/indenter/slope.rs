@@ -1,8 +1,7 @@
 //! Slopes of the undeformed bodies in contact.
 
 use crate::Grid;
-use crate::contact::indenter::Indenter;
-use crate::contact::window::region::Region;
+use crate::contact::{Indenter, Region};
 
 /// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
 const STEEP: f64 = 0.5;

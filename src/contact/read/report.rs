@@ -189,7 +189,10 @@ const MESSAGES: [(Warnings, &str); 11] = [
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
     (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain"),
     (Warnings::MODULUS, "no solid has such a modulus: moduli are in Pa, compliances in 1/Pa"),
-    (Warnings::STEEP, "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m"),
+    (
+        Warnings::STEEP,
+        "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
+    ),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.

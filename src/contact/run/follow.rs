@@ -275,7 +275,6 @@ impl<'a> Run<'a> {
     pub fn contact(&self) -> &ViscoelasticContact {
         &self.contact
     }
-
 }
 
 impl Run<'static> {

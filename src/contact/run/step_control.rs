@@ -138,7 +138,13 @@ impl StepControl {
     }
 
     /// Includes the defects of a step to be accepted; `motion_is_given` states whether its motion is given.
-    pub(super) fn include(&mut self, rule: Option<&ExponentialRule>, dt: f64, error: &TimeError, motion_is_given: bool) {
+    pub(super) fn include(
+        &mut self,
+        rule: Option<&ExponentialRule>,
+        dt: f64,
+        error: &TimeError,
+        motion_is_given: bool,
+    ) {
         self.steps += 1;
         self.defects.iter_mut().for_each(|defects| defects.include(dt, error.defect));
         let Some(rule) = rule else { return };

@@ -2,9 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::step::request::{Step, Trial};
+use crate::contact::{Scene, State, Step, Trial};
 use crate::load::Load;
 
 /// Exponents of a gap between these are fitted; a surface that is rough or flat has none.
