@@ -1,11 +1,11 @@
 //! Drives a contact along a load history.
 
-use crate::ascending::Ascending;
+use crate::ascending::Schedule;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::adaptive_step::{Course, adaptive_step};
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
-use crate::contact::run::progress::{ErrorBudget, Progress, StepErrors, Stepping};
+use crate::contact::run::progress::{ErrorBudget, Progress, RunProgress, StepErrors, Stepping};
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::StepContext;
@@ -14,7 +14,7 @@ use crate::error::{Error, LoadError, Result};
 use crate::load::{Load, LoadHistory};
 
 /// Two times closer than this fraction of a step are the same time.
-const SAME_TIME: f64 = 1e-6;
+pub(super) const SAME_TIME: f64 = 1e-6;
 
 /// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
 /// [`Run::next_step`] takes one step.
@@ -66,8 +66,14 @@ pub struct Run<'a> {
     stepping: Stepping,
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
-    /// Times at which steps end, ascending.
-    stops: Ascending,
+    /// Times at which steps end, and at which states within steps are sampled.
+    pub(super) stops: Schedule,
+    pub(super) sampled: Schedule,
+    /// Start and report of the last step of this run, and the number of its steps.
+    pub(super) last: Option<(f64, StepReport)>,
+    taken: u64,
+    /// Length of the first step of this run that took time.
+    first_step: f64,
     #[cfg(feature = "checkpoint")]
     pub(in crate::contact) autosave: Option<Autosave>,
     /// Report of a step after which the file could not be written.
@@ -118,22 +124,16 @@ impl<'a> Run<'a> {
             stepping,
             until,
             progress: saved.map_or(begun, |saved| *saved),
-            stops: Ascending::default(),
+            stops: Schedule::default(),
+            sampled: Schedule::default(),
+            last: None,
+            taken: 0,
+            first_step: 0.0,
             #[cfg(feature = "checkpoint")]
             autosave: None,
             #[cfg(feature = "checkpoint")]
             unreported: None,
         }
-    }
-
-    /// Makes steps end exactly at these `times` \[s\] too, given in any order. Times before the time of the contact
-    /// have no effect.
-    ///
-    /// # Errors
-    /// If a time is not finite.
-    pub fn stop_at(mut self, times: &[f64]) -> Result<Run<'a>> {
-        self.stops.add("time to stop at", times)?;
-        Ok(self)
     }
 
     /// Takes the next step and returns its report, or `None` at the end of the run.
@@ -157,7 +157,7 @@ impl<'a> Run<'a> {
         {
             let report = match self.unreported.take() {
                 Some(report) => report,
-                None => self.take_step()?,
+                None => self.take_next()?,
             };
             if let Err(error) = self.autosave(report.is_none()) {
                 self.unreported = Some(report);
@@ -166,7 +166,22 @@ impl<'a> Run<'a> {
             Ok(report)
         }
         #[cfg(not(feature = "checkpoint"))]
-        self.take_step()
+        self.take_next()
+    }
+
+    /// Takes the next step and keeps its report for [`Run::samples`].
+    fn take_next(&mut self) -> Result<Option<StepReport>> {
+        self.last = None;
+        let start = self.contact.time();
+        let report = self.take_step()?;
+        self.last = report.map(|report| (start, report));
+        if let Some(report) = report {
+            self.taken += 1;
+            if self.first_step == 0.0 {
+                self.first_step = report.dt;
+            }
+        }
+        Ok(report)
     }
 
     fn take_step(&mut self) -> Result<Option<StepReport>> {
@@ -259,6 +274,12 @@ impl<'a> Run<'a> {
         let end = progress.end_of_step(dt);
         let stop = corner.min(self.until).min(self.next_stop(now));
         Ok(if stop <= end + same { stop } else { end })
+    }
+
+    /// How far the run has come.
+    pub fn progress(&self) -> RunProgress {
+        let (start, time, until) = (self.progress.start, self.contact.time(), self.until);
+        RunProgress { steps: self.taken, start, time, until, first_step: self.first_step }
     }
 
     /// The errors of the run so far, by their source.

@@ -154,9 +154,16 @@ impl ViscoelasticContact {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let reach = self.adopt(attempt, step, error.sizes)?;
+        let report = self.report(estimated.then_some(error.relative), reach);
+        report.emit();
+        Ok(report)
+    }
+
+    /// The report of the last step, whose pressed cells are within `reach`.
+    pub(in crate::contact) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
-        let report = StepReport {
+        StepReport {
             time: state.clock.time,
             force: self.force(),
             approach: self.approach(),
@@ -164,16 +171,14 @@ impl ViscoelasticContact {
             contact_cells,
             tilt: self.tilt(),
             dt: state.clock.last_length,
-            time_error: estimated.then_some(error.relative),
+            time_error,
             warnings: collect_warnings(scene, state, reach),
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
             preconditioner_applications: counts.preconditioner_applications,
             residual,
-        };
-        report.emit();
-        Ok(report)
+        }
     }
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
