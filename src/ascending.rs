@@ -123,6 +123,10 @@ impl<T: Copy> TimeTable<T> {
         Ok(TimeTable(entries.to_vec()))
     }
 
+    pub(crate) fn as_slice(&self) -> &[(f64, T)] {
+        &self.0
+    }
+
     /// The value at `time`, after a jump; `mix` interpolates two values by the share of the second.
     pub(crate) fn at(&self, time: f64, mix: impl Fn(T, T, f64) -> T) -> T {
         self.interpolated(self.0.partition_point(|entry| entry.0 <= time), time, mix)

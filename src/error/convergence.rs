@@ -31,6 +31,7 @@ const FEWEST: usize = 4;
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Convergence {
     samples: Vec<(usize, f64)>,
     tolerance: f64,
@@ -42,6 +43,7 @@ pub struct Convergence {
 
 /// How the residual changes over the iterations of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Trend {
     /// Too few iterations to show a trend.

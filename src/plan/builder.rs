@@ -51,6 +51,7 @@ pub struct PlanBuilder<'a> {
 
 /// How far planning has come: the state of a coarse run.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PlanProgress {
     /// Number of steps of all coarse runs so far.

@@ -27,21 +27,21 @@ use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is
 #[derive(Debug, Clone)]
 pub struct Material {
     /// One body, or the two of a contact.
-    bodies: Vec<Body>,
+    pub(super) bodies: Vec<Body>,
 }
 
 #[derive(Debug, Clone)]
-struct Body {
-    rheology: Arc<dyn Rheology>,
-    volume: Volume,
+pub(super) struct Body {
+    pub(super) rheology: Arc<dyn Rheology>,
+    pub(super) volume: Volume,
 }
 
 #[derive(Debug, Clone)]
-enum Volume {
+pub(super) enum Volume {
     /// C(t) over the creep compliance of the rheology, the same at all times, and Poisson's ratio.
     Proportional { factor: f64, poisson: f64 },
-    /// An elastic bulk: the exact series of C(t), and 1 − 2ν.
-    Elastic(CreepSpectrum, Compressibility),
+    /// An elastic bulk of this modulus: the exact series of C(t), and 1 − 2ν.
+    Elastic(f64, CreepSpectrum, Compressibility),
 }
 
 /// 1 − 2ν as a function of time after a step of load, `last` + Σ share e^(−t/time).
@@ -157,7 +157,10 @@ impl Material {
         let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
         let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
-        Ok(Material::with_volume(rheology, Volume::Elastic(contact, Compressibility::new(bulk_modulus, &stiffened))))
+        Ok(Material::with_volume(
+            rheology,
+            Volume::Elastic(bulk_modulus, contact, Compressibility::new(bulk_modulus, &stiffened)),
+        ))
     }
 
     fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
@@ -201,7 +204,7 @@ impl Material {
     pub fn poisson_ratios(&self) -> impl Iterator<Item = Option<f64>> {
         self.bodies.iter().map(|body| match &body.volume {
             Volume::Proportional { poisson, .. } => Some(*poisson),
-            Volume::Elastic(_, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
+            Volume::Elastic(_, _, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
         })
     }
 
@@ -209,7 +212,7 @@ impl Material {
     pub(crate) fn compressibility(&self, body: usize) -> Option<Compressibility> {
         self.bodies.get(body).map(|body| match &body.volume {
             Volume::Proportional { poisson, .. } => Compressibility { last: 1.0 - 2.0 * poisson, terms: Vec::new() },
-            Volume::Elastic(_, compressibility) => compressibility.clone(),
+            Volume::Elastic(_, _, compressibility) => compressibility.clone(),
         })
     }
 
@@ -320,20 +323,20 @@ impl Compressibility {
 }
 
 impl Body {
-    fn contact_compliance(&self, t: f64) -> f64 {
+    pub(super) fn contact_compliance(&self, t: f64) -> f64 {
         match &self.volume {
             Volume::Proportional { factor, .. } => factor * self.rheology.creep_compliance(t),
-            Volume::Elastic(contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
+            Volume::Elastic(_, contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
             Volume::Elastic(..) => f64::NAN,
         }
     }
 
-    fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
+    pub(super) fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
         match &self.volume {
             Volume::Proportional { factor, .. } => {
                 self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(*factor)).transpose()
             }
-            Volume::Elastic(contact, _) => Ok(Some(contact.clone())),
+            Volume::Elastic(_, contact, _) => Ok(Some(contact.clone())),
         }
     }
 }

@@ -57,6 +57,7 @@
 //! | logarithmic | 1.3 … 2.7 |
 
 mod burgers;
+mod description;
 mod dynamic;
 mod elastic;
 mod fit;

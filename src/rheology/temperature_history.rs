@@ -242,6 +242,16 @@ impl TemperatureHistory {
     }
 }
 
+impl TemperatureHistory {
+    /// The times and temperatures of a table, or the corners of a function.
+    pub(crate) fn course(&self) -> std::result::Result<&[(f64, f64)], &[f64]> {
+        match &self.course {
+            Course::Table(table) => Ok(table.as_slice()),
+            Course::Function { corners, .. } => Err(corners.as_slice()),
+        }
+    }
+}
+
 impl fmt::Debug for TemperatureHistory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = f.debug_struct("TemperatureHistory");

@@ -14,6 +14,7 @@ const MAX_STEPS: usize = 100;
 
 /// An elastic contact of unit compliance at one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ElasticState {
     /// Level l: force times compliance \[m²\].

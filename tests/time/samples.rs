@@ -36,7 +36,8 @@ fn samples_leave_the_steps_as_they_are() {
             run = run.sample_at_decades(1e-3, 10).unwrap().sample_every(5.0).unwrap().sample_at(&[0.77, 90.0]).unwrap();
         }
         assert_eq!(run.samples().count(), 0, "no step yet");
-        let (mut reports, mut looks, mut asked, mut problems): (Vec<StepReport>, _, Vec<f64>, _) = (Vec::new(), 0, Vec::new(), 0);
+        let (mut reports, mut looks, mut asked, mut problems): (Vec<StepReport>, _, Vec<f64>, _) =
+            (Vec::new(), 0, Vec::new(), 0);
         let mut time = 0.0;
         while let Some(report) = run.next_step().unwrap() {
             reports.push(report);
@@ -85,10 +86,12 @@ fn the_curve_of_a_held_ball_is_exact() {
     let exact = GrowingSphere::step(RADIUS, &rubber(), FORCE).unwrap();
     let load = StepLoad::new(Load::force(FORCE)).unwrap();
     let mut contact = contact();
-    let mut run =
-        contact.follow(&load, Stepping::adaptive(1e-3), 100.0).sample_at_decades(1e-3, 10).unwrap();
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 100.0).sample_at_decades(1e-3, 10).unwrap();
     // the error of the mesh, which all states share
-    let mesh = exact.approach(0.0) / { run.next_step().unwrap(); run.contact().approach() };
+    let mesh = exact.approach(0.0) / {
+        run.next_step().unwrap();
+        run.contact().approach()
+    };
     let (mut steps, mut points, mut worst) = (0, 0, 0.0_f64);
     while run.next_step().unwrap().is_some() {
         steps += 1;
@@ -109,7 +112,8 @@ fn the_curve_of_a_held_ball_is_exact() {
 fn steps_end_where_they_are_stopped() {
     let load = StepLoad::new(Load::force(FORCE)).unwrap();
     let multiples: Vec<f64> = (1..=20).map(|k| 0.5 * f64::from(k)).collect();
-    let decades: Vec<f64> = (0..=9).map(|k| 1e-2 * 10f64.powf(f64::from(k) / 3.0)).filter(|time| *time <= 10.0).collect();
+    let decades: Vec<f64> =
+        (0..=9).map(|k| 1e-2 * 10f64.powf(f64::from(k) / 3.0)).filter(|time| *time <= 10.0).collect();
     let met = |times: &[f64], ends: &[f64]| {
         times.iter().all(|time| ends.iter().any(|end| (end - time).abs() <= 1e-12 * time))
     };

@@ -20,6 +20,7 @@ value! {
 /// A steady motion of the indenter over the bodies, and the tolerance of the steady state; made by
 /// [`SteadyMotion::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyMotion {
     /// Axis of the motion.
     axis: Axis;

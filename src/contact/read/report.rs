@@ -8,6 +8,7 @@ use crate::rounded::{TIME, rounded};
 
 /// The outcome and the cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StepReport {
     /// Time at the end of the step \[s\].
@@ -92,6 +93,7 @@ impl fmt::Display for StepReport {
 
 /// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct BodyState {
     /// Approach ω at the origin of the grid \[m\]: the body lowers the surface by ω + α1 x1 + α2 x2.
@@ -125,6 +127,7 @@ bitflags! {
     /// # Ok::<(), Error>(())
     /// ```
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
     pub struct Warnings: u16 {
         /// Contact is within two cells of an edge of the grid beyond which the bodies extend. Under a slightly greater load
         /// a step fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with

@@ -1,5 +1,8 @@
 //! Drives a contact along a load history.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use crate::ascending::Schedule;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::adaptive_step::{Course, adaptive_step};
@@ -9,6 +12,7 @@ use crate::contact::run::progress::{ErrorBudget, Progress, RunProgress, StepErro
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::StepContext;
+use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result};
 use crate::load::{Load, LoadHistory};
@@ -69,6 +73,8 @@ pub struct Run<'a> {
     /// Times at which steps end, and at which states within steps are sampled.
     pub(super) stops: Schedule,
     pub(super) sampled: Schedule,
+    /// Set by another thread to end the step under way.
+    cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run, and the number of its steps.
     pub(super) last: Option<(f64, StepReport)>,
     taken: u64,
@@ -126,6 +132,7 @@ impl<'a> Run<'a> {
             progress: saved.map_or(begun, |saved| *saved),
             stops: Schedule::default(),
             sampled: Schedule::default(),
+            cancelled: None,
             last: None,
             taken: 0,
             first_step: 0.0,
@@ -206,10 +213,10 @@ impl<'a> Run<'a> {
         let kink = if jumps { corner.min(turn) } else { corner };
         let corner = corner.min(turn);
         let stop = corner.min(self.until).min(self.next_stop(now));
-        let Run { contact, history, until, progress, .. } = self;
+        let Run { contact, history, until, progress, cancelled, .. } = self;
         if let Some(mut control) = progress.control.take() {
             let rows = contact.computation.state.region.rows();
-            let course = Course { history: &**history, until: *until, stop, kink };
+            let course = Course { history: &**history, until: *until, stop, kink, cancelled: cancelled.as_deref() };
             let report = rows.together(|| {
                 let (report, errors) = adaptive_step(contact, &mut control, course)?;
                 progress.include(errors, contact.mesh_error().unwrap_or_default());
@@ -234,7 +241,8 @@ impl<'a> Run<'a> {
         let loads = [load];
         let rows = self.contact.computation.state.region.rows();
         rows.together(|| {
-            let step = self.contact.request(time, dt, &loads, tolerance)?;
+            let step =
+                Step { cancelled: self.cancelled.as_deref(), ..self.contact.request(time, dt, &loads, tolerance)? };
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             if self.progress.scale.is_none() {
                 self.progress.scale = Some(RunScale::new(scene, &computation.state, &*self.history, self.until)?);
@@ -274,6 +282,35 @@ impl<'a> Run<'a> {
         let end = progress.end_of_step(dt);
         let stop = corner.min(self.until).min(self.next_stop(now));
         Ok(if stop <= end + same { stop } else { end })
+    }
+
+    /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
+    /// [`Error::Cancelled`] within an iteration of the solver, and leaves the contact as it was. While the flag is set no step is
+    /// taken; once it is cleared the run goes on, with the same steps. Where ranks share out the contact they look at their flags
+    /// when a step begins.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    ///
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let (load, cancel) = (StepLoad::new(Load::force(0.5))?, Arc::new(AtomicBool::new(false)));
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0).cancelled_by(Arc::clone(&cancel));
+    /// run.next_step()?;
+    /// cancel.store(true, Ordering::Relaxed); // by the handler of Ctrl-C, or of a button
+    /// assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
+    /// assert_eq!(run.contact().time(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> Run<'a> {
+        self.cancelled = Some(flag);
+        self
     }
 
     /// How far the run has come.

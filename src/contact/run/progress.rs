@@ -188,7 +188,11 @@ pub struct RunProgress {
 impl RunProgress {
     /// The part of the time that is over, 0 to 1: for steps of given length, and for loads that keep changing.
     pub fn share_of_time(&self) -> f64 {
-        if self.until > self.start { ((self.time - self.start) / (self.until - self.start)).clamp(0.0, 1.0) } else { 1.0 }
+        if self.until > self.start {
+            ((self.time - self.start) / (self.until - self.start)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        }
     }
 
     /// The part of the decades of time that is over, 0 to 1: ln(1 + t/δ) over its value at the end, t counted from the start and δ

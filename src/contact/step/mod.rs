@@ -24,6 +24,7 @@ pub(in crate::contact) mod request;
 pub(in crate::contact) mod spring;
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
@@ -103,7 +104,7 @@ impl ViscoelasticContact {
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
-        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance })
+        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, cancelled: None })
     }
 
     /// Computes a step and accepts it.
@@ -130,6 +131,10 @@ impl ViscoelasticContact {
         let cells = if region.is_shared() { 0 } else { region.len() };
         let tried = rows.together(|| {
             rows.same(marks(step))?;
+            // ranks would see the flag in different iterations: they ask once a step
+            if step.cancelled.is_some_and(|flag| rows.any(flag.load(Ordering::Relaxed))) {
+                return Err(Error::Cancelled { what: "a step" });
+            }
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
         if let Some(larger) = &larger {
@@ -274,7 +279,8 @@ impl Computation {
         } else {
             initial_guess(state, window, trial, step, c);
         }
-        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
+        let cancelled = step.cancelled.filter(|_| !state.region.is_shared());
+        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
         let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
         let outcome = solve_with_springs(scene, state, step, c, trial, solve);

@@ -13,6 +13,7 @@ pub(crate) struct Row {
 
 /// What a table of measurements holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Experiment {
     /// Time \[s\] and creep compliance \[1/Pa\]: J in shear, D in tension.

@@ -1,7 +1,10 @@
+use educe::Educe;
+
 use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
 use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
+use crate::values::counted;
 
 /// Measurements at one temperature.
 ///
@@ -13,12 +16,14 @@ use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
 /// assert_eq!(at_60.temperature(), 333.15);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 pub struct Isotherm {
     temperature: f64,
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
+    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
 }
 

@@ -9,9 +9,12 @@ mod master_curve;
 pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
+use educe::Educe;
+
 use crate::error::{Place, Result, TableError, exact_length};
 use crate::rheology::CreepSeries;
 use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
+use crate::values::counted;
 pub use data::Experiment;
 use data::{Deformation, Row, validated};
 
@@ -42,12 +45,15 @@ const NOTICEABLE: f64 = 12.0;
 /// assert!(body.creep_compliance(200.0).is_nan()); // never measured
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 pub struct Measurements {
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
+    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
+    #[educe(Debug(method(counted)))]
     samples: Vec<Sample>,
     /// Greatest deviation of the samples from a monotone curve.
     wrong_way: f64,
