@@ -27,7 +27,7 @@ const CONVENTIONS: &str = "pressure is positive in compression, displacement pos
 ///
 /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let metadata = Metadata::new("Ball on rubber").note("radius", "10 mm").note("batch", "B-12");
 /// let json = metadata.json(&contact);

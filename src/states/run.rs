@@ -28,7 +28,7 @@ const ORDER: f64 = 3.0;
 /// use viscocontact::states::{Reach, StatesContact, Sweep};
 ///
 /// let states = Sweep::new(Grid::square(32, 4.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(6.0e-7))?;
-/// let mut contact = StatesContact::new(&states, &Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))?;
+/// let mut contact = StatesContact::new(&states, &Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?))?;
 /// let load = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
 /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-4), 10.0);
 /// while let Some(report) = run.next_step()? {

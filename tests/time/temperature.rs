@@ -22,7 +22,7 @@ fn grid(cells: usize) -> Grid {
 }
 
 fn zener() -> Zener {
-    Zener::new(1.0e6, 0.25e6, 0.25e6).unwrap()
+    Zener::with_time(1.0e6, 0.25e6, 1.0).unwrap()
 }
 
 fn settings() -> Settings {

@@ -77,7 +77,7 @@ impl ViscoelasticContact {
     /// let cylinder = Shifted::new(Cylinder::new(10.0e-3)?, [2.0e-3, 0.0])?;
     /// let mut contact = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&cylinder)
-    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.005e6)?))
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 0.01)?))
     ///     .kernel(InfluenceKernel::line(&grid, 1.0)?)
     ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;

@@ -28,7 +28,7 @@ pub(super) const SAME_TIME: f64 = 1e-6;
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let ramp = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
 /// let mut run = contact.follow(&ramp, Stepping::fixed(0.25), 2.0);
@@ -105,7 +105,7 @@ impl ViscoelasticContact {
     ///
     /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// let load = StepLoad::new(Load::force(0.5))?;
     /// let mut simulation = Simulation { run: contact.into_follow(load, Stepping::fixed(0.5), 1.0) };

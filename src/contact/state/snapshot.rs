@@ -41,7 +41,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let mut start = contact.snapshot();
@@ -103,7 +103,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// contact.step(0.2, Load::force(0.5))?;
@@ -186,7 +186,7 @@ impl Run<'_> {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6)?))
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0)?))
     ///     .build()?;
     /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0)?;
     /// let mut run = contact.follow(&ramp, Stepping::adaptive(1.0e-3), 100.0);

@@ -27,7 +27,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use crate::contact::computation::Computation;
-use crate::contact::read::report::StepReport;
+use crate::contact::read::report::{Estimated, StepReport};
 use crate::contact::scene::Scene;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::{Step, Trial};
@@ -177,6 +177,7 @@ impl ViscoelasticContact {
             tilt: self.tilt(),
             dt: state.clock.last_length,
             time_error,
+            estimated: Estimated::under(&state.loads),
             warnings: collect_warnings(scene, state, reach),
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,

@@ -48,7 +48,7 @@ impl Rough {
     ///         .ranks(ranks)
     ///         .geometry(&rough)
     ///         .kernel(kernel)
-    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///         .build()?;
     ///     contact.step(0.0, Load::force(1.0e-2))?;
     ///     Ok::<_, Error>(contact.contact_area())
