@@ -152,7 +152,7 @@ fn steps_end_where_they_are_stopped() {
 fn samples_of_elastic_states_leave_the_steps_as_they_are() {
     let history = protocol();
     let states = Sweep::new(Grid::square(32, 4.0e-3).unwrap(), &Sphere::new(RADIUS).unwrap());
-    let states = states.run(Reach::Level(1.0e-6)).unwrap();
+    let states = states.run(Reach::Level(6.0e-7)).unwrap();
     let steps = |sampled: bool| {
         let mut contact = StatesContact::new(&states, &rubber()).unwrap();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), 80.0);
