@@ -12,6 +12,7 @@ mod samples;
 mod springs;
 mod states;
 mod states_kept;
+mod states_outside;
 mod temperature;
 mod time_rules;
 mod uncached;
