@@ -24,7 +24,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::Result;
 use viscocontact::output::{CsvHistory, Metadata};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style, scientific};
@@ -154,7 +153,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     );
     let (mut growth, mut elastic, mut maps) = (Vec::new(), Vec::new(), Vec::new());
     let (mut work, mut worst) = ((0, 0.0), 0.0_f64);
-    let progress = ProgressBar::new(shown.len() as u64);
+    let progress = support::progress(shown.len() as u64);
     let history = StepLoad::new(Load::force(force))?;
     let mut follow = contact.follow(&history, Stepping::adaptive(args.error), args.to).stop_at(&shown)?;
     while let Some(report) = follow.next_step()? {
@@ -206,7 +205,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     files.history.write(&contact, &report, &[])?;
     let mut hold = vec![observe(&contact)?];
     let (mut before, mut fell) = (contact.contact_cells(), 0);
-    let progress = ProgressBar::new(shown.len() as u64);
+    let progress = support::progress(shown.len() as u64);
     for &since in &shown {
         let report = contact.step(args.to + since - contact.time(), held)?;
         files.history.write(&contact, &report, &[])?;

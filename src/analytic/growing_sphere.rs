@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Error, LoadError, Result, positive, within};
+use crate::error::{Error, LoadError, Result, StepError, positive, within};
 use crate::load::{Load, LoadHistory, StepLoad};
 use crate::quadrature::{GaussLegendre, bisect};
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
@@ -73,7 +73,10 @@ impl GrowingSphere {
         let creep =
             material.contact_spectrum()?.ok_or_else(|| material.no_series("the solution for a growing contact"))?;
         if creep.glassy() == 0.0 {
-            return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
+            return Err(Error::Step(StepError::NoElasticResponse {
+                time: 0.0,
+                what: "the solution for a growing contact",
+            }));
         }
         let given = match load.at(0.0) {
             Load::Force { .. } => None,

@@ -42,6 +42,7 @@ mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
+pub use crate::error::StepError;
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;

@@ -3,7 +3,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Error, MapError};
+use super::{Error, FileError, MapError};
 
 /// A file or folder of results that cannot be written, and why.
 ///
@@ -88,7 +88,7 @@ impl Error {
     pub fn io_kind(&self) -> Option<io::ErrorKind> {
         match self {
             Error::Output(error) => Some(error.kind()),
-            Error::Unreadable { kind, .. } | Error::Map(MapError::Unwritable { kind, .. }) => *kind,
+            Error::File(FileError::Unreadable { kind, .. }) | Error::Map(MapError::Unwritable { kind, .. }) => *kind,
             #[cfg(feature = "checkpoint")]
             Error::Checkpoint { source, .. } => source.io_kind(),
             _ => None,

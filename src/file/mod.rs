@@ -4,7 +4,7 @@ use std::fs::{self, FileType};
 use std::io;
 use std::path::Path;
 
-use crate::error::{Error, OutputError, Result};
+use crate::error::{Error, FileError, OutputError, Result};
 
 #[cfg(any(feature = "csv", feature = "plot"))]
 mod appending;
@@ -38,7 +38,7 @@ pub(crate) fn check_regular(path: &Path) -> Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(failed(path, error)),
     };
-    Err(Error::NotAFile { path: path.display().to_string(), kind })
+    Err(Error::File(FileError::NotAFile { path: path.display().to_string(), kind }))
 }
 
 fn kind(found: FileType) -> &'static str {

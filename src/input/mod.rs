@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, FileError, Result};
 
 #[cfg(feature = "csv")]
 pub(crate) use text::shortened;
@@ -25,5 +25,5 @@ pub(crate) fn bytes(mut reader: impl Read, name: &str) -> Result<Vec<u8>> {
 }
 
 fn unreadable(file: String, error: io::Error) -> Error {
-    Error::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }
+    Error::File(FileError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) })
 }

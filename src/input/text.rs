@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::Read;
 
-use crate::error::{Error, Result, TextError};
+use crate::error::{Error, FileError, Result, TextError};
 
 value! {
 /// How a text file separates its fields and writes its numbers.
@@ -79,7 +79,11 @@ impl TextTable {
     pub(crate) fn read(reader: impl Read, name: &str, mut format: TextFormat) -> Result<TextTable> {
         let bytes = super::bytes(reader, name)?;
         if bytes.contains(&0) {
-            return Err(Error::Unreadable { file: name.into(), reason: "it is not a text file".into(), kind: None });
+            return Err(Error::File(FileError::Unreadable {
+                file: name.into(),
+                reason: "it is not a text file".into(),
+                kind: None,
+            }));
         }
         let text = String::from_utf8_lossy(&bytes);
         // byte order mark of some spreadsheets

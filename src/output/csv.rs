@@ -94,7 +94,7 @@ impl CsvHistory {
     ///
     /// # Errors
     /// As [`CsvHistory::create`], except that the file may exist; something else than a file may not
-    /// ([`Error::NotAFile`](crate::Error::NotAFile)).
+    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn create_or_replace(
         path: impl AsRef<Path>,
         metadata: &Metadata,

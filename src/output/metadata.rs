@@ -151,9 +151,9 @@ fn material(material: &Material) -> String {
             Err(bulk_modulus) => ("bulk_modulus", number(bulk_modulus)),
         };
         let creep = match body.contact_creep() {
-            Some((glassy, fluidity, terms)) => {
-                let creep = [("glassy", number(glassy)), ("fluidity", number(fluidity)), ("terms", pairs(&terms))];
-                ("contact_creep", object(creep))
+            Some(creep) => {
+                let ends = [("glassy", number(creep.glassy())), ("fluidity", number(creep.fluidity()))];
+                ("contact_creep", object(ends.into_iter().chain([("terms", pairs(creep.terms()))])))
             }
             None => ("rheology", text(&body.rheology())),
         };

@@ -18,7 +18,7 @@
 //! frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), and `create_or_replace` removes them first.
 //! Files that are written at once (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one
 //! is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
-//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended to its
+//! [`FileError::NotAFile`](crate::FileError::NotAFile). While a file is being written, the process ID and `.part` are appended to its
 //! name; a process that is killed leaves the file under that name.
 //!
 //! Where [ranks](crate::parallel) share out a contact, all of them call a function that writes it. Rank 0 writes the same bytes

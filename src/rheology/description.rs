@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::rheology::Material;
 use crate::rheology::material::{Body, Volume};
+use crate::rheology::{CreepSpectrum, Material};
 
 /// What a material says of one of its bodies.
 #[derive(Debug)]
@@ -14,10 +14,9 @@ pub(crate) struct BodyDescription<'a> {
 }
 
 impl BodyDescription<'_> {
-    /// Contact creep compliance as (glassy \[1/Pa\], fluidity \[1/(Pa·s)\], terms), if it has an exact series.
-    pub(crate) fn contact_creep(&self) -> Option<(f64, f64, Vec<(f64, f64)>)> {
-        let spectrum = self.body.contact_spectrum().ok()??;
-        Some((spectrum.glassy(), spectrum.fluidity(), spectrum.terms().to_vec()))
+    /// The contact creep compliance, if it has an exact series.
+    pub(crate) fn contact_creep(&self) -> Option<CreepSpectrum> {
+        self.body.contact_spectrum().ok()?
     }
 
     /// The rheology as Rust prints it.
@@ -61,7 +60,7 @@ impl fmt::Display for Material {
                 Ok(poisson) => write!(f, "Poisson's ratio {poisson}")?,
                 Err(bulk) => write!(f, "bulk modulus {bulk:.3e} Pa")?,
             }
-            let Some((glassy, fluidity, terms)) = body.contact_creep() else {
+            let Some(creep) = body.contact_creep() else {
                 let glassy = body.body.contact_compliance(0.0);
                 if glassy > 0.0 {
                     write!(f, ", 1/C {:.3e} Pa at t = 0", 1.0 / glassy)?;
@@ -71,6 +70,7 @@ impl fmt::Display for Material {
                 f.write_str(", no exact series")?;
                 continue;
             };
+            let (glassy, fluidity, terms) = (creep.glassy(), creep.fluidity(), creep.terms());
             let rubbery = glassy + terms.iter().map(|(compliance, _)| compliance).sum::<f64>();
             match (glassy > 0.0, fluidity > 0.0, terms.is_empty()) {
                 (true, false, true) => write!(f, ", 1/C {:.3e} Pa", 1.0 / glassy)?,
@@ -79,7 +79,7 @@ impl fmt::Display for Material {
                 (false, false, _) => write!(f, ", no elastic response, 1/C {:.3e} Pa in the end", 1.0 / rubbery)?,
                 (false, true, _) => f.write_str(", no elastic response, flows")?,
             }
-            match terms[..] {
+            match *terms {
                 [] => {}
                 [(_, time)] => write!(f, ", 1 retardation time ({time:.1e} s)")?,
                 [(_, first), .., (_, last)] => {

@@ -5,6 +5,8 @@ pub mod bodies;
 pub mod chosen_scenes;
 pub mod draws;
 pub mod environment;
+#[path = "../../examples/support/figures.rs"]
+pub mod figures;
 pub mod gauss;
 pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]

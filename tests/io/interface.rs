@@ -8,9 +8,9 @@ use crate::common::bodies::maxwell;
 use crate::common::spheres::sphere_on;
 use viscocontact::Error;
 #[cfg(feature = "csv")]
-use viscocontact::TextFormat;
-#[cfg(feature = "csv")]
 use viscocontact::rheology::{Experiment, Units};
+#[cfg(feature = "csv")]
+use viscocontact::{FileError, TextFormat};
 
 /// Names that the prelude leaves to others: an ambiguous one would not compile.
 mod names {
@@ -207,6 +207,6 @@ mod outputs {
         assert_eq!(fs::read_to_string(archives.join("notes.txt")).unwrap(), "kept");
 
         let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
-        assert!(matches!(error, Error::NotAFile { .. }), "{error}");
+        assert!(matches!(error, Error::File(FileError::NotAFile { .. })), "{error}");
     }
 }

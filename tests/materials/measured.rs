@@ -125,7 +125,7 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
     contact.step(0.0, Load::force(0.1)).unwrap();
     contact.step(100.0, Load::force(0.1)).unwrap();
     let error = contact.step(1.0, Load::force(0.1)).unwrap_err();
-    assert_eq!(error, Error::BeyondMaterial { time: 101.0, age: 101.0, known_until: 100.0 });
+    assert_eq!(error, Error::Step(StepError::BeyondMaterial { time: 101.0, age: 101.0, known_until: 100.0 }));
     assert_eq!(contact.time(), 100.0);
     // time at rest does not count
     for time_rule in [TimeRule::Exponential, TimeRule::Backward] {
@@ -137,7 +137,7 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
         contact.step(0.0, Load::force(0.1)).unwrap();
         contact.step(50.0, Load::force(0.1)).unwrap();
         let error = contact.step(51.0, Load::force(0.1)).unwrap_err();
-        assert!(matches!(error, Error::BeyondMaterial { known_until: 100.0, .. }), "{error}");
+        assert!(matches!(error, Error::Step(StepError::BeyondMaterial { known_until: 100.0, .. })), "{error}");
     }
     // the choice
     let trusted = body.extrapolated();

@@ -111,7 +111,7 @@ fn loads_on_the_rim_of_the_hull_are_carried() {
             [0, 1].map(|axis| at[axis] + 1e-6 * (at[axis] - middle[axis]) - inwards * (middle[axis] - at[axis]));
         if inwards < 1e-9 {
             let refused = contact.step(0.1, Load::eccentric_force(force, beyond));
-            assert!(matches!(refused, Err(Error::LoadOutsideHull { .. })), "seed {seed}");
+            assert!(matches!(refused, Err(Error::Step(StepError::LoadOutsideHull { .. }))), "seed {seed}");
         }
     }
     println!("{solved} steps, {on_rim} scenes exactly on the rim");

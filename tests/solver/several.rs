@@ -74,7 +74,7 @@ fn steps_of_several_bodies_converge() {
                     }
                     assert!(contact.pressure().iter().all(|&p| p >= 0.0), "scene {scene}");
                 }
-                Err(Error::LoadOutsideHull { .. }) => outside += 1,
+                Err(Error::Step(StepError::LoadOutsideHull { .. })) => outside += 1,
                 Err(error) => panic!("scene {scene} after {dt} s under {loads:?}: {error}"),
             }
         }

@@ -185,8 +185,12 @@ impl Shape {
                 Ok(both) if both.iter().all(|(values, _)| values.iter().all(|&value| value > 0.0)) => {
                     return Some(both);
                 }
-                Err(Error::ContactAtEdge { .. } | Error::BeyondFullContact { .. }) => depth *= 0.6,
-                Ok(_) | Err(Error::NothingToTouch { .. } | Error::NotConverged { .. }) => depth *= 1.37,
+                Err(
+                    Error::Step(StepError::ContactAtEdge { .. }) | Error::Step(StepError::BeyondFullContact { .. }),
+                ) => depth *= 0.6,
+                Ok(_) | Err(Error::NothingToTouch { .. } | Error::Step(StepError::NotConverged { .. })) => {
+                    depth *= 1.37
+                }
                 Err(error) => panic!("{}: {error}", self.name),
             }
         }

@@ -14,7 +14,7 @@ use crate::contact::settings::{Frame, Settings, Solver, TimeRule};
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
-use crate::error::{Error, KernelError, RanksError, Result, count_within};
+use crate::error::{Error, KernelError, RanksError, Result, StepError, count_within};
 use crate::geometry::Gap;
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{InfluenceKernel, Layer};
@@ -251,7 +251,9 @@ fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> 
             })
         }
         _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
-        TimeRule::Rectangle if glassy == 0.0 => Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" }),
+        TimeRule::Rectangle if glassy == 0.0 => {
+            Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what: "the rectangle rule" }))
+        }
         TimeRule::Rectangle if settings.repeats_past => Ok(History::direct_sum(Weighting::EndUncached)),
         TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
         TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),

@@ -65,7 +65,7 @@ impl ViscoelasticContact {
     /// the file of one process.
     ///
     /// # Errors
-    /// If the file cannot be written, or there is something other than a file at `path` ([`Error::NotAFile`]).
+    /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.save_with(path.as_ref(), None)
     }

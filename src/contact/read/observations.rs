@@ -4,7 +4,7 @@ use crate::Axis;
 use crate::contact::settings::Solver;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Convergence, Error, Result, finite};
+use crate::error::{Convergence, Error, Result, StepError, finite};
 use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
@@ -104,7 +104,7 @@ impl ViscoelasticContact {
                 let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
                 let convergence =
                     Convergence::new(Vec::new(), tolerance, self.settings().solver == Solver::ActiveSet, false).into();
-                Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+                Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
             }
         }
     }

@@ -307,7 +307,6 @@ impl<'a> Run<'a> {
     /// assert_eq!(run.contact().time(), 0.0);
     /// # Ok::<(), Error>(())
     /// ```
-    #[must_use]
     pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> Run<'a> {
         self.cancelled = Some(flag);
         self

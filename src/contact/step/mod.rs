@@ -34,7 +34,7 @@ use crate::contact::step::request::{Step, Trial};
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::window::region::Region;
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
@@ -241,7 +241,7 @@ fn compute(
         let grown = match at.solve(scene, step) {
             Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
             // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::LoadOutsideHull { .. }) if at.state.history.far_source().is_some() => {
+            Err(Error::Step(StepError::LoadOutsideHull { .. })) if at.state.history.far_source().is_some() => {
                 Some(Region::whole(&scene.grid, at.state.region.folded()))
             }
             Err(error) => return Err(error),

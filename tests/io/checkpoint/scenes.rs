@@ -3,6 +3,7 @@
 use crate::common::bodies::three_times;
 use std::fs;
 
+use viscocontact::FileError;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 
@@ -181,5 +182,5 @@ fn many_save_to_one_path() {
     // a folder is not replaced
     fs::create_dir(folder.join("folder")).unwrap();
     let error = build(&grid, &body()).unwrap().save(folder.join("folder")).unwrap_err();
-    assert!(matches!(error, Error::NotAFile { kind: "a folder", .. }), "{error}");
+    assert!(matches!(error, Error::File(FileError::NotAFile { kind: "a folder", .. })), "{error}");
 }

@@ -43,7 +43,7 @@ impl Measurements {
     /// `format` states the delimiter and the decimal mark.
     ///
     /// # Errors
-    /// As [`Measurements::creep`]; if the file cannot be read ([`Error::Unreadable`](crate::Error::Unreadable)), or, each
+    /// As [`Measurements::creep`]; if the file cannot be read ([`FileError::Unreadable`](crate::FileError::Unreadable)), or, each
     /// reported with its line: too few or too many columns ([`TextError::Columns`](crate::TextError)), an entry that is not
     /// a number ([`TextError::NotNumeric`](crate::TextError)) or has the other decimal mark
     /// ([`TextError::DecimalMark`](crate::TextError)), columns that no heading names
