@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::indenter::Indenter;
+use crate::contact::Indenter;
 use crate::contact::step::spring::TriedSpring;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
