@@ -29,7 +29,7 @@ pub(crate) struct State {
     /// The part of the grid that is computed: every field lives there, except for the gap of the indenter.
     pub(super) region: Region,
     /// Whether the region was chosen for a contact, rather than for bodies apart.
-    pub(super) region_is_placed: bool,
+    pub(super) region_is_for_contact: bool,
     /// Displacement and past of the bodies.
     pub(super) history: History,
     /// Whether the surfaces attract each other.
@@ -119,7 +119,7 @@ impl State {
             indenter_is_new: false,
             history: history.layout(!region.covers()),
             region,
-            region_is_placed: false,
+            region_is_for_contact: false,
             attracts,
             previous: current.clone(),
             current,

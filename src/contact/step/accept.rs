@@ -54,8 +54,17 @@ const MIN_CELLS: usize = 50;
 /// Fewer cells resolve the zone of an attraction badly.
 const COARSE_ZONE: f64 = 4.0;
 
-/// The warnings of the step accepted last, with all pressed cells in `reach`.
-pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Extent>) -> Warnings {
+/// Contact moduli E* outside this range are in other units than Pa \[Pa\].
+const SOFTEST: f64 = 10.0;
+const STIFFEST: f64 = 1e13;
+
+/// The warnings of the step accepted last, with all pressed cells in `reach`, and the greatest slope in contact if it is steep.
+pub(super) fn collect_warnings(
+    scene: &Scene,
+    state: &State,
+    reach: Option<Extent>,
+    max_slope: Option<f64>,
+) -> Warnings {
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
     let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
@@ -84,6 +93,8 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
         .attraction
         .as_deref()
         .is_some_and(|law| cells_in_zone(law, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE);
+    // a body without elastic response has no modulus at once
+    let at_once = material.contact_compliance(0.0);
     let reasons = [
         (Warnings::COARSE_ZONE, coarse),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
@@ -94,7 +105,9 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
         (Warnings::RINGS, oscillates),
         (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
         (Warnings::UNCERTAIN_MATERIAL, has_memory && uncertain),
-        (Warnings::ROUNDING, solution.rounding > scene.settings.tolerance),
+        (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
+        (Warnings::MODULUS, at_once * SOFTEST > 1.0 || (at_once > 0.0 && at_once * STIFFEST < 1.0)),
+        (Warnings::STEEP, max_slope.is_some()),
     ];
     reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
 }

@@ -120,7 +120,7 @@ pub(super) struct AttractedStep<'a> {
     pub(super) step: &'a Step<'a>,
     /// The compliance of the step, and the greatest motion taken from its gap.
     pub(super) given: [f64; 2],
-    pub(super) stop: Stop,
+    pub(super) stop: Stop<'a>,
 }
 
 impl AttractedStep<'_> {
@@ -171,7 +171,7 @@ impl AttractedStep<'_> {
             let tolerance = inner.max(stop.tolerance);
             let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
             add(&mut counts, trial.solution.counts);
-            if plain || outcome == Outcome::NotANumber {
+            if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
                 trial.solution.counts = counts;
                 converged(outcome, self.scene, &trial.solution, step)?;
             }
@@ -320,7 +320,8 @@ impl AttractedStep<'_> {
             load => [load],
         };
         let indenter = std::sync::Arc::clone(&self.step.indenter);
-        let step = Step { interval: self.step.interval, loads: &loads, indenter, tolerance };
+        let step =
+            Step { interval: self.step.interval, loads: &loads, indenter, tolerance, cancelled: self.step.cancelled };
         solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
     }
 
