@@ -6,6 +6,7 @@
 //! | [`accuracy`] | mesh, steps, tolerance: what to choose, and how to check it |
 //! | [`own_models`] | your own rheology, shape and load |
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
+//! | [`elastic_states`] | a surface solved once, for many materials and histories: when to take which |
 //!
 //! The same pages are in the folder `docs/guide` of the source.
 
@@ -19,4 +20,4 @@ macro_rules! pages {
         }
     )*};
 }
-pages! { tour accuracy own_models coupling }
+pages! { tour accuracy own_models coupling elastic_states }
