@@ -61,6 +61,9 @@ struct Args {
     /// Tolerance of the solver.
     #[arg(long, default_value_t = 1e-6)]
     tolerance: f64,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/step_loaded_sphere")]
     output: PathBuf,
@@ -111,11 +114,11 @@ impl Args {
         };
         let mut scenes = Vec::new();
         if self.model != Model::Zener {
-            let body = Maxwell::new(self.modulus, self.modulus * self.tau)?;
+            let body = Maxwell::with_time(self.modulus, self.tau)?;
             scenes.push(StepLoadedSphere { name: "Maxwell", material: Material::incompressible(body), ..base.clone() });
         }
         if self.model != Model::Maxwell {
-            let body = Zener::new(self.modulus, self.kelvin_modulus, self.kelvin_modulus * self.tau)?;
+            let body = Zener::with_time(self.modulus, self.kelvin_modulus, self.tau)?;
             scenes.push(StepLoadedSphere { name: "Zener", material: Material::incompressible(body), ..base });
         }
         Ok(scenes)
@@ -123,7 +126,11 @@ impl Args {
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (64, 20);
+    }
+    support::finish(run(&args));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {

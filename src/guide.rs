@@ -7,6 +7,8 @@
 //! | [`own_models`] | your own rheology, shape and load |
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
 //! | [`elastic_states`] | a surface solved once, for many materials and histories: when to take which |
+//! | [`long_runs`] | saved and resumed runs, many contacts on threads |
+//! | [`results`] | files in pandas, NumPy and PyVista; views as arrays and matrices |
 //!
 //! The same pages are in the folder `docs/guide` of the source.
 
@@ -20,4 +22,4 @@ macro_rules! pages {
         }
     )*};
 }
-pages! { tour accuracy own_models coupling elastic_states }
+pages! { tour accuracy own_models coupling elastic_states long_runs results }

@@ -1,4 +1,12 @@
-//! Values that users write: fields that are read and changed by methods.
+//! Values that users write: fields that are read and changed by methods. Values that are too many to print.
+
+use std::fmt;
+
+/// Prints the number of values of a field in its place.
+#[expect(clippy::ptr_arg, reason = "derived code passes the field as it is")]
+pub(crate) fn counted<T>(values: &Vec<T>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    write!(f, "{} values", values.len())
+}
 
 /// Declares a struct whose fields are read by methods named as they are, with their documentation, and changed by methods
 /// `with_field(self, field) -> Self` where one is named. Such types may get more fields.
@@ -24,6 +32,17 @@ macro_rules! value {
                     }
                 )?
             )*
+        }
+    };
+}
+
+/// Implements `Debug` for a type by some of its values: the others are large, or cannot be printed.
+macro_rules! debug_by {
+    ($self:ident: $type:ident$(<$generic:ident>)? => $($name:ident: $value:expr),*) => {
+        impl$(<$generic>)? std::fmt::Debug for $type$(<$generic>)? {
+            fn fmt(&$self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.debug_struct(stringify!($type))$(.field(stringify!($name), &$value))*.finish_non_exhaustive()
+            }
         }
     };
 }

@@ -42,14 +42,27 @@ mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
+pub use crate::error::StepError;
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, SteadyRun};
-pub use read::report::{BodyState, StepReport, Warnings};
+pub use read::report::{BodyState, Estimated, StepReport, Warnings};
 pub use read::stress::StressHistory;
 pub use run::follow::Run;
-pub use run::progress::{ErrorBudget, Stepping};
+pub use run::progress::{ErrorBudget, RunProgress, Stepping};
+pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use stepper::ViscoelasticContact;
+
+use builder::memory::Footprint;
+use computation::Computation;
+use indenter::Indenter;
+use indenter::hull::Hull;
+use run::progress::Progress;
+use scene::Scene;
+use state::{Clock, Equilibrium, State};
+use step::request::{Step, Trial};
+use window::region::Region;
+use window::window::Window;

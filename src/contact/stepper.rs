@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::contact::computation::Computation;
 use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
-use crate::contact::run::progress::Progress;
-use crate::contact::scene::Scene;
+use crate::contact::{Computation, Progress, Scene};
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -17,7 +15,7 @@ use crate::contact::scene::Scene;
 /// let grid = Grid::square(64, 4.0e-3)?;
 /// let mut contact = ViscoelasticContact::builder(grid)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// contact.step(0.0, Load::force(1.0))?; // Δ = 0: the load jumps
 /// let before = contact.contact_area();
@@ -33,7 +31,7 @@ use crate::contact::scene::Scene;
 /// # use viscocontact::prelude::*;
 /// # let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
 /// #     .geometry(&Sphere::new(10.0e-3)?)
-/// #     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+/// #     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 /// #     .build()?;
 /// contact.step(0.0, Load::force(1.0))?;
 /// let depth = contact.approach();

@@ -41,8 +41,6 @@ fn number(value: f64) -> String {
 
 /// A run as a CSV file with one row per step, each passed to the operating system when its `write` returns.
 ///
-/// Needs the feature `csv`.
-///
 /// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
@@ -56,7 +54,7 @@ fn number(value: f64) -> String {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-csv-{}", std::process::id()));
 /// # std::fs::create_dir_all(&folder).unwrap();
@@ -94,7 +92,7 @@ impl CsvHistory {
     ///
     /// # Errors
     /// As [`CsvHistory::create`], except that the file may exist; something else than a file may not
-    /// ([`Error::NotAFile`](crate::Error::NotAFile)).
+    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn create_or_replace(
         path: impl AsRef<Path>,
         metadata: &Metadata,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::extent::Extent;
 use crate::{Grid, InfluenceKernel};
 
@@ -94,7 +94,7 @@ impl ContactSize {
         let mut size = *self;
         for _ in 0..MAX_GROWTHS {
             match compute(&size) {
-                Err(Error::ContactAtEdge { .. }) => size.reach = size.reach.map(|half| GROWTH * half),
+                Err(Error::Step(StepError::ContactAtEdge { .. })) => size.reach = size.reach.map(|half| GROWTH * half),
                 other => return other,
             }
         }

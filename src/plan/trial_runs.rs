@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
@@ -138,7 +138,7 @@ impl TrialScene<'_> {
         for _ in 0..MAX_DOMAINS {
             let factors;
             match self.follow(Grid::new(cells, lengths)?, &[]).map(|run| run.size) {
-                Err(Error::ContactAtEdge { .. }) => factors = [1.7; 2],
+                Err(Error::Step(StepError::ContactAtEdge { .. })) => factors = [1.7; 2],
                 Err(Error::NothingToTouch { .. }) => factors = [0.3; 2],
                 Err(error) => return Err(error),
                 Ok(size) => {
@@ -180,7 +180,7 @@ impl TrialScene<'_> {
         let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
         match (TrialScene { tolerance, ..*self }.follow(grid, &stops)) {
-            Err(Error::StepTooShort { .. } | Error::NotConverged { .. }) => Ok(None),
+            Err(Error::Step(StepError::StepTooShort { .. }) | Error::Step(StepError::NotConverged { .. })) => Ok(None),
             finer => {
                 let mut states = finer?.states.into_iter();
                 Ok(times.iter().map(|&time| states.find(|state| state.time == time)).collect())
@@ -264,7 +264,7 @@ impl TrialScene<'_> {
 fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32) -> Result<StepReport> {
     let before = contact.load();
     match contact.step(dt, load) {
-        Err(Error::NotConverged { .. }) if halvings > 0 && dt > 0.0 => {
+        Err(Error::Step(StepError::NotConverged { .. })) if halvings > 0 && dt > 0.0 => {
             advance(contact, 0.5 * dt, before.towards(&load, 0.5), halvings - 1)?;
             advance(contact, 0.5 * dt, load, halvings - 1)
         }

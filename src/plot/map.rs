@@ -1,15 +1,14 @@
 //! Colour maps of fields.
 
+use educe::Educe;
+
+use crate::values::counted;
 use std::path::Path;
 
 use crate::Grid;
 use crate::error::{Result, exact_length, least_length};
-use crate::plot::axis::{Axis, Room};
-use crate::plot::canvas::Canvas;
 use crate::plot::color_bar::{self, BAR_WIDTH};
-use crate::plot::frame::{BELOW, Frame};
-use crate::plot::quantity::{color_scale, drawable};
-use crate::plot::{Color, Picture, Quantity};
+use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Picture, Quantity, Room, color_scale, drawable};
 
 /// Width of the space to the left and to the right of a map and height of that above it in pixels.
 const LEFT: u32 = 115;
@@ -39,7 +38,8 @@ const MIN_BAR: u32 = 200;
 /// # std::fs::remove_file(&path).unwrap();
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 #[non_exhaustive]
 pub struct Map {
     /// The title above the map.
@@ -58,9 +58,12 @@ pub struct Map {
     /// The point in the middle.
     pub(super) middle: [f64; 2],
     /// Lines from point to point, drawn over the frame.
+    #[educe(Debug(method(counted)))]
     pub(super) lines: Vec<[(f64, f64); 2]>,
+    #[educe(Debug(method(counted)))]
     values: Vec<f64>,
     /// Whether each cell lies inside the outline; empty without an outline.
+    #[educe(Debug(method(counted)))]
     inside_outline: Vec<bool>,
 }
 

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::{Error, Result, StatesError, non_negative};
+use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
 use crate::load::Load;
@@ -39,6 +39,7 @@ struct Scene {
 
 /// The state after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StatesReport {
     /// Time \[s\].
@@ -124,7 +125,11 @@ impl StatesContact {
         };
         let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
         if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::BeyondMaterial { time, age: reduced, known_until: self.scene.known_until });
+            return Err(Error::Step(StepError::BeyondMaterial {
+                time,
+                age: reduced,
+                known_until: self.scene.known_until,
+            }));
         }
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;

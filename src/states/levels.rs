@@ -1,6 +1,6 @@
 //! The levels of a contact: groups with one past each, and the level up to which they are held.
 
-use crate::error::{Error, Result, StatesError};
+use crate::error::{Error, Result, StatesError, StepError};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::states::curve::{ElasticStates, Motions};
 
@@ -119,7 +119,10 @@ impl Levels {
         self.history.predict(dt, interpolant, &mut self.trial);
         let compliance = self.history.rule().compliance();
         if compliance == 0.0 {
-            return Err(Error::NoElasticResponse { time, what: "a jump of the load (ramp it instead)" });
+            return Err(Error::Step(StepError::NoElasticResponse {
+                time,
+                what: "a jump of the load (ramp it instead)",
+            }));
         }
         if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {
             return Err(StatesError::OutOfOrder { time, displacement }.into());

@@ -1,8 +1,7 @@
 //! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series, direct sums.
 
-use crate::common::bodies::maxwell;
 use crate::common::refused::field;
-use crate::common::spheres::RADIUS;
+use crate::common::{RADIUS, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
@@ -54,9 +53,9 @@ fn elastic_bulk_obeys_the_correspondence_principle() {
         spectrum.glassy() + spectrum.fluidity() / s + terms.sum::<f64>()
     };
     let bodies: Vec<Box<dyn Fn() -> Box<dyn Rheology>>> = vec![
-        Box::new(|| Box::new(Maxwell::new(1.0e6, 1.0e6).unwrap())),
-        Box::new(|| Box::new(Zener::new(1.0e9, 1.0e6, 1.0e6).unwrap())),
-        Box::new(|| Box::new(KelvinVoigt::new(1.0e6, 1.0e6).unwrap())),
+        Box::new(|| Box::new(Maxwell::with_time(1.0e6, 1.0).unwrap())),
+        Box::new(|| Box::new(Zener::with_time(1.0e9, 1.0e6, 1.0).unwrap())),
+        Box::new(|| Box::new(KelvinVoigt::with_time(1.0e6, 1.0).unwrap())),
         Box::new(|| Box::new(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-5..=1e5, 1e-4).unwrap())),
     ];
     for body in bodies {
@@ -76,7 +75,7 @@ fn elastic_bulk_obeys_the_correspondence_principle() {
 
 #[test]
 fn elastic_bulk_tends_to_its_neighbours() {
-    let zener = || Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap();
+    let zener = || Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap();
     // nearly incompressible: J/4
     let stiff = Material::elastic_bulk(zener(), 1.0e16).unwrap();
     let incompressible = Material::incompressible(zener());
@@ -103,7 +102,7 @@ fn elastic_bulk_tends_to_its_neighbours() {
 
 #[test]
 fn two_bodies_share_the_approach() {
-    let tyre = || Material::constant_poisson(Zener::new(2.0e6, 1.0e6, 3.0e6).unwrap(), 0.4).unwrap();
+    let tyre = || Material::constant_poisson(Zener::with_time(2.0e6, 1.0e6, 3.0).unwrap(), 0.4).unwrap();
     let steel = || Material::constant_poisson(Elastic::new(2.0e6).unwrap(), 0.3).unwrap();
     for (name, counter) in [("creeping", tyre as fn() -> Material), ("elastic", steel)] {
         let reference = GrowingSphere::step(RADIUS, &maxwell().against(counter()), FORCE).unwrap();
@@ -181,14 +180,14 @@ fn a_body_without_an_exact_series_is_fitted_over_the_times_it_is_wanted_for() {
     assert_abs_diff_eq!(last / 1e5, 1.0, epsilon = 1e-12);
     // a step beyond is refused and changes nothing
     let before = (contact.time(), contact.approach());
-    assert!(matches!(contact.step(1e5, Load::force(FORCE)), Err(Error::BeyondMaterial { .. })));
+    assert!(matches!(contact.step(1e5, Load::force(FORCE)), Err(Error::Step(StepError::BeyondMaterial { .. }))));
     assert_eq!(before, (contact.time(), contact.approach()));
     contact.step(0.1, Load::force(FORCE)).unwrap();
 
     // nor does a failed first step change what was fitted
     let mut contact = builder(64, 0.5e-6).material(closure()).times(1e-5..=1e10).build().unwrap();
     contact.step(0.0, Load::force(FORCE)).unwrap();
-    assert!(matches!(contact.step(1e9, Load::force(1e6 * FORCE)), Err(Error::ContactAtEdge { .. })));
+    assert!(matches!(contact.step(1e9, Load::force(1e6 * FORCE)), Err(Error::Step(StepError::ContactAtEdge { .. }))));
     contact.step(1e-3, Load::force(FORCE)).unwrap();
     let [first, _] = contact.material().fit_reports().next().unwrap().range().unwrap();
     assert_abs_diff_eq!(first / 1e-5, 1.0, epsilon = 1e-12);
@@ -272,7 +271,7 @@ fn direct_sums_keep_within_their_memory() {
         contact.step(0.1, Load::force(FORCE)).unwrap();
     }
     let error = contact.step(0.1, Load::force(FORCE)).unwrap_err();
-    assert!(matches!(error, Error::HistoryFull { steps: 5, limit: 10_240, .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::HistoryFull { steps: 5, limit: 10_240, .. })), "{error}");
     assert_abs_diff_eq!(contact.time(), 0.5, epsilon = 1e-15);
 }
 
@@ -351,6 +350,6 @@ fn series_over_too_many_decades_are_refused() {
     }
     assert!(body.series(1e-10..=1e30, 0.1).unwrap().report().max_misfit() <= 0.1);
     // what has an exact series needs no fit
-    let exact = Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap();
+    let exact = Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap();
     assert!(exact.series(1e-90..=1e90, 1e-4).unwrap().report().is_exact());
 }

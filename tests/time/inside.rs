@@ -10,14 +10,9 @@ use viscocontact::Error;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-use crate::common::bodies::elastic;
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
 use crate::common::histories::{self, Scene};
-use crate::common::random_scenes::RandomScene;
-use crate::common::ratios::Ratios;
 use crate::common::runs::scenes;
-use crate::common::spheres::builder_on;
+use crate::common::{Draws, RandomScene, Ratios, builder_on, elastic, from_environment};
 
 /// A history that is one until a time, and another from then on.
 #[derive(Debug)]
@@ -201,7 +196,7 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
 /// happens in it. The ends are the states themselves, and other times are refused.
 #[test]
 fn a_state_within_a_long_step_follows_the_relaxation() {
-    let zener = Material::incompressible(Zener::new(1.0e6, 0.1e6, 0.1e6).unwrap());
+    let zener = Material::incompressible(Zener::with_time(1.0e6, 0.1e6, 1.0).unwrap());
     let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener).build().unwrap();
     contact.step(0.0, Load::approach(2.0e-5)).unwrap();
     let (start, instant) = (contact.clone(), contact.force());
@@ -228,7 +223,7 @@ fn a_state_within_a_long_step_follows_the_relaxation() {
 /// whole relaxation.
 #[test]
 fn states_within_steps_of_a_held_ball_are_exact() {
-    let zener = || Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.3e6).unwrap());
+    let zener = || Material::incompressible(Zener::with_time(1.0e6, 0.3e6, 1.0).unwrap());
     let four = [(0.4e6, 3.0e-3), (0.3e6, 3.0e-2), (0.2e6, 0.3), (0.1e6, 3.0)];
     let four_times = || Material::incompressible(GeneralizedMaxwell::new(0.1e6, &four).unwrap());
     let (depth, force) = (Load::approach(3.0e-5), Load::force(0.5));

@@ -2,13 +2,9 @@
 //!
 //! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test suite time::protocols_run -- --nocapture`.
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
 use crate::common::random_histories::FromSmallLoad;
-use crate::common::random_scenes::RandomScene;
-use crate::common::ratios::Ratios;
-use crate::common::spheres::builder_on;
 use crate::common::watched_runs::watch;
+use crate::common::{Draws, RandomScene, Ratios, builder_on, from_environment};
 use viscocontact::prelude::*;
 
 /// A run of so many contact problems does not end.
@@ -17,8 +13,8 @@ const MOST_PROBLEMS: u64 = 20_000;
 fn bodies() -> [(&'static str, Material); 4] {
     [
         ("elastic", Material::incompressible(Elastic::new(1.0e6).unwrap())),
-        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
-        ("Maxwell", Material::incompressible(Maxwell::new(1.0e6, 0.3e6).unwrap())),
+        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::with_time(1.0e6, 0.3).unwrap())),
+        ("Maxwell", Material::incompressible(Maxwell::with_time(1.0e6, 0.3).unwrap())),
         ("fractional Zener", Material::incompressible(FractionalZener::new(3.0e6, 1.0e6, 0.3, 0.5).unwrap())),
     ]
 }

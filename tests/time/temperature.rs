@@ -6,10 +6,10 @@ use viscocontact::observe::Stress;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-use crate::common::draws::Draws;
+use crate::common::figures;
 use crate::common::random_bodies::random_body;
 use crate::common::refused::field;
-use crate::common::spheres::builder_on;
+use crate::common::{Draws, builder_on};
 
 const REFERENCE: f64 = 300.0;
 
@@ -22,7 +22,7 @@ fn grid(cells: usize) -> Grid {
 }
 
 fn zener() -> Zener {
-    Zener::new(1.0e6, 0.25e6, 0.25e6).unwrap()
+    Zener::with_time(1.0e6, 0.25e6, 1.0).unwrap()
 }
 
 fn settings() -> Settings {
@@ -228,13 +228,15 @@ fn adaptive_steps_end_on_corners_and_keep_their_error() {
         (answers, ends.len())
     };
     let (truth, _) = run(1e-8);
-    for tolerance in [1e-3, 1e-4, 1e-5] {
+    let ratios = [1e-3, 1e-4, 1e-5].map(|tolerance| {
         let (answers, steps) = run(tolerance);
         assert_eq!(answers.len(), truth.len());
         let error = answers.iter().zip(&truth).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         println!("{tolerance:e}: error {error:.1e} in {steps} steps");
         assert!(error < 2.0 * tolerance, "{tolerance:e}: error {error:.1e} in {steps} steps");
-    }
+        format!("{:.2}", error / tolerance)
+    });
+    figures::figure("errors at changing temperatures", &ratios.join(", ")).unwrap();
 }
 
 #[test]
@@ -310,7 +312,8 @@ fn metadata_contain_the_temperature() {
     let scene = || builder_on(grid(8), Material::incompressible(zener()));
     let warming = scene().temperature(TemperatureHistory::table(wlf(), &table).unwrap()).build().unwrap();
     let json = Metadata::new("warming").json(&warming);
-    assert!(json.contains("\"temperature\": ") && json.contains("310.5") && json.contains("Wlf"), "{json}");
+    assert!(json.contains("\"temperature\": ") && json.contains("\"table\": [[0.0, 290.0], [2.0, 310.5]]"), "{json}");
+    assert!(json.contains("\"c1\": ") && json.contains("\"c2\": "), "{json}");
     assert!(!Metadata::new("constant").json(&scene().build().unwrap()).contains("\"temperature\""));
 }
 

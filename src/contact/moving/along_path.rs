@@ -2,12 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::indenter::Indenter;
-use crate::contact::read::report::StepReport;
-use crate::contact::settings::Frame;
-use crate::contact::state::State;
-use crate::contact::step::request::Step;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Frame, Indenter, State, Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result, exact_length};
 use crate::geometry::Gap;
 use crate::load::Load;
@@ -16,6 +11,7 @@ use crate::{Grid, memory};
 
 /// A step along a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct TravelReport {
     /// Report of the step.

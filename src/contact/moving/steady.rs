@@ -1,10 +1,8 @@
 //! Motion over the bodies to the steady state.
 
 use crate::axis::Axis;
-use crate::contact::read::report::StepReport;
-use crate::contact::settings::Frame;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, finite, within};
+use crate::contact::{Frame, StepReport, ViscoelasticContact};
+use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
 
@@ -20,6 +18,7 @@ value! {
 /// A steady motion of the indenter over the bodies, and the tolerance of the steady state; made by
 /// [`SteadyMotion::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyMotion {
     /// Axis of the motion.
     axis: Axis;
@@ -76,7 +75,7 @@ impl ViscoelasticContact {
     /// let cylinder = Shifted::new(Cylinder::new(10.0e-3)?, [2.0e-3, 0.0])?;
     /// let mut contact = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&cylinder)
-    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.005e6)?))
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 0.01)?))
     ///     .kernel(InfluenceKernel::line(&grid, 1.0)?)
     ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;
@@ -123,7 +122,7 @@ impl SteadyRun<'_> {
         }
         let apart = self.contact.contact_cells() == 0;
         if apart && self.tried_to_touch {
-            return Err(Error::NoContact { time: self.contact.time() });
+            return Err(Error::Step(StepError::NoContact { time: self.contact.time() }));
         }
         if !apart && self.left == 0 && !self.next_stride()? {
             return Ok(None);
@@ -184,7 +183,7 @@ impl SteadyRun<'_> {
                 }
                 if self.travelled > MAX_GRID_LENGTHS * cells {
                     let (change, distance) = (self.change, self.distance());
-                    return Err(Error::NotSteady { distance, change, tolerance: limit });
+                    return Err(Error::Step(StepError::NotSteady { distance, change, tolerance: limit }));
                 }
                 (1, contact)
             }

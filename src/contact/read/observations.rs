@@ -1,10 +1,8 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
 use crate::Axis;
-use crate::contact::settings::Solver;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Convergence, Error, Result, finite};
+use crate::contact::{Solver, State, ViscoelasticContact};
+use crate::error::{Convergence, Error, Result, StepError, finite};
 use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
@@ -91,11 +89,11 @@ impl ViscoelasticContact {
     /// If the iteration does not converge.
     pub fn stiffness_over_modulus(&self) -> Result<f64> {
         let State { clock, region, current, .. } = &self.computation.state;
-        let kernel = self.computation.window.kernel();
+        let kernel = &self.computation.window.kernel;
         if current.contact_cells == 0 {
             return Ok(0.0);
         }
-        if kernel.mean_is_held() && current.contact_cells == self.grid().len() {
+        if kernel.whole.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok(f64::INFINITY);
         }
         match kernel.rows().together(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0)))? {
@@ -104,7 +102,7 @@ impl ViscoelasticContact {
                 let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
                 let convergence =
                     Convergence::new(Vec::new(), tolerance, self.settings().solver == Solver::ActiveSet, false).into();
-                Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+                Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
             }
         }
     }
@@ -141,7 +139,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let gaps = contact.gap_distribution(20)?;
@@ -171,7 +169,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(33, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let profile = contact.profile(Axis::X1, 0.0)?;
@@ -215,7 +213,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// assert_eq!(contact.asymmetry([0.0; 2])?, None);
     /// contact.step(0.0, Load::force(0.5))?;

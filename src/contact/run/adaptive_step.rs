@@ -1,5 +1,7 @@
 //! Steps as long as their error allows.
 
+use std::sync::atomic::AtomicBool;
+
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::progress::StepErrors;
@@ -9,7 +11,7 @@ use crate::contact::settings::Settings;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
 
@@ -38,6 +40,8 @@ pub(super) struct Course<'a> {
     /// The next time at which a step has to end, and the next at which the displacement may have a kink.
     pub(super) stop: f64,
     pub(super) kink: f64,
+    /// Set by another thread to end the step.
+    pub(super) cancelled: Option<&'a AtomicBool>,
 }
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
@@ -63,11 +67,12 @@ pub(super) fn adaptive_step(
         let (time, dt) = towards(now, stop, wanted);
         // near the resolution of the time, a shortened step may round to the same end again and again
         if time <= now || time >= tried {
-            return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
+            return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance: control.tolerance }));
         }
         tried = time;
         let loads = [history.before(time).validated_at(time)?];
         let mut step = contact.request(time, dt, &loads, tolerance)?;
+        step.cancelled = course.cancelled;
         let straying = control.watch(history, [now, time], |time| scene.reduced_time(clock, time))?;
         let parted = state.current.contact_cells == 0 && control.stays_away(history, now, time);
         if straying > control.tolerance && !parted {
@@ -80,7 +85,7 @@ pub(super) fn adaptive_step(
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = tolerance.min((tolerance / outlook.on_switch[1]).max(LEAST_TOLERANCE));
         let attempt = match contact.attempt(&step) {
-            Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
+            Err(Error::Step(StepError::NotConverged { .. })) if failures < MAX_SOLVER_RETRIES => {
                 failures += 1;
                 control.shorten(step.interval.dt);
                 add_work(&mut wasted, &contact.computation);

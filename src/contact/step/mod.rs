@@ -24,16 +24,13 @@ pub(in crate::contact) mod request;
 pub(in crate::contact) mod spring;
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
-use crate::contact::computation::Computation;
-use crate::contact::read::report::StepReport;
-use crate::contact::scene::Scene;
-use crate::contact::state::{Equilibrium, State};
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::placement::{outgrown, region_for};
-use crate::contact::window::region::Region;
-use crate::error::{Error, Result, non_negative};
+use crate::contact::{
+    Computation, Equilibrium, Estimated, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
+};
+use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
@@ -103,7 +100,7 @@ impl ViscoelasticContact {
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
-        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance })
+        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, cancelled: None })
     }
 
     /// Computes a step and accepts it.
@@ -130,6 +127,10 @@ impl ViscoelasticContact {
         let cells = if region.is_shared() { 0 } else { region.len() };
         let tried = rows.together(|| {
             rows.same(marks(step))?;
+            // ranks would see the flag in different iterations: they ask once a step
+            if step.cancelled.is_some_and(|flag| rows.any(flag.load(Ordering::Relaxed))) {
+                return Err(Error::Cancelled { what: "a step" });
+            }
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
         if let Some(larger) = &larger {
@@ -154,9 +155,16 @@ impl ViscoelasticContact {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let reach = self.adopt(attempt, step, error.sizes)?;
+        let report = self.report(estimated.then_some(error.relative), reach);
+        report.emit();
+        Ok(report)
+    }
+
+    /// The report of the last step, whose pressed cells are within `reach`.
+    pub(in crate::contact) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
-        let report = StepReport {
+        StepReport {
             time: state.clock.time,
             force: self.force(),
             approach: self.approach(),
@@ -164,16 +172,15 @@ impl ViscoelasticContact {
             contact_cells,
             tilt: self.tilt(),
             dt: state.clock.last_length,
-            time_error: estimated.then_some(error.relative),
+            time_error,
+            estimated: Estimated::under(&state.loads),
             warnings: collect_warnings(scene, state, reach),
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
             preconditioner_applications: counts.preconditioner_applications,
             residual,
-        };
-        report.emit();
-        Ok(report)
+        }
     }
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
@@ -230,7 +237,7 @@ fn compute(
         let grown = match at.solve(scene, step) {
             Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
             // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::LoadOutsideHull { .. }) if at.state.history.far_source().is_some() => {
+            Err(Error::Step(StepError::LoadOutsideHull { .. })) if at.state.history.far_source().is_some() => {
                 Some(Region::whole(&scene.grid, at.state.region.folded()))
             }
             Err(error) => return Err(error),
@@ -249,7 +256,7 @@ impl Computation {
         material_is_known(scene, state, step, !state.is_undisturbed())?;
 
         // u = u_old + c K p
-        let (kernel, work) = window.kernel_and_work();
+        let (kernel, work) = (&window.kernel, &mut window.work);
         let (c, convolutions) = state.history.predict(step.interval, scene.history_inputs(), kernel, work)?;
         compliance_is_usable(c, step)?;
 
@@ -269,7 +276,8 @@ impl Computation {
         } else {
             initial_guess(state, window, trial, step, c);
         }
-        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
+        let cancelled = step.cancelled.filter(|_| !state.region.is_shared());
+        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
         let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
         let outcome = solve_with_springs(scene, state, step, c, trial, solve);

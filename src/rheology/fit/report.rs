@@ -1,9 +1,13 @@
+use educe::Educe;
+
+use crate::values::counted;
 use std::fmt;
 
-use super::basis::{FittedSeries, MaterialFunction, Sample};
+use super::{FittedSeries, MaterialFunction, Sample};
 
 /// One given value and the value of the fitted series.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct FitSample {
     /// The material function.
@@ -35,6 +39,7 @@ const SYSTEMATIC: f64 = 1.0;
 
 /// Why a series fitted to measurements should be inspected before use. `Display` explains it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum FitWarning {
     /// There are too few samples to determine the curve between them: measure more per decade.
@@ -74,11 +79,15 @@ impl fmt::Display for FitWarning {
 /// assert!(creep.report().max_misfit() <= 1.0e-4);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitReport {
+    #[educe(Debug(method(counted)))]
     samples: Vec<FitSample>,
     terms: usize,
     wrong_way: f64,
+    #[educe(Debug(method(counted)))]
     interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
 }
@@ -200,16 +209,9 @@ impl fmt::Display for FitReport {
             MaterialFunction::Creep | MaterialFunction::Relaxation => "s",
             MaterialFunction::Storage | MaterialFunction::Loss => "rad/s",
         };
-        write!(
-            f,
-            "{} terms for {} samples from {first:.3e} to {last:.3e} {unit}: relative misfit {:.1e} rms, {:.1e} at most \
-             (at {:.3e} {unit})",
-            self.terms,
-            self.samples.len(),
-            self.rms_misfit(),
-            self.max_misfit(),
-            worst.x
-        )?;
+        let (rms, most, x, samples) = (self.rms_misfit(), self.max_misfit(), worst.x, self.samples.len());
+        write!(f, "{} terms for {samples} samples from {first:.3e} to {last:.3e} {unit}: ", self.terms)?;
+        write!(f, "relative misfit {rms:.1e} rms, {most:.1e} at most (at {x:.3e} {unit})")?;
         if self.wrong_way > 0.0 {
             write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
         }
