@@ -24,10 +24,13 @@ pub(super) enum Side {
     Uniform(f64),
 }
 
+/// The kernel of a body on a grid.
+pub(super) type KernelOf<'a> = &'a dyn Fn(&Grid) -> Result<InfluenceKernel>;
+
 /// The body of a plan: its kernel on a grid, a half-space by default, and the sides of its domain.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Body<'a> {
-    pub(super) kernel: Option<&'a dyn Fn(&Grid) -> Result<InfluenceKernel>>,
+    pub(super) kernel: Option<KernelOf<'a>>,
     pub(super) sides: [Side; 2],
 }
 

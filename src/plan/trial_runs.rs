@@ -136,10 +136,9 @@ impl TrialScene<'_> {
         });
         let cells = sides.map(|side| if matches!(side, Side::Uniform(_)) { 1 } else { DOMAIN_CELLS });
         for _ in 0..MAX_DOMAINS {
-            let factors;
-            match self.follow(Grid::new(cells, lengths)?, &[]).map(|run| run.size) {
-                Err(Error::Step(StepError::ContactAtEdge { .. })) => factors = [1.7; 2],
-                Err(Error::NothingToTouch { .. }) => factors = [0.3; 2],
+            let factors = match self.follow(Grid::new(cells, lengths)?, &[]).map(|run| run.size) {
+                Err(Error::Step(StepError::ContactAtEdge { .. })) => [1.7; 2],
+                Err(Error::NothingToTouch { .. }) => [0.3; 2],
                 Err(error) => return Err(error),
                 Ok(size) => {
                     let filled = [0, 1].map(|axis| 2.0 * size.reach[axis] / lengths[axis]);
@@ -148,9 +147,9 @@ impl TrialScene<'_> {
                         return Ok(size);
                     }
                     let least = 2.0 / DOMAIN_CELLS as f64;
-                    factors = filled.map(|filled| (filled.max(least) * 1.3).clamp(0.1, 1.7));
+                    filled.map(|filled| (filled.max(least) * 1.3).clamp(0.1, 1.7))
                 }
-            }
+            };
             if !is_found.contains(&true) {
                 break;
             }
