@@ -1,6 +1,5 @@
 //! Ranks that are threads of one process.
 
-use std::fmt;
 use std::panic::resume_unwind;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
@@ -167,8 +166,4 @@ impl Ranks for Threads {
     }
 }
 
-impl fmt::Debug for Threads {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Threads").field("rank", &self.rank).field("size", &self.size()).finish()
-    }
-}
+debug_by!(self: Threads => rank: self.rank, size: self.size());

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use crate::Axis;
 use crate::contact::{State, ViscoelasticContact};
 use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::parallel::Rows;
-use crate::sum;
+use crate::{Axis, sum};
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the

@@ -1,8 +1,7 @@
 //! The stress on a section, and in a volume.
 
 use super::Stress;
-use crate::Axis;
-use crate::Grid;
+use crate::{Axis, Grid};
 
 /// The stress on a vertical section, see [`SubsurfaceStress::on_section`](super::SubsurfaceStress::on_section).
 #[derive(Debug, Clone, PartialEq)]
