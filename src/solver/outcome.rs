@@ -76,8 +76,8 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Finds the rounding of the gap from that of the guess, `rounding`, and writes the relative residual and its own rounding to `solution`,
-    /// the residual to its trace, too. The step judges convergence and warns of rounding by them.
+    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `rounding` is the rounding of the
+    /// guess. The step judges convergence and warns of rounding by them.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations

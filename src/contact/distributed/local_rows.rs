@@ -10,7 +10,7 @@ use crate::{Axis, sum};
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
     /// grid, unless [`Builder::ranks`](crate::contact::Builder::ranks) share them out. Then they are the rows of this rank, from the upper
-    /// half where the contact is symmetric about x1 = 0, whose other half nobody computes; there may be none.
+    /// half where the contact is symmetric about x1 = 0, since the other half is not computed; a rank may have no rows.
     pub fn rows(&self) -> Range<usize> {
         self.computation.state.region.shown_rows()
     }
