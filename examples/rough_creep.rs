@@ -307,7 +307,6 @@ fn map(contact: &ViscoelasticContact, mean: f64, time: f64, share: f64) -> Resul
 /// The run as files: a row a step, and the whole state once a decade where the crate is built to write it.
 struct Files {
     history: CsvHistory,
-    #[cfg(any(feature = "npy", feature = "vtk"))]
     frames: Vec<viscocontact::output::FrameSeries>,
 }
 
@@ -315,13 +314,11 @@ impl Files {
     fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
         Ok(Files {
             history: CsvHistory::create_or_replace(args.output.join("history.csv"), scene, contact, &[])?,
-            #[cfg(any(feature = "npy", feature = "vtk"))]
             frames: {
                 use viscocontact::output::{Field, Format, FrameSeries};
                 let formats = [
                     #[cfg(feature = "npy")]
                     (Format::Npz, "npz"),
-                    #[cfg(feature = "vtk")]
                     (Format::Vtk, "vtk"),
                 ];
                 let series = formats.map(|(format, folder)| {
@@ -335,7 +332,6 @@ impl Files {
     /// Writes the state as it is.
     #[allow(clippy::unnecessary_wraps, unused_variables, reason = "there is nothing to write without features")]
     fn frame(&mut self, contact: &ViscoelasticContact) -> Result<()> {
-        #[cfg(any(feature = "npy", feature = "vtk"))]
         for series in &mut self.frames {
             series.write(contact)?;
         }

@@ -162,7 +162,6 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     map.axes[0] = Quantity::of("x1 from the axis of the sphere", "m");
     map.title = format!("A sphere slides to the right, friction {friction:.3}");
     map.save(output.join("pressure.png"))?;
-    #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());

@@ -114,15 +114,11 @@
 //! `checkpoint`: saves the state to a file and resumes from it ([`contact::Run`]`::autosave_to`,
 //! `ViscoelasticContact::save` and `resume`).
 //!
-//! `csv` (on by default): tables of measured data from CSV files.
-//!
 //! `laws`: `proptest` strategies for testing your own rheologies, geometries and load histories (`laws`).
 //!
 //! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
 //!
 //! `plot`: pictures of contacts and runs as PNG and SVG files, and animated GIFs, with a built-in font.
-//!
-//! `vtk`: fields to VTK image data, a time series that ParaView opens.
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
@@ -170,18 +166,11 @@ mod error;
 mod events;
 mod extent;
 mod fft;
-#[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
 mod file;
 pub mod geometry;
 mod grid;
 // the programs of the guide run only with the features that they use
-#[cfg(all(
-    doc,
-    any(
-        not(doctest),
-        all(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk")
-    )
-))]
+#[cfg(all(doc, any(not(doctest), all(feature = "checkpoint", feature = "npy", feature = "plot"))))]
 pub mod guide;
 mod hereditary;
 mod input;
@@ -241,9 +230,7 @@ pub mod prelude {
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
-    #[cfg(feature = "csv")]
     pub use crate::output::CsvHistory;
-    #[cfg(any(feature = "npy", feature = "vtk"))]
     pub use crate::output::{Field, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{

@@ -8,7 +8,6 @@ use std::path::Path;
 
 use crate::error::{Error, FileError, Result};
 
-#[cfg(feature = "csv")]
 pub(crate) use text::shortened;
 pub use text::{Delimiter, TextFormat};
 pub(crate) use text::{TextRow, TextTable};

@@ -12,17 +12,13 @@ value! {
 /// Fortran, and no separators of thousands. Empty lines and lines that start with `#` are skipped.
 ///
 /// ```
-/// # #[cfg(feature = "csv")]
 /// use viscocontact::rheology::{Experiment, Measurements, Units};
 /// use viscocontact::{Delimiter, TextFormat};
 ///
 /// let text = "t J\n0,5 1,0e-9\n1,5 1,1e-9\n5 1,2e-9\n15 1,3e-9\n";
 /// let format = TextFormat::default().with_delimiter(Delimiter::Blanks).with_decimal_comma(true);
-/// # #[cfg(feature = "csv")]
-/// # {
 /// let body = Measurements::from_csv_reader(Experiment::Creep, text.as_bytes(), Units::SI, format)?.fit()?;
 /// assert_eq!(body.report().samples()[0].x, 0.5);
-/// # }
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -214,7 +210,6 @@ impl TextRow<'_> {
     }
 
     /// Whether a field is a number with a decimal point or a decimal comma.
-    #[cfg(feature = "csv")]
     pub(crate) fn has_numbers(&self) -> bool {
         self.fields.iter().any(|field| number(field, false).or(number(field, true)).is_some())
     }

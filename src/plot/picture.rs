@@ -1,6 +1,5 @@
 //! Pictures in memory, and as PNG and SVG files.
 
-use std::fmt;
 use std::io;
 use std::path::Path;
 
@@ -9,7 +8,8 @@ use base64::prelude::BASE64_STANDARD;
 
 use crate::error::{Error, FileError, Result, count_within, least_length};
 use crate::file::replace;
-use crate::plot::canvas::{Canvas, Element, png_file};
+use crate::plot::Canvas;
+use crate::plot::canvas::{Element, png_file};
 
 /// Greatest width of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
@@ -118,11 +118,7 @@ pub(super) fn check_extension(path: &Path, allowed: &'static [&'static str]) -> 
     allowed.iter().position(|allowed| *allowed == extension).ok_or_else(unknown)
 }
 
-impl fmt::Debug for Picture {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Picture").field("size", &self.size).finish_non_exhaustive()
-    }
-}
+debug_by!(self: Picture => size: self.size);
 
 #[cfg(test)]
 mod tests {

@@ -1,8 +1,7 @@
 //! The memory that a builder predicts, against the bytes that are allocated.
 
-use crate::common::bodies::{elastic, maxwell};
 use crate::common::figures;
-use crate::common::spheres::builder_on;
+use crate::common::{builder_on, elastic, maxwell};
 use std::alloc::System;
 use std::sync::Arc;
 

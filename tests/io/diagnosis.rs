@@ -1,7 +1,6 @@
 //! Warnings of steps, and the reasons of failed steps.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{builder_of, sphere_on};
+use crate::common::{builder_of, elastic, maxwell, sphere_on};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::{Error, Trend};

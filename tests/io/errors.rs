@@ -1,9 +1,8 @@
 //! Bad input gets its own error, and a failed step leaves the contact as it was.
 
-use crate::common::bodies::maxwell;
 use crate::common::refused::field;
-use crate::common::spheres::{builder_on, sphere, sphere_on};
 use crate::common::watched_runs::seen;
+use crate::common::{builder_on, maxwell, sphere, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::process::Command;
 use std::sync::Arc;
@@ -283,10 +282,8 @@ fn a_program_that_returns_an_error_says_what_to_do() {
     let advice = "enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there";
     let expected = format!("Error: at t = 0 s the contact touches the edge of the grid on 60 cells: {advice}\n");
     assert_eq!(printed(&[]), expected);
-    if cfg!(feature = "csv") {
-        let (path, cause) = ("no/such/folder/history.csv", "No such file or directory (os error 2)");
-        assert_eq!(printed(&[path]), format!("Error: {path} cannot be written: {cause}\n"));
-    }
+    let (path, cause) = ("no/such/folder/history.csv", "No such file or directory (os error 2)");
+    assert_eq!(printed(&[path]), format!("Error: {path} cannot be written: {cause}\n"));
 }
 
 /// The alternate form prints the fields of an error, as its pattern names them.

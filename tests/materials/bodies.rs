@@ -1,8 +1,7 @@
 //! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series, direct sums.
 
-use crate::common::bodies::maxwell;
 use crate::common::refused::field;
-use crate::common::spheres::RADIUS;
+use crate::common::{RADIUS, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};

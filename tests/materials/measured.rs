@@ -1,17 +1,12 @@
 //! Tables of measured data: fits, noise, invalid tables, and files.
 
-#[cfg(feature = "csv")]
 mod dialects;
-#[cfg(feature = "csv")]
 mod files;
-#[cfg(feature = "csv")]
 mod units;
 
-use crate::common::noise::noise;
-use crate::common::spheres::sphere_on;
+use crate::common::{noise, sphere_on};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
-#[cfg(feature = "csv")]
 use viscocontact::Result;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};

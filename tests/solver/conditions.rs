@@ -1,9 +1,6 @@
 //! Every solution satisfies the contact conditions, and both solvers find the same one.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::noise::uniform;
-use crate::common::spheres::{builder_of, contact_of};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
+use crate::common::{StepLoadedSphere, builder_of, contact_of, elastic, maxwell, uniform};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -1,9 +1,9 @@
 //! Steps, times, moduli, lengths and loads at the ends of their ranges.
 
-use crate::common::bodies::{elastic, maxwell, three_times, zener};
 use crate::common::figures;
-use crate::common::noise::uniform;
-use crate::common::spheres::{RADIUS, builder_of, builder_on, contact_of, sphere};
+use crate::common::{
+    RADIUS, builder_of, builder_on, contact_of, elastic, maxwell, sphere, three_times, uniform, zener,
+};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::contact::Warnings;

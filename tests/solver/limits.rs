@@ -1,12 +1,9 @@
 //! Limit states: loads on the rim of the hull, pivots that a touch balances, loads and steps at the ends of the numbers.
 //! `LIMIT_SCENES` (120) scenes of each kind.
 
-use crate::common::spheres::builder_of;
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::plan::{Accuracy, Plan};
 use viscocontact::prelude::*;
-
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
 
 fn bodies(draws: &mut Draws) -> Material {
     match draws.below(2) {

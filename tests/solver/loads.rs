@@ -1,7 +1,6 @@
 //! Loads that tilt, prescribe the approach, let go and come back, on elastic and creeping bodies.
 
-use crate::common::bodies::{E_STAR, elastic};
-use crate::common::spheres::contact_of;
+use crate::common::{E_STAR, contact_of, elastic};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{AxisymmetricContact, Profile, RigidPunch};
 use viscocontact::load::LoadError;

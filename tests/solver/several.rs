@@ -2,9 +2,7 @@
 //! contact solves. `SEVERAL_SCENES` (30) scenes of six steps, from `SEVERAL_FIRST` (2360) on: of these, the 2378th once left
 //! the fall-back without a gain.
 
-use crate::common::bodies::elastic;
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
+use crate::common::{Draws, elastic, from_environment};
 use viscocontact::prelude::*;
 
 /// Numbers of the stream in which that scene was found.

@@ -1,7 +1,6 @@
 //! Indenters that move: two frames that must agree, energy, roughness of either body, and steps that fail.
 
-use crate::common::bodies::elastic;
-use crate::common::spheres::{builder_of, contact_of, sphere_on};
+use crate::common::{builder_of, contact_of, elastic, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 

@@ -1,8 +1,7 @@
 //! Rough surfaces on periodic bodies: the work of the solver, and published results.
 
-use crate::common::bodies::{E_STAR, G, elastic};
 use crate::common::figures;
-use crate::common::spheres::builder_of;
+use crate::common::{E_STAR, G, builder_of, elastic};
 use std::sync::Arc;
 
 use crate::common::rough::self_affine;

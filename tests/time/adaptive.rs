@@ -1,9 +1,8 @@
 //! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
 
-use crate::common::bodies::{elastic, maxwell};
 use crate::common::figures;
 use crate::common::histories::{Scene, scenes};
-use crate::common::spheres::{RADIUS, builder_on, contact_of};
+use crate::common::{RADIUS, builder_on, contact_of, elastic, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;

@@ -2,7 +2,7 @@
 //! without elastic response.
 
 use crate::common::protocol::Protocol;
-use crate::common::spheres::{builder_of, builder_on};
+use crate::common::{builder_of, builder_on};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -1,10 +1,8 @@
 //! The cost that the source paper states: its history of pressures, with one convolution for each past step in every step.
 
-use crate::common::spheres::builder_on;
+use crate::common::{StepLoadedSphere, builder_on, maxwell, three_times};
 use std::sync::Arc;
 
-use crate::common::bodies::{maxwell, three_times};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
 

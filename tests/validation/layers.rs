@@ -8,7 +8,7 @@
 //! f = 2E*δ for a flat punch and 2E*(δ − x²/R) for a paraboloid, whose pressure ends smoothly where φ(a) = 0. The
 //! force is ∫₀ᵃ φ ds. L is the textbook's fraction here, nothing is shared with the crate.
 
-use crate::common::spheres::builder_of;
+use crate::common::builder_of;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -7,9 +7,7 @@ use viscocontact::geometry::Sum;
 use viscocontact::observe::MeshError;
 use viscocontact::prelude::*;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
-use crate::common::ratios::Ratios;
+use crate::common::{Draws, Ratios, from_environment};
 
 const LENGTH: f64 = 4.0e-3;
 const RADIUS: f64 = 8.0e-3;

@@ -2,10 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::bodies::{elastic, maxwell};
 use crate::common::figures;
 use crate::common::histories::{four_terms, triangle};
-use crate::common::spheres::{RADIUS, contact_of};
+use crate::common::{RADIUS, contact_of, elastic, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};

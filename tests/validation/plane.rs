@@ -1,7 +1,6 @@
 //! Contacts in plane strain against Westergaard's and Hertz's closed forms.
 
-use crate::common::bodies::{E_STAR, elastic};
-use crate::common::spheres::builder_of;
+use crate::common::{E_STAR, builder_of, elastic};
 use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 use std::sync::Arc;

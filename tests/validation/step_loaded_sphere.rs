@@ -1,7 +1,8 @@
 //! The paper's scene against its Table 1: the figures that the README claims.
 
+use crate::common::StepLoadedSphere;
 use crate::common::figures;
-use crate::common::step_loaded_sphere::{StepLoadedSphere, errors};
+use crate::common::step_loaded_sphere::errors;
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 

@@ -9,8 +9,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::builder::fit_range::Times;
-use crate::contact::settings::Settings;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;

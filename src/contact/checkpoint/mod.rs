@@ -11,11 +11,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::contact::computation::Computation;
-use crate::contact::indenter::Indenter;
-use crate::contact::run::progress::Progress;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Computation, Indenter, Progress, State, ViscoelasticContact};
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;

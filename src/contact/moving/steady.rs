@@ -1,9 +1,7 @@
 //! Motion over the bodies to the steady state.
 
 use crate::axis::Axis;
-use crate::contact::read::report::StepReport;
-use crate::contact::settings::Frame;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Frame, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;

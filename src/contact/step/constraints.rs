@@ -2,12 +2,7 @@
 
 use crate::Grid;
 use crate::axis::Axis;
-use crate::contact::scene::Scene;
-use crate::contact::settings::{Edge, Solver};
-use crate::contact::state::State;
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::region::Region;
-use crate::contact::window::window::Window;
+use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
 use crate::error::{Convergence, Error, Result, StepError, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
@@ -88,11 +83,11 @@ pub(super) fn compliance_is_usable(c: f64, step: &Step<'_>) -> Result<()> {
 /// Rejects an approach greater than the one that closes every gap, if the mean displacement is fixed: Σ h = Σ gap ≥ 0.
 pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>) -> Result<()> {
     let held = step.loads.iter().all(|load| matches!(load, Load::Approach { .. }));
-    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel().mean_is_held(), step.loads)
+    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel.whole.mean_is_held(), step.loads)
     else {
         return Ok(());
     };
-    let rows = window.kernel().rows();
+    let rows = window.kernel.rows();
     let left = rows.sum(&trial.gap) / rows.len() as f64;
     let greatest = approach + left;
     if left > 0.0 {

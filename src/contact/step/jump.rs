@@ -1,9 +1,7 @@
 //! Jumps of the load on bodies without elastic response.
 
-use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, fill_guess};
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::window::Window;
+use crate::contact::{State, Step, Trial, Window};
 use crate::error::{Error, Result, StepError};
 use crate::geometry::Gap;
 use crate::solver::PENETRATION_SLACK;

@@ -1,11 +1,9 @@
 //! Measured data as rheologies.
 
-#[cfg(feature = "csv")]
 mod csv;
 mod data;
 mod master_curve;
 
-#[cfg(feature = "csv")]
 pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 

@@ -1,6 +1,6 @@
 //! Checkpoints of random scenes refused by slightly different scenes; files that many threads write.
 
-use crate::common::bodies::three_times;
+use crate::common::{Temporary, three_times, uniform};
 use std::fs;
 
 use viscocontact::FileError;
@@ -8,8 +8,6 @@ use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 
 use super::refused;
-use crate::common::noise::uniform;
-use crate::common::temporary::Temporary;
 
 const OWNERS: &str = "assignment of cells to rigid bodies";
 

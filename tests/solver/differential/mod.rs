@@ -4,9 +4,7 @@ mod hereditary_integral;
 mod reference;
 mod scenes;
 
-use crate::common::bodies::elastic;
-use crate::common::environment::from_environment;
-use crate::common::spheres::sphere_on;
+use crate::common::{elastic, from_environment, sphere_on};
 use approx::assert_abs_diff_eq;
 use reference::Reference;
 use scenes::Scene;

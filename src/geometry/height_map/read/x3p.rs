@@ -8,9 +8,7 @@ use std::io::{Cursor, Read};
 use roxmltree::{Document, Node, ParsingOptions};
 use zip::ZipArchive;
 
-use super::header::Header;
-use super::number::{Kind, Number};
-use super::{First, bytes, count, listed, wrong_size};
+use super::{First, Header, Kind, Number, bytes, count, listed, wrong_size};
 use crate::error::{Error, FileError, MapError, Result};
 use crate::geometry::HeightMap;
 

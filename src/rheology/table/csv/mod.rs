@@ -32,8 +32,6 @@ impl Units {
 impl Measurements {
     /// Reads a CSV file of an `experiment`: the columns of [`Experiment`].
     ///
-    /// Needs the feature `csv`.
-    ///
     /// Rows may stand in any order. Columns too, if the first line names them by the first word or symbol of each heading,
     /// whatever the case and the unit after it. The first line has headings if none of its fields is a number. Without
     /// headings there are the columns of the experiment, in their order. Headings with a unit (`t [min]`, `J (1/GPa)`,
@@ -58,8 +56,6 @@ impl Measurements {
     }
 
     /// [`Measurements::from_csv`] from any reader.
-    ///
-    /// Needs the feature `csv`.
     ///
     /// ```
     /// use viscocontact::TextFormat;
