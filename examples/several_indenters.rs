@@ -81,7 +81,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     let Args { punch, sphere, distance, cells, .. } = *args;
     let scene = Indenters { punch, sphere, distance, cells };
-    let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let body = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
     let material = Material::incompressible(body);
     held(args, &scene, &material)?;
     in_turn(args, &scene, &material)?;

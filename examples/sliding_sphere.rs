@@ -66,7 +66,7 @@ struct Bodies {
 
 impl Bodies {
     fn new(args: &Args) -> Result<Bodies> {
-        let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+        let body = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
         let material = Material::incompressible(body);
         let radius = |t: f64| (0.75 * args.radius * args.load * material.contact_compliance(t)).cbrt();
         let (glassy, relaxed) = (radius(0.0), radius(1e3 * args.tau));

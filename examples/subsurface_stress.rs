@@ -113,7 +113,7 @@ fn press(args: &Args, material: Material, length: f64, advance: impl Fn()) -> vi
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
-    let shear = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let shear = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
     let polymer = Material::elastic_bulk(shear.clone(), args.bulk)?;
     // the contact at the end, with some space around it
     let last =

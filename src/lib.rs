@@ -36,7 +36,7 @@
 //! let grid = Grid::square(64, 4.0e-3)?;                          // 64 × 64 cells on 4 mm × 4 mm
 //! let mut contact = ViscoelasticContact::builder(grid)
 //!     .geometry(&Sphere::new(10.0e-3)?)                          // anything that is `Geometry`
-//!     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 //!     .build()?;
 //! contact.step(0.0, Load::force(1.0))?;                          // Δ = 0: the load jumps
 //! for _ in 0..10 {
@@ -56,7 +56,7 @@
 //! open.
 //!
 //! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`],
-//! [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
+//! [`guide::data`], [`guide::curves`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
 //!
 //! # Conventions
 //!

@@ -185,10 +185,10 @@ impl Args {
 /// A Maxwell body, or a Zener body that relaxes to a third, with the relaxation time `tau`.
 fn material(args: &Args, maxwell: bool, tau: f64) -> Result<Material> {
     Ok(if maxwell {
-        Material::incompressible(Maxwell::new(args.modulus, args.modulus * tau)?)
+        Material::incompressible(Maxwell::with_time(args.modulus, tau)?)
     } else {
         // relaxed modulus G Gk / (G + Gk), relaxation time η / (G + Gk)
-        Material::incompressible(Zener::new(args.modulus, 0.5 * args.modulus, 1.5 * args.modulus * tau)?)
+        Material::incompressible(Zener::with_time(args.modulus, 0.5 * args.modulus, 3.0 * tau)?)
     })
 }
 

@@ -222,8 +222,9 @@ pub enum Error {
         length: f64,
     },
 
-    /// The caller's report of progress ended the call.
-    #[error("{what} was cancelled by its report of progress")]
+    /// The caller ended the call: by its report of progress, or the flag of
+    /// [`Run::cancelled_by`](crate::contact::Run::cancelled_by).
+    #[error("{what} was cancelled by its caller")]
     Cancelled {
         /// The call.
         what: &'static str,

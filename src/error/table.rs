@@ -129,6 +129,20 @@ pub enum TableError {
         found: String,
     },
 
+    /// The headings of a file name moduli in tension (D, E, E′, E″), and it was to be fitted in shear, or the reverse. Moduli in
+    /// tension are up to three times those in shear.
+    #[error(
+        "the headings of the table name {}", if *.in_tension {
+            "moduli in tension: use Measurements::fit_tension and Material::from_tension"
+        } else {
+            "moduli in shear: use Measurements::fit and a material made from shear"
+        }
+    )]
+    Deformation {
+        /// Whether the headings name moduli in tension.
+        in_tension: bool,
+    },
+
     /// Isotherms of a master curve measure different quantities.
     #[error("a {first} and a {second} cannot be joined to one master curve")]
     MixedIsotherms {

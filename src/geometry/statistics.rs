@@ -22,6 +22,7 @@ use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SurfaceStatistics {
     /// Mean height \[m\].

@@ -70,7 +70,7 @@ impl Format {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-series-{}", std::process::id()));
 /// let metadata = Metadata::new("Ball on rubber");

@@ -26,7 +26,7 @@ const FEWEST_ACROSS: f64 = 14.0;
 /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 ///
 /// let (sphere, load) = (Sphere::new(10.0e-3)?, StepLoad::new(Load::force(1.0))?);
-/// let body = Material::incompressible(Zener::new(1.0e7, 1.0e6, 1.0e7)?);
+/// let body = Material::incompressible(Zener::with_time(1.0e7, 1.0e6, 10.0)?);
 /// let law = TimeTemperature::wlf(17.44, 51.6, 263.15)?;
 /// let warming = TemperatureHistory::table(law, &[(0.0, 263.15), (100.0, 273.15)])?;
 /// let plan = Plan::builder(&sphere, &body, &load, 100.0).accuracy(Accuracy::COARSE).temperature(&warming).build()?;
@@ -51,6 +51,7 @@ pub struct PlanBuilder<'a> {
 
 /// How far planning has come: the state of a coarse run.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PlanProgress {
     /// Number of steps of all coarse runs so far.

@@ -56,7 +56,7 @@ impl HistoryColumn {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let mut history = History::new();
 /// for dt in [0.0, 0.1, 0.2] {

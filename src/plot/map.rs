@@ -1,5 +1,8 @@
 //! Colour maps of fields.
 
+use educe::Educe;
+
+use crate::values::counted;
 use std::path::Path;
 
 use crate::Grid;
@@ -35,7 +38,8 @@ const MIN_BAR: u32 = 200;
 /// # std::fs::remove_file(&path).unwrap();
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 #[non_exhaustive]
 pub struct Map {
     /// The title above the map.
@@ -54,9 +58,12 @@ pub struct Map {
     /// The point in the middle.
     pub(super) middle: [f64; 2],
     /// Lines from point to point, drawn over the frame.
+    #[educe(Debug(method(counted)))]
     pub(super) lines: Vec<[(f64, f64); 2]>,
+    #[educe(Debug(method(counted)))]
     values: Vec<f64>,
     /// Whether each cell lies inside the outline; empty without an outline.
+    #[educe(Debug(method(counted)))]
     inside_outline: Vec<bool>,
 }
 

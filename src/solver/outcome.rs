@@ -1,12 +1,16 @@
 //! The residual of a state, and the outcome of a solve.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::{ContactSet, Problem, Solution};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stop {
+pub(crate) struct Stop<'a> {
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
+    /// Set by another thread to end the solve.
+    pub(crate) cancelled: Option<&'a AtomicBool>,
 }
 
 /// How a solve ended.
@@ -23,9 +27,11 @@ pub(crate) enum Outcome {
     Unbalanced(usize),
     /// The residual is NaN.
     NotANumber,
+    /// Another thread ended the solve.
+    Cancelled,
 }
 
-impl Stop {
+impl Stop<'_> {
     /// The outcome if the solve ends here. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
     /// loads.
     pub(crate) fn outcome(&self, solution: &Solution, admissible: impl FnOnce() -> bool) -> Option<Outcome> {
@@ -35,6 +41,8 @@ impl Stop {
             Some(Outcome::NotANumber)
         } else if solution.counts.iterations >= self.max_iterations {
             Some(Outcome::OutOfIterations)
+        } else if self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            Some(Outcome::Cancelled)
         } else {
             None
         }

@@ -151,7 +151,7 @@ impl Solution {
 /// A problem, its solution so far, when to stop, and the buffers of the convolutions.
 pub(crate) struct Solve<'a> {
     pub(crate) problem: &'a Problem<'a>,
-    pub(crate) stop: Stop,
+    pub(crate) stop: Stop<'a>,
     pub(crate) solution: &'a mut Solution,
     pub(crate) work: &'a mut Workspace,
 }

@@ -58,7 +58,7 @@ fn build_says_what_a_material_cannot_do() {
         let settings = Settings::default().with_time_rule(time_rule);
         builder_on(grid(), material).settings(settings).build().map(drop)
     };
-    let voigt = || Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
+    let voigt = || Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0).unwrap());
     assert!(matches!(build(voigt(), TimeRule::Rectangle), Err(Error::Step(StepError::NoElasticResponse { .. }))));
     assert_eq!(build(voigt(), TimeRule::Backward), Ok(()));
     let closure = || Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));

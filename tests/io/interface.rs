@@ -128,7 +128,7 @@ fn references_implement_the_traits() {
     fn corner(history: impl LoadHistory) -> Option<f64> {
         history.next_breakpoint(0.0)
     }
-    let (body, shape) = (Maxwell::new(1.0e6, 1.0e6).unwrap(), Sphere::new(10.0e-3).unwrap());
+    let (body, shape) = (Maxwell::with_time(1.0e6, 1.0).unwrap(), Sphere::new(10.0e-3).unwrap());
     assert_eq!(compliance(&body), (body.creep_compliance(1.0), true));
     assert_eq!(gap(&shape), shape.initial_gap(1.0e-3, 0.0));
     assert_eq!(corner(&Ramp::new(Load::force(0.0), Load::force(0.5), 1.0).unwrap()), Some(1.0));
@@ -136,7 +136,7 @@ fn references_implement_the_traits() {
 
 #[test]
 fn complex_numbers_come_from_the_crate() {
-    let body = Maxwell::new(1.0e6, 1.0e6).unwrap();
+    let body = Maxwell::with_time(1.0e6, 1.0).unwrap();
     let spectrum = body.creep_spectrum().unwrap();
     let modulus: viscocontact::num_complex::Complex64 = 1.0 / spectrum.complex_compliance(1.0);
     assert!(modulus.re > 0.0 && modulus.im > 0.0);

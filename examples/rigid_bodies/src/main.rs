@@ -166,7 +166,7 @@ impl Scene {
         ];
 
         let kelvin = args.modulus / CREEP;
-        let body = Zener::new(args.modulus, kelvin, kelvin * args.tau)?;
+        let body = Zener::with_time(args.modulus, kelvin, args.tau)?;
         let cells = GRID.map(|sides| (sides * args.cells as f64).round() as usize);
         let grid = Grid::new(cells, [0, 1].map(|axis| cells[axis] as f64 * BOX[axis] / args.cells as f64))?;
         let face = Shifted::new(FlatPunch::rectangular([BOX[0], BOX[1]])?, [START[1], 0.0])?;

@@ -4,10 +4,12 @@ use std::fmt;
 
 use bitflags::bitflags;
 
+use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 
 /// The outcome and the cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StepReport {
     /// Time at the end of the step \[s\].
@@ -30,6 +32,8 @@ pub struct StepReport {
     /// the bodies ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows.
     /// [`ErrorBudget::time`](crate::contact::ErrorBudget::time) compares it with true errors.
     pub time_error: Option<f64>,
+    /// The quantity of which [`StepReport::time_error`] is the relative error.
+    pub estimated: Estimated,
     /// Reasons why the result may be less accurate than expected.
     pub warnings: Warnings,
     /// Iterations of the solver.
@@ -42,6 +46,42 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
+}
+
+/// The quantity of which an error is estimated: the one that the load leaves free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Estimated {
+    /// The approach, under a given force.
+    Approach,
+    /// The force, under a given approach.
+    Force,
+    /// The approach or the force, whichever errs more: under springs, and where some bodies have a given force and others a given
+    /// approach.
+    ApproachOrForce,
+}
+
+impl Estimated {
+    /// What these loads leave free.
+    pub(in crate::contact) fn under(loads: &[Load]) -> Estimated {
+        let any = |is: fn(&Load) -> bool| loads.iter().any(is);
+        match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !matches!(load, Load::Force { .. }))) {
+            (false, true) => Estimated::Force,
+            (_, false) => Estimated::Approach,
+            (true, true) => Estimated::ApproachOrForce,
+        }
+    }
+}
+
+impl fmt::Display for Estimated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Estimated::Approach => "approach",
+            Estimated::Force => "force",
+            Estimated::ApproachOrForce => "approach or force",
+        })
+    }
 }
 
 impl StepReport {
@@ -68,7 +108,7 @@ impl StepReport {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let report = contact.step(0.0, Load::force(1.0))?;
 /// assert!(report.to_string().starts_with("t = 0 s: force 1 N, approach 1.52"), "{report}");
@@ -83,7 +123,7 @@ impl fmt::Display for StepReport {
         write!(f, "{} convolutions, residual {residual:.1e}", self.convolution_equivalents())?;
         match self.time_error {
             Some(0.0) => {}
-            Some(error) => write!(f, ", error in time {error:.1e}")?,
+            Some(error) => write!(f, ", error in time {error:.1e} of the {}", self.estimated)?,
             None => write!(f, ", error in time not estimated")?,
         }
         self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))
@@ -92,6 +132,7 @@ impl fmt::Display for StepReport {
 
 /// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct BodyState {
     /// Approach ω at the origin of the grid \[m\]: the body lowers the surface by ω + α1 x1 + α2 x2.
@@ -115,7 +156,7 @@ bitflags! {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// let report = contact.step(0.0, Load::force(0.1))?;
     /// assert!(report.warnings.contains(Warnings::FEW_CELLS));
@@ -125,6 +166,7 @@ bitflags! {
     /// # Ok::<(), Error>(())
     /// ```
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
     pub struct Warnings: u16 {
         /// Contact is within two cells of an edge of the grid beyond which the bodies extend. Under a slightly greater load
         /// a step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge). Enlarge the grid. Only with
@@ -194,5 +236,41 @@ mod tests {
         assert!(Warnings::empty().to_string().is_empty());
         assert!(Warnings::all().iter().all(|warning| !warning.to_string().is_empty()));
         assert_eq!(Warnings::all().to_string().split("; ").count(), MESSAGES.len());
+    }
+
+    /// Results, statistics and specifications come back from a file; values out of range do not.
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn serialised_results_come_back() {
+        use std::fmt::Debug;
+
+        use crate::prelude::*;
+        use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
+
+        fn there_and_back<T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + Debug>(value: &T) {
+            assert_eq!(postcard::from_bytes::<T>(&postcard::to_stdvec(value).unwrap()).unwrap(), *value);
+        }
+        let rubber = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-3..=1e3, 1e-3).unwrap();
+        let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(rubber.clone()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        let report = contact.step(0.1, Load::force(0.1)).unwrap();
+        assert!(report.warnings.contains(Warnings::FEW_CELLS));
+        there_and_back(&report);
+        there_and_back(&contact.body(0).unwrap());
+        there_and_back(&contact.pressure_distribution(7).unwrap());
+        there_and_back(&contact.patches().unwrap().all);
+        there_and_back(rubber.report());
+        there_and_back(&Accuracy::FINE);
+        let creep = CreepSpectrum::new(1.0, 0.5, &[(2.0, 3.0)]).unwrap();
+        there_and_back(&creep);
+        there_and_back(&creep.relaxation());
+        let bytes = postcard::to_stdvec(&(-1.0, 0.0, [(1.0, 1.0)].to_vec())).unwrap();
+        assert!(postcard::from_bytes::<CreepSpectrum>(&bytes).is_err());
+        assert!(postcard::from_bytes::<RelaxationSpectrum>(&bytes).is_err());
+        assert!(postcard::from_bytes::<Accuracy>(&postcard::to_stdvec(&0.9).unwrap()).is_err());
     }
 }

@@ -103,6 +103,7 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
     let (time, dt, tolerance) = (step.interval.time, step.interval.length, step.tolerance);
     match outcome {
         Outcome::Converged => Ok(()),
+        Outcome::Cancelled => Err(Error::Cancelled { what: "a step" }),
         Outcome::NotANumber => {
             Err(Error::Step(StepError::Overflow { time, what: "the residual of the contact problem" }))
         }
