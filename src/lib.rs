@@ -123,7 +123,8 @@
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
 //! `serde`: `Serialize` and `Deserialize` for the description of a run, [`load::Load`], [`contact::Settings`],
-//! [`contact::Stepping`], [`geometry::RoughSpec`] and their parts, and for the error estimates of a run. Part of `checkpoint`.
+//! [`contact::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
+//! statistics. Part of `checkpoint`.
 //!
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
 //!

@@ -26,9 +26,10 @@ pub(in crate::contact) mod spring;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use crate::contact::read::report::Estimated;
 use crate::contact::window::placement::{outgrown, region_for};
-use crate::contact::{Computation, Equilibrium, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact};
+use crate::contact::{
+    Computation, Equilibrium, Estimated, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
+};
 use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
