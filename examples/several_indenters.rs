@@ -156,8 +156,8 @@ fn surface(
     let line = contact.profile(Axis::X1, 0.0)?;
     let mut chart = Chart::new(
         format!("Surface through two punches and the sphere, t = {HELD} τ"),
-        Quantity::of("x1", "m"),
-        Quantity::of("height of the surface", "m"),
+        Quantity::new("x1", "m"),
+        Quantity::new("height of the surface", "m"),
         Legend::LowerMiddle,
     );
     let sum = line.positions.iter().map(|&x| (x, -scene.sum_of_lone([x, line.at], forces, compliance))).collect();
