@@ -156,8 +156,8 @@ fn surface(
     let line = contact.profile(Axis::X1, 0.0)?;
     let mut chart = Chart::new(
         format!("Surface through two punches and the sphere, t = {HELD} τ"),
-        Quantity::of("x1", "m"),
-        Quantity::of("height of the surface", "m"),
+        Quantity::new("x1", "m"),
+        Quantity::new("height of the surface", "m"),
         Legend::LowerMiddle,
     );
     let sum = line.positions.iter().map(|&x| (x, -scene.sum_of_lone([x, line.at], forces, compliance))).collect();
@@ -227,7 +227,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     let mut chart = Chart::new("Centre of pressure of the sphere, six turns", "x1 [µm]", "x2 [µm]", Legend::UpperRight);
     for (turn, path) in centers.into_iter().enumerate() {
         let label = if turn < 3 { format!("{} is pressed", NAMES[turn]) } else { String::new() };
-        chart.add(label, COLORS[turn % 3], Style::LineAndDots, path);
+        chart.add(label, COLORS[turn % 3], Style::Line, path);
     }
     Ok(chart.save(args.output.join("sphere.png"))?)
 }

@@ -153,19 +153,19 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 }
 
 fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
-    let name = || Quantity::of("von Mises stress", "Pa");
+    let name = || Quantity::new("von Mises stress", "Pa");
     let sections = &runs[0].1.sections;
     let mut maps = Vec::new();
     for (contact, section) in sections {
         maps.push(Map::section(contact, section, Stress::von_mises, name())?);
     }
-    // one scale for all
-    let most = maps.iter().map(|map| map.range[1]).fold(0.0, f64::max);
+    // one scale for all, on which the later stresses, which are smaller, are seen as well
+    let most = 0.5 * maps.iter().map(|map| map.range[1]).fold(0.0, f64::max);
     maps.iter_mut().for_each(|map| map.range = [0.0, most]);
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
-    let time = || Quantity::of("time", "s");
-    let mut depth = Chart::new("The point sinks", time(), Quantity::of("depth", "m"), Legend::UpperLeft);
+    let time = || Quantity::new("time", "s");
+    let mut depth = Chart::new("The point sinks", time(), Quantity::new("depth", "m"), Legend::UpperLeft);
     let mut relative = Chart::new("Its depth over the contact radius", time(), "z / a", Legend::LowerRight);
     for chart in [&mut depth, &mut relative] {
         chart.scale = Scale::LogX;

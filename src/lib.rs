@@ -56,7 +56,7 @@
 //! open.
 //!
 //! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`],
-//! [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
+//! [`guide::data`], [`guide::curves`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
 //!
 //! # Conventions
 //!
@@ -232,7 +232,7 @@ pub mod prelude {
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
     pub use crate::output::CsvHistory;
-    pub use crate::output::{Field, Metadata};
+    pub use crate::output::{Field, FrameSeries, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,

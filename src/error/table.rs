@@ -1,5 +1,7 @@
 use std::fmt;
 
+use crate::rounded::rounded;
+
 /// A place in a table: the entry of a slice, or the line of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -58,8 +60,8 @@ pub enum TableError {
     /// than the scatter of the data explains. No passive body responds so. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table}, {place}: {column} = {value:?} deviates by {:.2} % from the nearest monotone curve; the scatter of the data explains {:.2} %",
-        100.0 * .change, 100.0 * .noise
+        "{table}, {place}: {column} = {:?} deviates by {:.2} % from the nearest monotone curve, where the scatter of the data explains {:.2} %: compliances rise, moduli of relaxation fall (Experiment)",
+        rounded(*.value, 5), 100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
         /// Which table.

@@ -119,7 +119,7 @@ impl CsvHistory {
             } else {
                 File::create_new(path)
             };
-            let mut file = Appending::new(file.map_err(unusable)?);
+            let mut file = Appending::new(file.map_err(|error| unusable(or_replace(error)))?);
             if let Err(error) = file.append(head.as_bytes()) {
                 let _ = fs::remove_file(path); // report the error of the write instead
                 return Err(unusable(error));
@@ -142,6 +142,16 @@ impl CsvHistory {
         let CsvHistory { path, file, .. } = self;
         let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
         contact.agreed(appended.map_err(|error| failed(path, error)))
+    }
+}
+
+/// The error of a file that exists names the way to replace it.
+fn or_replace(error: io::Error) -> io::Error {
+    match error.kind() {
+        kind @ io::ErrorKind::AlreadyExists => {
+            io::Error::new(kind, "it exists: CsvHistory::create_or_replace replaces it")
+        }
+        _ => error,
     }
 }
 

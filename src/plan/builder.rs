@@ -15,7 +15,7 @@ use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
 
 /// Most cells along a side of a plan: more exceed the memory of a workstation.
-const MOST_CELLS: usize = 1 << 13;
+const MOST_PLANNED_CELLS: usize = 1 << 13;
 /// Fewest cells across the widest contact: fewer do not resolve it.
 const FEWEST_ACROSS: f64 = 14.0;
 
@@ -131,12 +131,12 @@ impl<'a> PlanBuilder<'a> {
             (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * size.reach[axis] / size.width[axis]))
         };
         let (mut across, mut sides) = needed(pressure);
-        if sides[0].max(sides[1]) > MOST_CELLS as f64 {
+        if sides[0].max(sides[1]) > MOST_PLANNED_CELLS as f64 {
             pressure = ErrorLaw::NONE;
             (across, sides) = needed(pressure);
         }
         let wanted = sides[0].max(sides[1]);
-        if wanted.is_nan() || wanted > MOST_CELLS as f64 {
+        if wanted.is_nan() || wanted > MOST_PLANNED_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }

@@ -31,7 +31,7 @@ const MIN_BAR: u32 = 200;
 /// use viscocontact::{Grid, plot::{Map, Quantity}};
 ///
 /// let grid = Grid::new([2, 3], [2.0e-3, 3.0e-3])?;
-/// let mut map = Map::new(&grid, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0], Quantity::of("height", "m"))?;
+/// let mut map = Map::new(&grid, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0], Quantity::new("height", "m"))?;
 /// map.title = "Stairs".into();
 /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-map-{}.png", std::process::id()));
 /// map.save(&path)?;
@@ -87,7 +87,7 @@ impl Map {
         Ok(Map {
             title: String::new(),
             quantity: quantity.into(),
-            axes: [Quantity::of("x1", "m"), Quantity::of("x2", "m")],
+            axes: [Quantity::new("x1", "m"), Quantity::new("x2", "m")],
             range,
             blank: Color::WHITE,
             cells: grid.cells(),

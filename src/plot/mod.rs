@@ -59,7 +59,6 @@ mod quantity;
 mod section;
 
 pub use animation::Animation;
-pub use axis::scientific;
 pub use chart::{Chart, Legend, Scale, Style};
 pub use color::{COLORS, Color};
 pub use history::{History, HistoryColumn};

@@ -84,16 +84,16 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `rounding` is the rounding of the
-    /// guess. The step judges convergence and warns of rounding by them.
-    pub(crate) fn note(&mut self, problem: &Problem<'_>, rounding: f64, solution: &mut Solution) {
-        self.cancellation = problem.rounding(&solution.pressure) + rounding;
+    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `guess_rounding` is the rounding
+    /// of the guess. The step judges convergence and warns of rounding by them.
+    pub(crate) fn note(&mut self, problem: &Problem<'_>, guess_rounding: f64, solution: &mut Solution) {
+        self.cancellation = problem.displacement_rounding(&solution.pressure) + guess_rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations
         let lost = problem.rows().intact().is_err();
         solution.residual = if lost { f64::NAN } else { self.relative_residual() };
         // a smaller residual cannot be detected; where squares of displacements vanish, none can
-        solution.rounding = if self.displacement > 0.0 {
-            (self.rounding() + UNDERFLOW) / self.yielding()
+        solution.relative_rounding = if self.displacement > 0.0 {
+            (self.gap_rounding() + UNDERFLOW) / self.yielding()
         } else if problem.rows().any(solution.pressure.iter().any(|&p| p > 0.0)) {
             f64::INFINITY
         } else {
@@ -106,7 +106,7 @@ impl ResidualSums {
     /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
     fn relative_residual(&self) -> f64 {
         let error =
-            self.rms().max(self.deepest.max(self.penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
+            self.rms().max(self.deepest.max(self.penetration) / PENETRATION_SLACK) - self.gap_rounding() - UNDERFLOW;
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
     }
 
@@ -116,7 +116,7 @@ impl ResidualSums {
     }
 
     /// Rounding of the gap.
-    pub(crate) fn rounding(&self) -> f64 {
+    pub(crate) fn gap_rounding(&self) -> f64 {
         4.0 * f64::EPSILON * self.greatest_gap + self.cancellation
     }
 

@@ -81,7 +81,6 @@ fn a_report_prints_round_times() {
     }
     assert!(report.time != 0.15, "the sum of three steps is not rounded: {:?}", report.time);
     assert!(report.to_string().starts_with("t = 0.15 s: force 0.5 N, approach "), "{report}");
-    assert_eq!(report.area, contact.contact_cells() as f64 * contact.grid().cell_area());
 }
 
 /// On a grid that follows the indenter no error is estimated, and the report states that.

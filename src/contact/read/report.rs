@@ -18,10 +18,7 @@ pub struct StepReport {
     pub force: f64,
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
-    /// Total area of the cells in contact \[m²\];
-    /// [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
-    pub area: f64,
-    /// Cells in contact.
+    /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
     pub contact_cells: usize,
     /// Tilt (α1, α2) of the first body \[rad\].
     pub tilt: [f64; 2],
@@ -36,6 +33,8 @@ pub struct StepReport {
     pub estimated: Estimated,
     /// Reasons why the result may be less accurate than expected.
     pub warnings: Warnings,
+    /// Greatest slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
+    pub max_slope: Option<f64>,
     /// Iterations of the solver.
     pub iterations: usize,
     /// Iterations by the fall-back solver, which is slower and always descends.
@@ -126,7 +125,8 @@ impl fmt::Display for StepReport {
             Some(error) => write!(f, ", error in time {error:.1e} of the {}", self.estimated)?,
             None => write!(f, ", error in time not estimated")?,
         }
-        self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))
+        self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))?;
+        self.max_slope.map_or(Ok(()), |slope| write!(f, " (the greatest slope is {slope:.3})"))
     }
 }
 
@@ -160,7 +160,7 @@ bitflags! {
     ///     .build()?;
     /// let report = contact.step(0.0, Load::force(0.1))?;
     /// assert!(report.warnings.contains(Warnings::FEW_CELLS));
-    /// for warning in report.warnings {
+    /// for warning in &report.warnings {
     ///     println!("{warning}");
     /// }
     /// # Ok::<(), Error>(())
@@ -199,11 +199,28 @@ bitflags! {
         /// times the displacement due to the pressure, as where little pressure is left on bodies that were pressed much
         /// harder before: the error of pressure and force exceeds the residual.
         const ROUNDING = 1 << 8;
+        /// The contact modulus at once, 1/C(0), is below 10 Pa or above 1e13 Pa, which no solid has: moduli are given in another
+        /// unit than Pa, or compliances in another one than 1/Pa.
+        const MODULUS = 1 << 9;
+        /// The undeformed bodies are steeper than 0.5 somewhere in contact ([`StepReport::max_slope`](crate::contact::StepReport::max_slope)):
+        /// slopes and strains are not small, and half-spaces are no model of the bodies. Heights in µm that are read as metres are that steep.
+        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count. Not where
+        /// [ranks](crate::parallel) share out the rows.
+        const STEEP = 1 << 10;
+    }
+}
+
+impl IntoIterator for &Warnings {
+    type Item = Warnings;
+    type IntoIter = bitflags::iter::Iter<Warnings>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
     }
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 9] = [
+const MESSAGES: [(Warnings, &str); 11] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -213,6 +230,11 @@ const MESSAGES: [(Warnings, &str); 9] = [
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
     (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain"),
+    (Warnings::MODULUS, "no solid has such a modulus: moduli are in Pa, compliances in 1/Pa"),
+    (
+        Warnings::STEEP,
+        "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
+    ),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.

@@ -108,8 +108,8 @@ pub(super) fn adaptive_step(
             add_work(&mut wasted, computed);
             continue;
         }
-        let is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
-        control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, is_given);
+        let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
+        control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, motion_is_given);
         let is_kink = time == kink && !is_held(history, [now, time]);
         control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], is_kink, order);
         let mut report = contact.accept(attempt, step, error)?;

@@ -332,11 +332,13 @@ impl<'a> Run<'a> {
     pub fn contact(&self) -> &ViscoelasticContact {
         &self.contact
     }
+}
 
-    /// The contact after the last step; a clone if the run borrows it.
+impl Run<'static> {
+    /// The contact of a run that owns it ([`ViscoelasticContact::into_follow`]), after the last step.
     pub fn into_contact(self) -> ViscoelasticContact {
         match self.contact {
-            OwnedOrBorrowed::Borrowed(contact) => contact.clone(),
+            OwnedOrBorrowed::Borrowed(contact) => contact.clone(), // of a leaked contact
             OwnedOrBorrowed::Owned(contact) => *contact,
         }
     }

@@ -20,6 +20,7 @@ pub(in crate::contact) mod error_in_time;
 mod gap;
 mod initial_guess;
 mod jump;
+mod needed_width;
 pub(in crate::contact) mod request;
 pub(in crate::contact) mod spring;
 
@@ -164,17 +165,18 @@ impl ViscoelasticContact {
     pub(in crate::contact) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
+        let max_slope = state.indenter.steepest(&scene.grid, &state.region, &state.current.solution.pressure);
         StepReport {
             time: state.clock.time,
             force: self.force(),
             approach: self.approach(),
-            area: contact_cells as f64 * scene.grid.cell_area(),
             contact_cells,
             tilt: self.tilt(),
             dt: state.clock.last_length,
             time_error,
             estimated: Estimated::under(&state.loads),
-            warnings: collect_warnings(scene, state, reach),
+            warnings: collect_warnings(scene, state, reach, max_slope),
+            max_slope,
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
@@ -230,7 +232,7 @@ fn compute(
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step)? {
         let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
-        transferred.state.region_is_placed = placed;
+        transferred.state.region_is_for_contact = placed;
     }
     loop {
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
