@@ -6,10 +6,9 @@ use viscocontact::observe::Stress;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-use crate::common::figures;
 use crate::common::random_bodies::random_body;
 use crate::common::refused::field;
-use crate::common::{Draws, builder_on};
+use crate::common::{Draws, builder_on, figures};
 
 const REFERENCE: f64 = 300.0;
 
