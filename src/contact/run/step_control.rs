@@ -48,6 +48,12 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
+/// An error of the solver counts so many times as much as its response to the surface that the body meets later: the errors of many
+/// steps add up.
+const SOLVER_ON_MEETING: f64 = 3.0;
+/// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate of the first step
+/// after it, which the next step does not put right, is too low by this factor times the ratio of the step before to this one.
+const AT_TURN: f64 = 5.0;
 /// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass answers is over
 /// before the first step ends.
 const MOST_ON_SWITCH: f64 = 3e3;
@@ -114,10 +120,30 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no switch from a given force to a given
-    /// approach is to come.
+    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no given approach is to come.
     pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
         wanted.max(SOLVER_SHARE * self.tolerance)
+    }
+
+    /// Tolerance of the solver in a step of length `dt` to the time `now`, at most `tolerance`: where a given approach is to come,
+    /// the bodies respond to an error of u by more than in the steps that leave it.
+    pub(super) fn solver_tolerance_before_meeting(
+        &self,
+        scene: &Scene,
+        tolerance: f64,
+        [now, dt]: [f64; 2],
+        outlook: &StepContext,
+    ) -> f64 {
+        let stiffness = self.scale.as_ref().map_or(0.0, |scale| scale.stiffness_after(now));
+        let answer = SOLVER_ON_MEETING * stiffness * scene.material.contact_compliance(dt);
+        tolerance.min((tolerance / answer.max(outlook.on_switch[1])).max(LEAST_TOLERANCE))
+    }
+
+    /// By how much the error of a step of length `dt` from `state` exceeds its estimate.
+    pub(super) fn excess(scene: &Scene, state: &State, dt: f64) -> f64 {
+        let clock = &state.clock;
+        let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
+        if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 }
     }
 
     /// Prepares a step from `state`: computes the scales of the run where needed, and makes the present load a node.
@@ -128,7 +154,9 @@ impl StepControl {
             self.since = reduced;
         }
         if self.scale.is_none() {
-            self.scale = Some(RunScale::new(scene, state, history, until)?);
+            let mut scale = RunScale::new(scene, state, history, until)?;
+            scale.find_stiffness(scene, self.tolerance);
+            self.scale = Some(scale);
         }
         self.scale.iter_mut().for_each(|scale| scale.include(&state.loads[0]));
         if self.defects.is_none() {
@@ -163,7 +191,7 @@ impl StepControl {
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
+            coming_back: self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now])),
             lasting: self
                 .lasting
                 .as_ref()

@@ -47,7 +47,8 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
 /// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
-/// A body that comes back to a surface meets it with the modulus of this time, in times that matter.
+/// Where a given approach follows a given force, a body without elastic response responds with the modulus of this time, in times
+/// that matter.
 pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
 
 /// Data of a run besides the step.
@@ -55,8 +56,9 @@ pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
 pub(in crate::contact) struct StepContext {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(in crate::contact) expected: [f64; 2],
-    /// The depth below first touch to which the bodies may come back; 0 if they do not.
-    pub(in crate::contact) coming_back: f64,
+    /// The depth below first touch to which the bodies may come back, and the response of v to an error of u when they meet; 0 if
+    /// they do not.
+    pub(in crate::contact) coming_back: [f64; 2],
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(in crate::contact) lasting: [f64; 2],
     pub(in crate::contact) tolerance: f64,
@@ -81,7 +83,7 @@ impl Default for StepContext {
     fn default() -> StepContext {
         StepContext {
             expected: [0.0; 2],
-            coming_back: 0.0,
+            coming_back: [0.0; 2],
             lasting: [0.0; 2],
             tolerance: 1.0,
             on_switch: [0.0; 2],
@@ -157,8 +159,8 @@ pub(in crate::contact) fn error_in_time(
         least,
         gap,
         from_rest,
-        coming_back,
-        stiffness: if resolution > 0.0 { 1.0 / compliance(SHORTEST_TOUCH * resolution) } else { 0.0 },
+        coming_back: coming_back[0],
+        stiffness: coming_back[1],
         lasting,
         tolerance,
         advance,
