@@ -96,7 +96,7 @@ pub(super) fn adaptive_step(
         if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
             error.relative = error.relative.max(straying);
         }
-        let excess = StepControl::excess(scene, &computation.state, step.interval.dt);
+        let excess = StepControl::excess(scene, computed, step.interval.dt);
         error.relative *= excess;
         let by_kinks = error.by_kinks && error.relative > control.tolerance;
         let order = if by_kinks || excess > 1.0 { ORDER_OF_KINKS } else { order };

@@ -1,13 +1,16 @@
 //! The length of steps chosen by an estimate of their error.
 
+use crate::contact::computation::Computation;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
 use crate::error::Result;
+use crate::extent::Extent;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
+use crate::solver::Freedom;
 
 /// Chooses steps whose error stays below the tolerance. Two errors count: the error of the displacement within the step
 /// ([`History::time_error`](crate::hereditary::History::time_error)), and the deviation of the load from the polynomial
@@ -139,11 +142,19 @@ impl StepControl {
         tolerance.min((tolerance / answer.max(outlook.on_switch[1])).max(LEAST_TOLERANCE))
     }
 
-    /// By how much the error of a step of length `dt` from `state` exceeds its estimate.
-    pub(super) fn excess(scene: &Scene, state: &State, dt: f64) -> f64 {
-        let clock = &state.clock;
+    /// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where a body is
+    /// free to tilt on a small contact, whose errors are greater by its lever at the end of the grid.
+    pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
+        let clock = &tried.state.clock;
         let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
-        if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 }
+        let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
+        let tilts = tried.trial.free.iter().any(Freedom::tilts);
+        let reach = if tilts { tried.pressed().1 } else { None };
+        let lever = |Extent { low, high }: Extent| {
+            let levers = [0, 1].map(|axis| 0.5 * scene.grid.cells()[axis] as f64 / (high[axis] + 1 - low[axis]) as f64);
+            levers[0].max(levers[1]).max(1.0)
+        };
+        of_turn * reach.map_or(1.0, lever)
     }
 
     /// Prepares a step from `state`: computes the scales of the run where needed, and makes the present load a node.
