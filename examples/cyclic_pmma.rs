@@ -24,7 +24,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use oscillation::{Cycle, Oscillation};
 use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
@@ -129,7 +128,7 @@ fn over_frequency(args: &Args, body: &Body) -> Result<(), Box<dyn Error>> {
     ])?;
     let mut dots = [const { Vec::new() }; 2];
     let count: u32 = if args.quick { 4 } else { 10 };
-    let progress = ProgressBar::new(count.into());
+    let progress = support::progress(count.into());
     for k in 0..count {
         let force = swing(10f64.powf(-8.0 + 9.0 * f64::from(k) / f64::from(count - 1)));
         let mut punch = ViscoelasticContact::builder(Grid::square(args.cells, 2.1 * args.punch)?)

@@ -13,7 +13,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use noise::noise;
 use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
@@ -38,13 +37,20 @@ struct Args {
     /// Cells along each side of the grid.
     #[arg(long, default_value_t = 128)]
     cells: usize,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/dynamic_modulus")]
     output: PathBuf,
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        args.cells = 48;
+    }
+    support::finish(run(&args));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -118,7 +124,7 @@ fn contact_at(
     let (first, last, steps) = (1e-2_f64, 3.6e3_f64, 60);
     let mut chart = Chart::new("Contact radius of a ball", "time [s]", "contact radius [µm]", Legend::UpperLeft);
     chart.scale = Scale::LogX;
-    let progress = ProgressBar::new((temperatures.len() * steps) as u64);
+    let progress = support::progress((temperatures.len() * steps) as u64);
     let mut lines = Vec::new();
     for (k, &temperature) in temperatures.iter().enumerate() {
         let here = law.at(body.clone(), temperature)?;

@@ -11,7 +11,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::Result;
 use viscocontact::analytic::RigidPunch;
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Style};
@@ -35,13 +34,20 @@ struct Args {
     /// Cells along each side of the grid.
     #[arg(long, default_value_t = 256)]
     cells: usize,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/eccentric_punch")]
     output: PathBuf,
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        args.cells = 64;
+    }
+    support::finish(run(&args));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -109,11 +115,11 @@ fn against_lure(args: &Args) -> Result<(), Box<dyn Error>> {
 fn opening(args: &Args) -> Result<(), Box<dyn Error>> {
     let face = elastic(args)?.step(0.0, Load::force(args.load))?.contact_cells as f64;
     let unit = 0.75 * args.load / (4.0 * args.modulus * args.radius * args.radius);
-    let (mut fraction, mut tilt, mut lure) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut fraction, mut tilt) = (Vec::new(), Vec::new());
     let mut table = csv::Writer::from_path(args.output.join("opening.csv"))?;
     table.write_record(["eccentricity_over_radius", "contact_fraction", "tilt_rad", "approach_m", "convolutions"])?;
     println!("\nopening contact\n{:>6} {:>9} {:>12} {:>13}", "e/R", "contact", "tilt [rad]", "convolutions");
-    let progress = ProgressBar::new(19);
+    let progress = support::progress(19);
     for k in 0..19 {
         let e = 0.05 * k as f64;
         let mut contact = elastic(args)?;
@@ -122,9 +128,6 @@ fn opening(args: &Args) -> Result<(), Box<dyn Error>> {
         table.serialize((e, share, report.tilt[0], report.approach, work))?;
         fraction.push((e, share));
         tilt.push((e, report.tilt[0] / unit));
-        if e <= 1.0 / 3.0 {
-            lure.push((e, e));
-        }
         if [4, 10, 16].contains(&k) {
             save_map(&contact, args, e, &args.output.join(format!("map_{:02}.png", 5 * k)))?;
         }
@@ -138,9 +141,10 @@ fn opening(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut chart = Chart::new("The contact opens beyond R/3", "e / R", "fraction of the face", Legend::LowerLeft);
     chart.add("contact area / area of the face", COLORS[0], Style::LineAndDots, fraction);
     chart.save(args.output.join("contact_fraction.png"))?;
+    let lure = vec![(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0)];
     let mut chart = Chart::new("Tilt over eccentricity", "e / R", "tilt / (3W / 4R²E*)", Legend::UpperLeft);
-    chart.add("computed", COLORS[0], Style::LineAndDots, tilt);
     chart.add("Lur'e, e < R/3", COLORS[1], Style::Line, lure);
+    chart.add("computed", COLORS[0], Style::Dots, tilt);
     Ok(chart.save(args.output.join("tilt.png"))?)
 }
 

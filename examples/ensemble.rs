@@ -12,7 +12,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use rayon::prelude::*;
 use sweep::{Failure, Row, cases, print, table};
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
@@ -45,7 +44,7 @@ fn run(args: &Args) -> Result<(), Failure> {
     let (speeds, seeds, cells) = if args.quick { (3, 2, 64) } else { (args.speeds, args.seeds, args.cells) };
     fs::create_dir_all(&args.output)?;
     let cases = cases(speeds, seeds);
-    let progress = ProgressBar::new(cases.len() as u64);
+    let progress = support::progress(cases.len() as u64);
     let friction = cases.par_iter().map(|case| {
         let friction = case.friction_kept_in(&args.output, cells);
         progress.inc(1);
@@ -60,15 +59,17 @@ fn run(args: &Args) -> Result<(), Failure> {
 
 /// Mean friction over speed, and a standard deviation to both sides.
 fn draw(rows: &[Row], args: &Args) -> Result<(), Failure> {
-    let points = |shift: f64| rows.iter().map(|row| (row.speed, row.mean + shift * row.spread)).collect::<Vec<_>>();
     let title = "Random surfaces sliding on a standard solid";
     let mut chart = Chart::new(title, "speed [m/s]", "friction coefficient", Legend::UpperRight);
     chart.scale = Scale::LogX;
-    chart.add("mean over surfaces", COLORS[0], Style::LineAndDots, points(0.0));
-    chart.add("± a standard deviation", COLORS[1], Style::Line, points(1.0));
-    chart.add("", COLORS[1], Style::Line, points(-1.0));
+    for (k, row) in rows.iter().enumerate() {
+        let bar = [-1.0, 1.0].map(|side| (row.speed, row.mean + side * row.spread)).to_vec();
+        chart.add(if k == 0 { "± a standard deviation" } else { "" }, COLORS[1], Style::Line, bar);
+    }
+    let means = rows.iter().map(|row| (row.speed, row.mean)).collect();
+    chart.add("mean over surfaces", COLORS[0], Style::LineAndDots, means);
     let picture = args.output.join("friction.png");
     chart.save(&picture)?;
-    println!("{}", picture.display());
+    println!("friction of each case and picture are in {}", args.output.display());
     Ok(())
 }

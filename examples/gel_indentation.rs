@@ -32,6 +32,9 @@ struct Args {
     /// Steps in time.
     #[arg(long, default_value_t = 240)]
     steps: u32,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for the table and pictures.
     #[arg(long, default_value = "out/gel_indentation")]
     output: PathBuf,
@@ -45,7 +48,11 @@ const SERIES: [(&str, [f64; 4]); 3] = [
 ];
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (48, 60);
+    }
+    support::finish(run(&args));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -72,6 +79,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         "garcia",
     ])?;
     let mut read: [Vec<(f64, f64)>; 3] = Default::default();
+    let progress = support::progress(args.thickness.len() as u64 * (u64::from(args.steps) + 1));
     for (n, &thickness) in args.thickness.iter().enumerate() {
         let grid = Grid::square(args.cells, 2.4 * widest)?;
         let kernel = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(thickness, 0.5)?)?;
@@ -86,6 +94,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             let time =
                 if step == 0 { 0.0 } else { first * 10_f64.powf(decades * f64::from(step) / f64::from(args.steps)) };
             let report = contact.step(time - contact.time(), Load::force(args.load))?;
+            progress.inc(1);
             let chi = (args.radius * report.approach).sqrt() / thickness;
             // C for which each formula explains force and depth
             let hertz = 4.0 / 3.0 * args.radius.sqrt() * report.approach.powf(1.5) / args.load;
@@ -101,7 +110,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             }
             (0..3).for_each(|k| read[k].push((chi, found[k])));
             if step == args.steps {
-                println!(
+                progress.suspend(|| println!(
                     "{:.0} µm: indentation {:.2} µm, contact radius {:.2} µm; compliance read with an error of {:+.1} % (Hertz), {:+.1} % (Dimitriadis), {:+.1} % (Garcia)",
                     1e6 * thickness,
                     1e6 * report.approach,
@@ -109,7 +118,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                     1e2 * found[0],
                     1e2 * found[1],
                     1e2 * found[2]
-                );
+                ));
             }
         }
         let (name, color) = (format!("{:.0} µm", 1e6 * thickness), COLORS[n % COLORS.len()]);

@@ -11,7 +11,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::plot::{COLORS, Chart, Legend, Style};
 use viscocontact::prelude::*;
@@ -43,13 +42,20 @@ struct Args {
     /// Steps a retardation time.
     #[arg(long, default_value_t = 25)]
     steps: usize,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/load_unload")]
     output: PathBuf,
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (64, 10);
+    }
+    support::finish(run(&args));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -81,7 +87,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let (mut loop_points, mut radii) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
     let (mut worst, mut work, mut count) = ([0.0_f64; 2], 0.0, 0_u32);
     let step = args.tau / args.steps as f64;
-    let progress = ProgressBar::new((until / step).round() as u64);
+    let progress = support::progress((until / step).round() as u64);
     let mut run = contact.follow(&history, Stepping::fixed(step), until);
     while let Some(report) = run.next_step()? {
         // the reference takes sixteen steps for each of ours

@@ -13,7 +13,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use noise::noise;
 use viscocontact::Result;
 use viscocontact::TextFormat;
@@ -25,7 +24,7 @@ use viscocontact::rheology::{CreepSeries, Experiment, Units};
 #[derive(Parser)]
 struct Args {
     /// Table of time [s] and creep compliance [1/Pa].
-    #[arg(long, default_value = "examples/data/creep.csv")]
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/creep.csv"))]
     table: PathBuf,
     /// Make the table anew, from the known material with this seed of the noise.
     #[arg(long)]
@@ -42,13 +41,20 @@ struct Args {
     /// Steps a decade of time.
     #[arg(long, default_value_t = 20)]
     steps: u32,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/measured_creep")]
     output: PathBuf,
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (64, 5);
+    }
+    support::finish(run(&args));
 }
 
 /// The body that the table was made from: glassy 1 GPa, relaxed 1 MPa.
@@ -83,7 +89,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_path(args.output.join("history.csv"))?;
     table.write_record(["time_s", "approach_m", "contact_radius_m", "exact_contact_radius_m", "convolutions"])?;
     let (mut computed, mut curve, mut worst, mut squares) = (Vec::new(), Vec::new(), 0.0_f64, 0.0);
-    let progress = ProgressBar::new(u64::from(count));
+    let progress = support::progress(u64::from(count));
     for k in 0..=count {
         let time = if k == count { last } else { first * (last / first).powf(f64::from(k) / f64::from(count)) };
         let report = contact.step(time - contact.time(), Load::force(args.load))?;

@@ -13,7 +13,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::Result;
 use viscocontact::analytic::Hertz;
 use viscocontact::geometry::Form;
@@ -34,7 +33,7 @@ struct Args {
     #[arg(long)]
     generate: bool,
     /// Folder of the shipped map.
-    #[arg(long, default_value = "examples/data")]
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data"))]
     data: PathBuf,
     /// Rows and columns of points cut off on every side.
     #[arg(long, default_value_t = 2)]
@@ -81,7 +80,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         raw.missing()
     );
     let prepared = prepare(&raw, args.margin)?;
-    let maps = [picture(&raw, "as measured")?, picture(&prepared, "prepared")?];
+    let maps = [
+        picture(&raw, "as measured")?,
+        picture(&prepared.clone().flipped([true, false]), "prepared, seen from the same side")?,
+    ];
     for (map, name) in maps.iter().zip(["measured.png", "prepared.png"]) {
         map.save(args.output.join(name))?;
     }
@@ -163,7 +165,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
         Chart::new("Rough ball on polyisobutylene: pressure along x1", "x1 [mm]", "pressure [kPa]", Legend::UpperRight);
     let (mut steps, mut work, mut maps) = (0, 0.0, Vec::new());
     let load = StepLoad::new(Load::force(args.load))?;
-    let progress = ProgressBar::new(shown.len() as u64);
+    let progress = support::progress(shown.len() as u64);
     let mut run = contact.follow(&load, Stepping::adaptive(1e-3), last).stop_at(&shown)?;
     while let Some(report) = run.next_step()? {
         let contact = run.contact();

@@ -17,7 +17,6 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use step_loaded_sphere::{StepLoadedSphere, errors};
 use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
@@ -174,7 +173,7 @@ fn sweep(
     let mut chart = Chart::new(format!("Time of a run, {of}"), symbol, "processor time [s]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     println!("\n{of}\n| way | {symbol} | convolutions | of the past | seconds | MB |\n|---|---|---|---|---|---|");
-    let progress = ProgressBar::new((WAYS.len() * runs.len()) as u64);
+    let progress = support::progress((WAYS.len() * runs.len()) as u64);
     let mut fits = Vec::new();
     for (way, color) in (0..WAYS.len()).zip(COLORS) {
         let mut costs: Vec<(f64, Cost)> = Vec::new();
@@ -282,15 +281,32 @@ fn causes(args: &Args) -> Result<(), Box<dyn Error>> {
         "\n{cells}² cells, {steps} steps\n| | ms per step | convolutions per step | factor | MB |\n|---|---|---|---|---|"
     );
     let (mut first, mut last) = (None, None);
+    let mut table = "| | ms per step | convolutions per step | factor | MB |\n|---|---|---|---|---|\n".to_owned();
+    let mut rows = Vec::new();
     for (name, settings) in chain {
         let Cost { convolutions, seconds, bytes, .. } = cost(cells, steps, settings, args.repeat)?;
         let factor = last.map_or(1.0, |last: f64| last / seconds);
         let [ms, each] = [1e3 * seconds, convolutions].map(|value| value / steps as f64);
-        println!("| {name} | {ms:.2} | {each:.1} | {factor:.2} | {:.1} |", 1e-6 * bytes);
+        let row = format!("| {name} | {ms:.2} | {each:.1} | {factor:.2} | {:.1} |", 1e-6 * bytes);
+        println!("{row}");
+        table += &format!("{row}\n");
+        rows.push(format!("{ms:.1} | {each:.1} | {:.0} MB |", 1e-6 * bytes));
         (first, last) = (first.or(Some(seconds)), Some(seconds));
     }
     if let (Some(first), Some(last)) = (first, last) {
         println!("all together: {:.1}", first / last);
+        table += &format!("| all together | | | {:.0} | |", first / last);
+    }
+    if !args.quick {
+        support::figures::timed("where the factor comes from", &table)?;
+        let [literal, kept, .., default] = &rows[..] else { unreachable!() };
+        let table = format!(
+            "| | ms per step | convolutions per step | memory |\n|---|---|---|---|\n\
+             | the source paper's algorithm, literally | {literal}\n\
+             | the same, convolutions of past pressures kept | {kept}\n\
+             | this crate's defaults | {default}"
+        );
+        support::figures::timed("speed", &table)?;
     }
     // the fewest steps from which on the default rule is no less exact than the paper's rule
     let scene = StepLoadedSphere::maxwell();

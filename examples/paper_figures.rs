@@ -15,7 +15,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use scenes::{
     CLOSED, FORCE, Merit, OPEN, RADIUS, STEP_COUNTS, TimeStudy, figure_2, figure_3, figure_6, figures_4_and_5, lure,
     pressed_punch,
@@ -46,7 +45,7 @@ type Drawn = Result<(Picture, Vec<Merit>), Box<dyn Error>>;
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     let cells = if args.quick { 64 } else { 256 };
-    let progress = ProgressBar::new(5);
+    let progress = support::progress(5);
     let mut merits = Vec::new();
     for figure in 2..=6 {
         let (picture, own) = match figure {
@@ -134,14 +133,15 @@ fn opening(cells: usize) -> Drawn {
             profiles.add(format!("e = {e} R"), COLORS[which], Style::Line, line);
         }
     }
-    let title = format!("Contact area and tilt, {cells}² and {}² cells", 2 * cells);
-    let mut opening = Chart::new(title, "e / R", "area / area of the face;  tilt R² E* / (3W / 4)", Legend::UpperLeft);
-    opening.add("area", COLORS[0], Style::Line, area);
-    opening.add("area, twice the cells", COLORS[0], Style::Dots, finer_area);
-    opening.add("tilt", COLORS[1], Style::Line, tilt);
-    opening.add("tilt, twice the cells", COLORS[1], Style::Dots, finer_tilt);
-    opening.add("tilt, Lur'e, e < R/3", COLORS[2], Style::LineAndDots, vec![(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0)]);
-    Ok((Picture::beside(&[profiles.draw()?, opening.draw()?])?, merits))
+    let names = [format!("{cells}² cells"), format!("{}² cells", 2 * cells)];
+    let mut areas = Chart::new("Contact area", "e / R", "area / area of the face", Legend::LowerLeft);
+    let mut tilts = Chart::new("Tilt", "e / R", "tilt R² E* / (3W / 4)", Legend::UpperLeft);
+    tilts.add("Lur'e, e < R/3", COLORS[2], Style::Line, vec![(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0)]);
+    for (chart, curve, finer) in [(&mut areas, area, finer_area), (&mut tilts, tilt, finer_tilt)] {
+        chart.add(&names[0], COLORS[0], Style::Dots, curve);
+        chart.add(&names[1], COLORS[1], Style::Dots, finer);
+    }
+    Ok((Picture::beside(&[profiles.draw()?, areas.draw()?, tilts.draw()?])?, merits))
 }
 
 /// The radius of contact a_H and the greatest pressure p_H when the load has just been applied: the paper's units.

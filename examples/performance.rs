@@ -9,11 +9,9 @@ mod support;
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::InfluenceKernel;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
@@ -33,13 +31,20 @@ struct Args {
     /// Grids up to so many cells along each axis are computed by the paper's algorithm, too.
     #[arg(long, default_value_t = 256)]
     paper_up_to: usize,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for the table and the picture.
     #[arg(long, default_value = "out/performance")]
     output: PathBuf,
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (vec![32, 64], 20);
+    }
+    support::finish(run(&args));
 }
 
 const RADIUS: f64 = 10.0e-3;
@@ -81,12 +86,14 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         "ns/(N² log2 N²)",
     ])?;
     let mut series = vec![Vec::new(); ways.len()];
-    let progress = ProgressBar::new((args.cells.len() * ways.len()) as u64);
+    let mut rows = vec![String::new(); ways.len()];
+    let progress = support::progress((args.cells.len() * ways.len()) as u64);
     for &cells in &args.cells {
         let convolution = time_of_a_convolution(cells)?;
-        for (way, points) in ways.iter().zip(&mut series) {
+        for ((way, points), row) in ways.iter().zip(&mut series).zip(&mut rows) {
             progress.inc(1);
             if way.1.solver() == Solver::PolonskyKeer && cells > args.paper_up_to {
+                *row += " – |";
                 continue;
             }
             let cost = cost(cells, args.steps, way.1, way.2)?;
@@ -110,10 +117,17 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 format!("{:.3}", 1e6 * cost.milliseconds / (all * all.log2())),
             ])?;
             points.push((cells as f64, cost.milliseconds));
+            *row += &format!(" {:.3} ({:.1}) |", cost.milliseconds, cost.milliseconds / convolution);
         }
     }
     progress.finish_and_clear();
     table.flush()?;
+    if args.cells.len() == 5 {
+        let heads: String = args.cells.iter().map(|cells| format!(" {cells}² |")).collect();
+        let rows =
+            ways.iter().zip(&rows).map(|(way, row)| format!("| {} |{row}", way.0)).collect::<Vec<_>>().join("\n");
+        support::figures::timed("step by method", &format!("| |{heads}\n|---|---|---|---|---|---|\n{rows}"))?;
+    }
 
     let (x, y) = ("cells along each axis", "milliseconds");
     let mut chart = Chart::new("Time of a step", x, y, Legend::UpperLeft);
@@ -153,7 +167,7 @@ fn cost(cells: usize, steps: usize, settings: Settings, wide: f64) -> Result<Cos
 
 /// On the whole grid \[ms\], the median of nine.
 fn time_of_a_convolution(cells: usize) -> Result<f64, Box<dyn Error>> {
-    let kernel = Arc::new(InfluenceKernel::half_space(&Grid::square(cells, 1.0)?)?);
+    let kernel = InfluenceKernel::half_space(&Grid::square(cells, 1.0)?)?;
     let mut work = kernel.workspace()?;
     let (pressure, mut out) = (vec![1.0; cells * cells], vec![0.0; cells * cells]);
     let repeat = 1 + (1 << 18) / (cells * cells);

@@ -10,7 +10,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style, scientific};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
@@ -42,13 +41,20 @@ struct Args {
     /// Steps a decade of time.
     #[arg(long, default_value_t = 20)]
     steps: u32,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/polymer_indentation")]
     output: PathBuf,
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (64, 5);
+    }
+    support::finish(run(&args));
 }
 
 /// A run: history of (time, contact radius, peak pressure), and pressure profiles once a decade.
@@ -124,11 +130,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     }
     chart.save(args.output.join("contact_radius.png"))?;
 
-    let title = format!("{}: pressure across the contact", published.name);
-    let mut chart = Chart::new(&title, "x1 [mm]", "pressure [MPa]", Legend::UpperRight);
+    let title = format!("{}: shape of the pressure while the contact grows", published.name);
+    let mut chart = Chart::new(&title, "x1 / contact radius", "pressure / greatest pressure", Legend::LowerLeft);
     let profiles = &runs[0].profiles;
+    let history = &runs[0].history;
+    let run_at = |time: f64| history[history.partition_point(|[t, ..]| *t < 0.999 * time).min(history.len() - 1)];
     for (k, (time, profile)) in profiles.iter().step_by(2).take(COLORS.len()).enumerate() {
-        chart.add(format!("{} s", scientific(*time, 0)), COLORS[k], Style::Line, profile.clone());
+        let inside: Vec<_> = profile.iter().filter(|(_, p)| *p > 0.0).copied().collect();
+        let most = inside.iter().fold(0.0_f64, |most, (_, p)| most.max(*p));
+        let radius = 1e3 * run_at(*time)[1];
+        let label = format!("{} s: {radius:.2} mm, {most:.1} MPa", scientific(*time, 0));
+        let shape = |&(x, p): &(f64, f64)| (x / radius, p / most);
+        chart.add(label, COLORS[k], Style::Line, inside.iter().map(shape).collect());
     }
     chart.save(args.output.join("profiles.png"))?;
     println!("tables and pictures are in {}", args.output.display());
@@ -148,7 +161,7 @@ fn simulate(args: &Args, material: &Material) -> Result<Run, Box<dyn Error>> {
     let decades = (args.to / start).log10();
     let count = (decades * f64::from(args.steps)).round() as u32;
     let mut run = Run { history: Vec::new(), profiles: Vec::new(), convolutions: 0.0 };
-    let progress = ProgressBar::new(u64::from(count));
+    let progress = support::progress(u64::from(count));
     for k in 0..=count {
         let time = start * 10f64.powf(decades * f64::from(k) / f64::from(count));
         let report = contact.step(time - contact.time(), Load::force(args.load))?;

@@ -14,10 +14,8 @@ mod support;
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use reference::RollingCylinder;
 use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
@@ -86,7 +84,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&cylinder)
         .material(material.clone())
-        .kernel(Arc::new(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?))
+        .kernel(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?)
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
     let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
@@ -145,7 +143,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     ])?;
     let mut computed = Vec::new();
     let mut profiles = Vec::new();
-    let progress = ProgressBar::new(speeds as u64);
+    let progress = support::progress(speeds as u64);
     for k in 0..speeds {
         let ratio = 10f64.powf(-2.0 + 4.0 * k as f64 / (speeds - 1) as f64);
         scene.reach = ratio * glassy;

@@ -24,7 +24,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::Result;
 use viscocontact::output::{CsvHistory, Metadata};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style, scientific};
@@ -154,7 +153,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     );
     let (mut growth, mut elastic, mut maps) = (Vec::new(), Vec::new(), Vec::new());
     let (mut work, mut worst) = ((0, 0.0), 0.0_f64);
-    let progress = ProgressBar::new(shown.len() as u64);
+    let progress = support::progress(shown.len() as u64);
     let history = StepLoad::new(Load::force(force))?;
     let mut follow = contact.follow(&history, Stepping::adaptive(args.error), args.to).stop_at(&shown)?;
     while let Some(report) = follow.next_step()? {
@@ -206,7 +205,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     files.history.write(&contact, &report, &[])?;
     let mut hold = vec![observe(&contact)?];
     let (mut before, mut fell) = (contact.contact_cells(), 0);
-    let progress = ProgressBar::new(shown.len() as u64);
+    let progress = support::progress(shown.len() as u64);
     for &since in &shown {
         let report = contact.step(args.to + since - contact.time(), held)?;
         files.history.write(&contact, &report, &[])?;
@@ -308,7 +307,6 @@ fn map(contact: &ViscoelasticContact, mean: f64, time: f64, share: f64) -> Resul
 /// The run as files: a row a step, and the whole state once a decade where the crate is built to write it.
 struct Files {
     history: CsvHistory,
-    #[cfg(any(feature = "npy", feature = "vtk"))]
     frames: Vec<viscocontact::output::FrameSeries>,
 }
 
@@ -316,13 +314,11 @@ impl Files {
     fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
         Ok(Files {
             history: CsvHistory::create_or_replace(args.output.join("history.csv"), scene, contact, &[])?,
-            #[cfg(any(feature = "npy", feature = "vtk"))]
             frames: {
                 use viscocontact::output::{Field, Format, FrameSeries};
                 let formats = [
                     #[cfg(feature = "npy")]
                     (Format::Npz, "npz"),
-                    #[cfg(feature = "vtk")]
                     (Format::Vtk, "vtk"),
                 ];
                 let series = formats.map(|(format, folder)| {
@@ -336,7 +332,6 @@ impl Files {
     /// Writes the state as it is.
     #[allow(clippy::unnecessary_wraps, unused_variables, reason = "there is nothing to write without features")]
     fn frame(&mut self, contact: &ViscoelasticContact) -> Result<()> {
-        #[cfg(any(feature = "npy", feature = "vtk"))]
         for series in &mut self.frames {
             series.write(contact)?;
         }

@@ -106,7 +106,9 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
     );
     let mut table = csv::Writer::from_path(args.output.join("held.csv"))?;
     table.write_record(["time_s", "body", "approach_m", "exact_m", "by_others_m", "sum_of_lone_m"])?;
+    let progress = support::progress(u64::from(HELD * args.steps) + 1);
     for k in 0..=HELD * args.steps {
+        progress.inc(1);
         let dt = if k == 0 { 0.0 } else { args.tau / f64::from(args.steps) };
         contact.step(dt, &loads)?;
         if ![0, args.steps, HELD * args.steps].contains(&k) {
@@ -120,15 +122,17 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
             let by_others = computed - scene.approach_alone(body, forces[body], compliance)?;
             let own = scene.alone(body, forces[body], compliance, 0.0);
             let sum = scene.sum_of_lone(scene.center(body), &forces, compliance) - own;
-            println!(
-                "{:5.1} {name:>12} {:15.4} {:9.4} {:8.1e} {:9.4} {:12.4}",
-                time / args.tau,
-                1e6 * computed,
-                1e6 * exact,
-                computed / exact - 1.0,
-                1e6 * by_others,
-                1e6 * sum
-            );
+            progress.suspend(|| {
+                println!(
+                    "{:5.1} {name:>12} {:15.4} {:9.4} {:8.1e} {:9.4} {:12.4}",
+                    time / args.tau,
+                    1e6 * computed,
+                    1e6 * exact,
+                    computed / exact - 1.0,
+                    1e6 * by_others,
+                    1e6 * sum
+                )
+            });
             table.serialize((time, name, computed, exact, by_others, sum))?;
         }
     }
@@ -175,9 +179,11 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     let mut four = scene.on(material, 4)?;
     let mut jumps: Vec<(f64, [f64; 3])> = Vec::new();
     let (mut exact_curves, mut dots) = ([const { Vec::new() }; 3], Vec::new());
-    let mut centers = [const { Vec::new() }; 2];
+    let mut centers = [const { Vec::new() }; TURNS as usize];
     let mut before = [0.0; 3];
+    let progress = support::progress(u64::from(TURNS));
     for turn in 0..TURNS {
+        progress.inc(1);
         let forces = forces_of(turn);
         jumps.push((punches.time(), [0, 1, 2].map(|body| forces[body] - before[body])));
         before = forces;
@@ -196,19 +202,19 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
                 }
                 table.serialize((time, body, computed, exact[body]))?;
                 if body == turn as usize % 3 && k == args.steps {
-                    println!(
-                        "{:5.1} {:15.4} {:9.4} {:8.1e}",
-                        time / args.tau,
-                        1e6 * computed,
-                        1e6 * exact[body],
-                        computed / exact[body] - 1.0
-                    );
+                    progress.suspend(|| {
+                        println!(
+                            "{:5.1} {:15.4} {:9.4} {:8.1e}",
+                            time / args.tau,
+                            1e6 * computed,
+                            1e6 * exact[body],
+                            computed / exact[body] - 1.0
+                        )
+                    });
                 }
             }
             let sphere = four.body(SPHERE).ok_or("the sphere is the last of four bodies")?;
-            for (curve, moment) in centers.iter_mut().zip(sphere.moment) {
-                curve.push((time / args.tau, 1e6 * moment / sphere.force));
-            }
+            centers[turn as usize].push((1e6 * sphere.moment[0] / sphere.force, 1e6 * sphere.moment[1] / sphere.force));
         }
     }
     table.flush()?;
@@ -218,10 +224,10 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     }
     chart.add("computed", COLORS[6], Style::Dots, dots);
     chart.save(args.output.join("turns.png"))?;
-    let title = "A sphere under a constant force: its neighbours left, right and above are pressed in turn";
-    let mut chart = Chart::new(title, "t / τ", "centre of pressure of the sphere [µm]", Legend::UpperRight);
-    for ((curve, name), color) in centers.into_iter().zip(["x1", "x2"]).zip(COLORS) {
-        chart.add(name, color, Style::Line, curve);
+    let mut chart = Chart::new("Centre of pressure of the sphere, six turns", "x1 [µm]", "x2 [µm]", Legend::UpperRight);
+    for (turn, path) in centers.into_iter().enumerate() {
+        let label = if turn < 3 { format!("{} is pressed", NAMES[turn]) } else { String::new() };
+        chart.add(label, COLORS[turn % 3], Style::LineAndDots, path);
     }
     Ok(chart.save(args.output.join("sphere.png"))?)
 }

@@ -14,9 +14,8 @@ use std::fs;
 use std::path::{Path as File, PathBuf};
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::Result;
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 
 /// A sphere sliding over a standard solid.
@@ -110,7 +109,7 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     table.write_record(["velocity_m_s", "friction", "friction_on_half_as_many_cells", "area_m2", "approach_m"])?;
     let (mut fine, mut coarse) = (Vec::new(), Vec::new());
     let mut greatest: Option<(f64, ViscoelasticContact, Shifted)> = None;
-    let progress = ProgressBar::new(speeds as u64);
+    let progress = support::progress(speeds as u64);
     for k in 0..speeds {
         let ratio = 10f64.powf(-1.5 + 3.0 * k as f64 / (speeds - 1) as f64);
         let velocity = ratio * bodies.glassy / bodies.tau;
@@ -150,10 +149,19 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     chart.save(output.join("friction.png"))?;
 
     let Some((friction, contact, _)) = greatest else { return Ok(()) };
-    let mut map = Map::pressure(&contact)?;
-    map.title = format!("Pressure of a sphere that slides to the right, friction {friction:.3}");
+    // as many cells before as behind the sphere
+    let (grid, [_, n2]) = (contact.grid(), contact.grid().cells());
+    let [side, _] = grid.spacing();
+    // the sphere is so far from the end of the grid
+    let middle = ((grid.lengths()[0] - 1.4 * bodies.relaxed) / side) as usize;
+    let reach = (1.3 * bodies.relaxed / side) as usize;
+    let part = &contact.pressure()[(middle - reach) * n2..(middle + reach) * n2];
+    let around = Grid::new([2 * reach, n2], [2 * reach, n2].map(|cells| cells as f64 * side))?;
+    let values = part.iter().map(|&p| if p > 0.0 { p } else { f64::NAN }).collect();
+    let mut map = Map::new(&around, values, Quantity::of("pressure", "Pa"))?;
+    map.axes[0] = Quantity::of("x1 from the axis of the sphere", "m");
+    map.title = format!("A sphere slides to the right, friction {friction:.3}");
     map.save(output.join("pressure.png"))?;
-    #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
@@ -189,7 +197,7 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
     // two steps a cell while it moves; at rest they may grow
     let step = 0.5 * side / velocity;
     let corners = [moving, moving + resting, 2.0 * moving + resting];
-    let progress = ProgressBar::new((2.0 * moving / step) as u64 + 60);
+    let progress = support::progress((2.0 * moving / step) as u64 + 60);
     let mut dt = step;
     for (k, &corner) in corners.iter().enumerate() {
         while contact.time() < corner * (1.0 - 1e-12) {

@@ -61,6 +61,9 @@ struct Args {
     /// Tolerance of the solver.
     #[arg(long, default_value_t = 1e-6)]
     tolerance: f64,
+    /// Fewer cells and steps: seconds.
+    #[arg(long)]
+    quick: bool,
     /// Folder for tables and pictures.
     #[arg(long, default_value = "out/step_loaded_sphere")]
     output: PathBuf,
@@ -123,7 +126,11 @@ impl Args {
 }
 
 fn main() {
-    support::finish(run(&Args::parse()));
+    let mut args = Args::parse();
+    if args.quick {
+        (args.cells, args.steps) = (64, 20);
+    }
+    support::finish(run(&args));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {

@@ -16,7 +16,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use indicatif::ProgressBar;
 use viscocontact::contact::StressHistory;
 use viscocontact::observe::{Stress, StressPeak, StressSection};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Picture, Quantity, Scale, Style};
@@ -120,7 +119,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let last =
         viscocontact::analytic::Hertz::new(args.radius, 1.0 / polymer.contact_compliance(1e3 * args.tau), args.force)?;
     let length = 3.0 * last.contact_radius;
-    let progress = ProgressBar::new(2 * (args.steps as u64 + 1));
+    let progress = support::progress(2 * (args.steps as u64 + 1));
     let bodies = [("elastic bulk", polymer), ("incompressible", Material::incompressible(shear))];
     let mut runs = Vec::new();
     for (name, material) in bodies {
@@ -160,6 +159,9 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     for (contact, section) in sections {
         maps.push(Map::section(contact, section, Stress::von_mises, name())?);
     }
+    // one scale for all
+    let most = maps.iter().map(|map| map.range[1]).fold(0.0, f64::max);
+    maps.iter_mut().for_each(|map| map.range = [0.0, most]);
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
     let time = || Quantity::of("time", "s");
@@ -176,5 +178,6 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
         relative.add(*name, color, Style::LineAndDots, over);
     }
     Picture::beside(&[depth.draw()?, relative.draw()?])?.save(args.output.join("depth.png"))?;
+    println!("table and pictures are in {}", args.output.display());
     Ok(())
 }

@@ -91,6 +91,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         (format!("warms up to {} °C", args.warm), vec![(args.begins, cold), (args.ends, warm)]),
         (format!("stays at {} °C", args.cool), vec![(0.0, cool)]),
     ];
+    let progress = support::progress(3 * 100);
     for (n, (name, course)) in courses.into_iter().enumerate() {
         let temperature = TemperatureHistory::table(law, &course)?;
         let mut contact = ViscoelasticContact::builder(grid.clone())
@@ -105,6 +106,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let (mut area, mut depth, mut course, mut collapsed) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut steps, mut error) = (0, 0.0);
         while let Some(report) = follow.next_step()? {
+            progress.set_position((100.0 * (n as f64 + report.time / until)) as u64);
             let contact = follow.contact();
             let (t, now, xi) = (report.time, temperature.at(report.time), contact.reduced_time());
             let minutes = t / 60.0;
@@ -116,13 +118,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             table.serialize((&name, t, now, xi, contact.contact_area(), report.approach))?;
             steps += 1;
         }
-        println!(
+        progress.suspend(|| println!(
             "{name}: contact area {:.3} mm² at first, {:.3} mm² at the end, after {:.1e} s at the reference temperature; \
              {steps} steps, approach over Lee & Radok's {error:+.1e}",
             area[0].1,
             1e6 * contact.contact_area(),
             contact.reduced_time()
-        );
+        ));
         areas.add(name.clone(), COLORS[n], Style::Line, area);
         depths.add(name.clone(), COLORS[n], Style::Line, depth);
         temperatures.add(name.clone(), COLORS[n], Style::Line, course);

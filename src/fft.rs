@@ -51,11 +51,7 @@ pub(crate) struct Plane {
     pub(crate) along: [Lines; 2],
 }
 
-impl std::fmt::Debug for Plane {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Plane").field("periods", &self.periods()).finish_non_exhaustive()
-    }
-}
+debug_by!(self: Plane => periods: self.periods());
 
 impl Plane {
     pub(crate) fn new(periods: [usize; 2]) -> Plane {

@@ -6,6 +6,8 @@
 //! | [`accuracy`] | mesh, steps, tolerance: what to choose, and how to check it |
 //! | [`own_models`] | your own rheology, shape and load |
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
+//! | [`long_runs`] | saved and resumed runs, many contacts on threads |
+//! | [`results`] | files in pandas, NumPy and PyVista; views as arrays and matrices |
 //!
 //! The same pages are in the folder `docs/guide` of the source.
 
@@ -19,4 +21,4 @@ macro_rules! pages {
         }
     )*};
 }
-pages! { tour accuracy own_models coupling }
+pages! { tour accuracy own_models coupling long_runs results }

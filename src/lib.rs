@@ -55,8 +55,8 @@
 //! slide and roll: [`motion`]. [`observe`] evaluates a state, and [`output`] writes it to files that NumPy and ParaView
 //! open.
 //!
-//! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`], and
-//! [`guide::coupling`] to other integrators.
+//! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`],
+//! [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
 //!
 //! # Conventions
 //!
@@ -84,7 +84,7 @@
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid, O(N log N). Periodic
 //! bodies are not padded and cost a third; a line of N × 1 cells is transformed in one dimension. A step of the default
-//! solver takes about 3 convolutions in the scenes of the README at 256² cells; tilts cost nothing in a scene without
+//! solver takes <!-- figures convolutions per step -->3.1<!-- end --> convolutions in the first scene of the README; tilts cost nothing in a scene without
 //! them. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
 //! ([`contact::Settings::symmetry`]); cells that contact cannot reach are not computed at all
 //! ([`contact::Settings::window`]). `docs/performance.md` gives the cost of a step with each method.
@@ -94,7 +94,8 @@
 //! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
 //! times per decade for an error of 1e-4, in a tenth of a second.
 //!
-//! Memory: 157 to 164 bytes per computed cell (370 for a line contact, whose transform tables are as long as the line),
+//! Memory: <!-- figures memory -->158 to 164<!-- end --> bytes per computed cell with one relaxation time, 16 more where threads share a
+//! contact (<!-- figures memory of a line -->370<!-- end --> for a line contact, whose transform tables are as long as the line),
 //! and 8 for each further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their
 //! number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
@@ -113,15 +114,11 @@
 //! `checkpoint`: saves the state to a file and resumes from it ([`contact::Run`]`::autosave_to`,
 //! `ViscoelasticContact::save` and `resume`).
 //!
-//! `csv` (on by default): tables of measured data from CSV files.
-//!
 //! `laws`: `proptest` strategies for testing your own rheologies, geometries and load histories (`laws`).
 //!
 //! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
 //!
 //! `plot`: pictures of contacts and runs as PNG and SVG files, and animated GIFs, with a built-in font.
-//!
-//! `vtk`: fields to VTK image data, a time series that ParaView opens.
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
@@ -169,12 +166,11 @@ mod error;
 mod events;
 mod extent;
 mod fft;
-#[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
 mod file;
 pub mod geometry;
 mod grid;
 // the programs of the guide run only with the features that they use
-#[cfg(all(doc, any(not(doctest), all(feature = "csv", feature = "plot"))))]
+#[cfg(all(doc, any(not(doctest), all(feature = "checkpoint", feature = "npy", feature = "plot"))))]
 pub mod guide;
 mod hereditary;
 mod input;
@@ -206,7 +202,7 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, KernelError, OutputError, Result, TextError, Trend};
+pub use error::{Convergence, Error, FileError, KernelError, OutputError, Result, TextError, Trend};
 pub use grid::Grid;
 pub use input::{Delimiter, TextFormat};
 pub use kernel::{InfluenceKernel, Layer, Workspace};
@@ -225,8 +221,8 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepReport, Stepping, TimeRule,
-        ViscoelasticContact, Warnings,
+        BodyState, Builder, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepError, StepReport,
+        Stepping, TimeRule, ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
@@ -234,9 +230,7 @@ pub mod prelude {
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
-    #[cfg(feature = "csv")]
     pub use crate::output::CsvHistory;
-    #[cfg(any(feature = "npy", feature = "vtk"))]
     pub use crate::output::{Field, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{

@@ -27,3 +27,14 @@ macro_rules! value {
         }
     };
 }
+
+/// Implements `Debug` for a type by some of its values: the others are large, or cannot be printed.
+macro_rules! debug_by {
+    ($self:ident: $type:ident$(<$generic:ident>)? => $($name:ident: $value:expr),*) => {
+        impl$(<$generic>)? std::fmt::Debug for $type$(<$generic>)? {
+            fn fmt(&$self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.debug_struct(stringify!($type))$(.field(stringify!($name), &$value))*.finish_non_exhaustive()
+            }
+        }
+    };
+}

@@ -1,12 +1,15 @@
 """Reads a run that the test `a_run_for_other_readers` wrote, with numpy, with VTK itself and with csv, and compares
-every number bit by bit with the bare numbers (*.raw) beside it. Exits with 1 if anything differs.
+every number bit by bit with the bare numbers (*.raw) beside it; runs the programs of docs/guide/results.md there. Exits with 1 if
+anything differs.
 
 Usage: read_back.py FOLDER
 """
 
+import contextlib
 import csv
 import json
 import pathlib
+import re
 import sys
 import xml.etree.ElementTree
 
@@ -143,6 +146,23 @@ def check_history(folder, frames, raws, scene):
         check("history.csv: own column", float(row["twice, force [N]"]) == 2.0 * float(row["force [N]"]))
 
 
+def check_guide(folder, raws):
+    """The programs of the guide, one after the other as a reader would run them, and what they leave in their names."""
+    page = (pathlib.Path(__file__).parent.parent / "docs" / "guide" / "results.md").read_text(encoding="utf8")
+    programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    check("guide: programs", len(programs) == 3)
+    names = {}
+    with contextlib.chdir(folder):
+        for program in programs:
+            exec(program, names)
+    check("guide: pandas", same_bits(names["history"]["force [N]"], [raw("force")[0] for raw in raws]))
+    check("guide: times", same_bits(names["times"], [raw("time")[0] for raw in raws]))
+    check("guide: greatest pressures", same_bits(names["greatest"], [raw("pressure").max() for raw in raws]))
+    check("guide: PyVista", names["image"].n_cells == raws[-1]("pressure").size)
+    force = names["pressure"].sum() * names["cell"]
+    check("guide: force", abs(force / raws[-1]("force")[0] - 1.0) < 1e-9)
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     *shape, count = map(int, (folder / "shape.txt").read_text().split())
@@ -158,6 +178,7 @@ def main():
         check_image(folder / entry.get("file"), raw, shape, scene)
         check_stress(folder / f"{frame}.vtr", raw, shape, scene)
     check_history(folder, frames, raws, scene)
+    check_guide(folder, raws)
     check("leftovers", not list(folder.glob("*.part")))
 
     print(f"{checks} comparisons with numpy {numpy.__version__} and VTK {vtk.vtkVersion.GetVTKVersion()}: {differences} differ")

@@ -1,7 +1,11 @@
 //! Functions that the examples share.
 #![allow(dead_code, reason = "each example takes what it needs")]
 
+pub mod figures;
+
 use std::error::Error;
+
+use indicatif::{ProgressBar, ProgressStyle};
 
 /// Ends an example: prints an error with its causes in a line, and sets the exit status.
 pub fn finish(result: Result<(), Box<dyn Error>>) {
@@ -14,6 +18,15 @@ pub fn finish(result: Result<(), Box<dyn Error>>) {
         }
         eprintln!();
         std::process::exit(1);
+    }
+}
+
+/// A bar on the terminal, with the time that is left.
+pub fn progress(length: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    match ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
     }
 }
 

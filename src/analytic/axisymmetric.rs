@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, count_within, finite, length, non_negative, positive};
+use crate::error::{Error, Result, StepError, count_within, finite, length, non_negative, positive};
 use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
 use crate::memory;
 use crate::parallel::Rows;
@@ -172,14 +172,17 @@ impl AxisymmetricContact {
         non_negative("time step", dt)?;
         let (time, known_until) = (self.time + dt, self.known_until);
         if !is_known(time, known_until) {
-            return Err(Error::BeyondMaterial { time, age: time, known_until });
+            return Err(Error::Step(StepError::BeyondMaterial { time, age: time, known_until }));
         }
         let rows = Rows::all([self.profile.len(), 1]);
         self.rule.compute_weights(dt, Interpolant::CorrectedLinear);
         self.displacement.predict_non_negative(&mut self.rule, self.width, &rows, || true);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
-            return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });
+            return Err(Error::Step(StepError::NoElasticResponse {
+                time,
+                what: "a jump of the foundation (ramp the load instead)",
+            }));
         }
         for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(self.displacement.trial()) {
             *touch = g + u_old;
@@ -190,12 +193,12 @@ impl AxisymmetricContact {
     fn accept(&mut self, dt: f64, c: f64, approach: f64) -> Result<()> {
         let time = self.time + dt;
         if self.trial_touch.last().is_some_and(|&touch| touch < approach) {
-            return Err(Error::BeyondReach { time, reach: self.width * self.load.len() as f64 });
+            return Err(Error::Step(StepError::BeyondReach { time, reach: self.width * self.load.len() as f64 }));
         }
         let load = |touch: &f64| (approach - touch).max(0.0) / c;
         let force = self.trial_touch.iter().map(load).sum::<f64>() * self.width;
         let displacement = self.displacement.trial().iter().sum::<f64>();
-        let overflow = |what| Err(Error::Overflow { time, what });
+        let overflow = |what| Err(Error::Step(StepError::Overflow { time, what }));
         if !(approach.is_finite() && c.is_finite()) {
             return overflow("the approach");
         }

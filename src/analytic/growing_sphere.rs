@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Error, LoadError, Result, positive, within};
+use crate::error::{Error, LoadError, Result, StepError, positive, within};
 use crate::load::{Load, LoadHistory, StepLoad};
 use crate::quadrature::{GaussLegendre, bisect};
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
@@ -73,7 +73,10 @@ impl GrowingSphere {
         let creep =
             material.contact_spectrum()?.ok_or_else(|| material.no_series("the solution for a growing contact"))?;
         if creep.glassy() == 0.0 {
-            return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
+            return Err(Error::Step(StepError::NoElasticResponse {
+                time: 0.0,
+                what: "the solution for a growing contact",
+            }));
         }
         let given = match load.at(0.0) {
             Load::Force { .. } => None,
@@ -99,12 +102,9 @@ impl GrowingSphere {
             // ∫ C(t − s) dW(s) = C(0) W(t) + ∫ C′(t − s) W(s) ds
             None => {
                 let flow = self.creep.fluidity() * self.integrate(0.0, t, f64::INFINITY, &|s| self.force(s));
+                let past = |tau: f64| self.integrate(0.0, t, tau, &|s| self.force(s) * ((s - t) / tau).exp());
                 let branches = self.creep.terms().iter();
-                let retarded: f64 = branches
-                    .map(|&(c, lambda)| {
-                        c / lambda * self.integrate(0.0, t, lambda, &|s| self.force(s) * ((s - t) / lambda).exp())
-                    })
-                    .sum();
+                let retarded: f64 = branches.map(|&(c, lambda)| c / lambda * past(lambda)).sum();
                 self.creep.glassy() * self.force(t) + flow + retarded
             }
         };
@@ -132,13 +132,9 @@ impl GrowingSphere {
         };
         let entry = self.entry_time(r, t);
         let glassy: f64 = self.relaxation.modulus(0.0);
-        let relaxed: f64 = self
-            .relaxation
-            .terms()
-            .iter()
-            // a modulus over a time may overflow; the integral over the time is a depth
-            .map(|&(e, tau)| e * (self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp()) / tau))
-            .sum();
+        let past = |tau: f64| self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp());
+        // a modulus over a time may overflow; the integral over the time is a depth
+        let relaxed: f64 = self.relaxation.terms().iter().map(|&(e, tau)| e * (past(tau) / tau)).sum();
         2.0 / (PI * self.radius) * (glassy * depth(t) - relaxed)
     }
 

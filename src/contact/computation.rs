@@ -1,13 +1,7 @@
 //! A state on its region, with what computes there.
 
-use crate::contact::builder::memory::Footprint;
-use crate::contact::indenter::Indenter;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::step::request::Trial;
 use crate::contact::window::fields::transferred;
-use crate::contact::window::region::Region;
-use crate::contact::window::window::Window;
+use crate::contact::{Footprint, Indenter, Region, Scene, State, Trial, Window};
 use crate::error::Result;
 
 /// State, window and trial of one computation. A step that needs a larger region goes on in a copy; whichever was accepted

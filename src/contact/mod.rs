@@ -42,6 +42,7 @@ mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
+pub use crate::error::StepError;
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
@@ -53,3 +54,14 @@ pub use run::progress::{ErrorBudget, Stepping};
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use stepper::ViscoelasticContact;
+
+use builder::memory::Footprint;
+use computation::Computation;
+use indenter::Indenter;
+use indenter::hull::Hull;
+use run::progress::Progress;
+use scene::Scene;
+use state::{Clock, Equilibrium, State};
+use step::request::{Step, Trial};
+use window::region::Region;
+use window::window::Window;

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use crate::Grid;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
-use crate::contact::settings::Settings;
-use crate::contact::state::Clock;
+use crate::contact::{Clock, Settings};
 use crate::error::Result;
 use crate::hereditary::HistoryInputs;
 use crate::kernel::InfluenceKernel;

@@ -111,7 +111,7 @@ pub enum TimeRule {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Edge {
-    /// The step fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge): the bodies go on beyond the grid, so that the
+    /// The step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge): the bodies go on beyond the grid, so that the
     /// result would be wrong.
     #[default]
     Refuse,

@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::contact::computation::Computation;
 use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
-use crate::contact::run::progress::Progress;
-use crate::contact::scene::Scene;
+use crate::contact::{Computation, Progress, Scene};
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.

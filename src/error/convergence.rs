@@ -13,7 +13,7 @@ const STALLED: f64 = 1e-3;
 /// Fewer residuals show no trend.
 const FEWEST: usize = 4;
 
-/// The residual history of a solve that did not converge, part of [`Error::NotConverged`](crate::Error::NotConverged).
+/// The residual history of a solve that did not converge, part of [`StepError::NotConverged`](crate::contact::StepError::NotConverged).
 /// Its `Display` suggests a remedy.
 ///
 /// ```
@@ -25,7 +25,7 @@ const FEWEST: usize = 4;
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
 ///     .settings(Settings::default().with_max_iterations(5).with_tolerance(1.0e-13))
 ///     .build()?;
-/// let Err(Error::NotConverged { convergence, .. }) = contact.step(0.0, Load::force(0.5)) else { panic!() };
+/// let Err(Error::Step(StepError::NotConverged { convergence, .. })) = contact.step(0.0, Load::force(0.5)) else { panic!() };
 /// assert_eq!(convergence.trend(), Trend::Falling);
 /// assert!(convergence.to_string().contains("max_iterations"));
 /// # Ok::<(), Error>(())

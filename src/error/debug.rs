@@ -38,35 +38,19 @@ macro_rules! fmt_fields {
 }
 
 fmt_fields! {
-    Kernel Load Map Material Output Ranks States Table Text;
-    BeyondFullContact { time approach greatest }
-    BeyondMaterial { time age known_until }
-    BeyondReach { time reach }
+    File Kernel Load Map Material Output Ranks States Step Table Text;
     Cancelled { what }
     #[cfg(feature = "checkpoint")]
     Checkpoint { path source }
-    ContactAtEdge { time cells }
     CountOutOfRange { field value allowed }
-    Extension { path allowed }
-    HistoryFull { time steps bytes limit }
     InvalidGap { cell position value }
-    LoadOutsideHull { time body at }
     Missing { part }
-    NoContact { time }
     NoDomain { length }
-    NoElasticResponse { time what }
-    NotAFile { path kind }
-    NotConverged { time dt iterations residual tolerance convergence }
     NothingToTouch { body cells }
-    NotSteady { distance change tolerance }
     OtherContact {}
     OutOfMemory { what bytes }
     OutOfOrder { field index value previous rule }
     OutOfRange { field value allowed }
-    Overflow { time what }
-    StepTooShort { time dt tolerance }
-    TiltOfPeriodic { time axis }
-    Unreadable { file reason kind }
     WrongFrame { what }
     WrongLength { field len expected exact }
 }

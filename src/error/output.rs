@@ -3,7 +3,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Error, MapError};
+use super::{Error, FileError, MapError};
 
 /// A file or folder of results that cannot be written, and why.
 ///
@@ -12,14 +12,12 @@ use super::{Error, MapError};
 /// ```
 /// use std::io::ErrorKind;
 /// use viscocontact::prelude::*;
-/// # #[cfg(feature = "csv")]
 /// use viscocontact::output::{CsvHistory, Metadata};
 ///
 /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Elastic::new(1.0e6)?))
 ///     .build()?;
-/// # #[cfg(feature = "csv")]
 /// match CsvHistory::create("no/such/folder/history.csv", &Metadata::new("Ball on rubber"), &contact, &[]) {
 ///     Err(Error::Output(error)) if error.kind() == ErrorKind::NotFound => println!("create {:?} first", error.path().parent()),
 ///     other => panic!("{other:?}"),
@@ -33,7 +31,6 @@ pub struct OutputError {
 }
 
 impl OutputError {
-    #[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn new(path: &Path, cause: io::Error) -> OutputError {
         OutputError { path: path.to_owned(), cause: Arc::new(cause) }
     }
@@ -88,7 +85,7 @@ impl Error {
     pub fn io_kind(&self) -> Option<io::ErrorKind> {
         match self {
             Error::Output(error) => Some(error.kind()),
-            Error::Unreadable { kind, .. } | Error::Map(MapError::Unwritable { kind, .. }) => *kind,
+            Error::File(FileError::Unreadable { kind, .. }) | Error::Map(MapError::Unwritable { kind, .. }) => *kind,
             #[cfg(feature = "checkpoint")]
             Error::Checkpoint { source, .. } => source.io_kind(),
             _ => None,

@@ -4,18 +4,14 @@ use std::fs::{self, FileType};
 use std::io;
 use std::path::Path;
 
-use crate::error::{Error, OutputError, Result};
+use crate::error::{Error, FileError, OutputError, Result};
 
-#[cfg(any(feature = "csv", feature = "plot"))]
 mod appending;
 #[cfg(feature = "npy")]
 pub(crate) mod npy;
-#[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
 mod part;
 
-#[cfg(any(feature = "csv", feature = "plot"))]
 pub(crate) use appending::Appending;
-#[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) use part::{Part, replace};
 
 /// The error of writing a file.
@@ -24,7 +20,6 @@ pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {
 }
 
 /// Writes numbers in little-endian order.
-#[cfg(any(feature = "npy", feature = "vtk"))]
 pub(crate) fn write_numbers(out: &mut impl io::Write, mut values: impl Iterator<Item = f64>) -> io::Result<()> {
     values.try_for_each(|value| out.write_all(&value.to_le_bytes()))
 }
@@ -38,7 +33,7 @@ pub(crate) fn check_regular(path: &Path) -> Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(failed(path, error)),
     };
-    Err(Error::NotAFile { path: path.display().to_string(), kind })
+    Err(Error::File(FileError::NotAFile { path: path.display().to_string(), kind }))
 }
 
 fn kind(found: FileType) -> &'static str {

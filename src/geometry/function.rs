@@ -1,5 +1,3 @@
-use std::fmt;
-
 use crate::geometry::Geometry;
 
 /// A geometry whose gap \[m\] is a closure of (x1, x2) \[m\].
@@ -21,11 +19,7 @@ impl<F: Fn(f64, f64) -> f64 + Send + Sync> FnGeometry<F> {
     }
 }
 
-impl<F> fmt::Debug for FnGeometry<F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FnGeometry").finish_non_exhaustive()
-    }
-}
+debug_by!(self: FnGeometry<F> =>);
 
 impl<F: Fn(f64, f64) -> f64 + Send + Sync> Geometry for FnGeometry<F> {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use educe::Educe;
 
-use crate::error::{Error, MaterialError, Result};
+use crate::error::{Error, MaterialError, Result, StepError};
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::history::HistoryInputs;
 use crate::hereditary::interval::Interval;
@@ -83,7 +83,7 @@ impl DirectSum {
     ) -> Result<(f64, usize)> {
         let bytes = (self.increments.len() + 1).saturating_mul(std::mem::size_of_val(u_old));
         if bytes > limit {
-            return Err(Error::HistoryFull { time, steps: self.increments.len(), bytes, limit });
+            return Err(Error::Step(StepError::HistoryFull { time, steps: self.increments.len(), bytes, limit }));
         }
         let age = if self.weighting == Weighting::Start { dt } else { 0.0 };
         // before the first increment, a step may be longer than the material is known for

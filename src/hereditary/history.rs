@@ -211,7 +211,7 @@ impl History {
                     return Ok((own.compliance(), convolutions));
                 }
                 // the sign of u is no criterion where pressures raise the surface
-                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || !kernel.raises());
+                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || !kernel.whole.raises());
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }

@@ -77,7 +77,7 @@ impl MovingFrame {
             u_old.iter_mut().zip(&self.remainder.trial).for_each(|(u_old, &e)| *u_old += e);
             convolutions += 1;
             let falls_below_zero = rule.has_less() && displacement.falls_below_zero(rule, side, kernel.rows());
-            if !falls_below_zero || kernel.raises() {
+            if !falls_below_zero || kernel.whole.raises() {
                 return convolutions;
             }
             rule.reduce_order();

@@ -6,9 +6,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, FileError, Result};
 
-#[cfg(feature = "csv")]
 pub(crate) use text::shortened;
 pub use text::{Delimiter, TextFormat};
 pub(crate) use text::{TextRow, TextTable};
@@ -25,5 +24,5 @@ pub(crate) fn bytes(mut reader: impl Read, name: &str) -> Result<Vec<u8>> {
 }
 
 fn unreadable(file: String, error: io::Error) -> Error {
-    Error::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }
+    Error::File(FileError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) })
 }

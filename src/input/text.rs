@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::Read;
 
-use crate::error::{Error, Result, TextError};
+use crate::error::{Error, FileError, Result, TextError};
 
 value! {
 /// How a text file separates its fields and writes its numbers.
@@ -12,17 +12,13 @@ value! {
 /// Fortran, and no separators of thousands. Empty lines and lines that start with `#` are skipped.
 ///
 /// ```
-/// # #[cfg(feature = "csv")]
 /// use viscocontact::rheology::{Experiment, Measurements, Units};
 /// use viscocontact::{Delimiter, TextFormat};
 ///
 /// let text = "t J\n0,5 1,0e-9\n1,5 1,1e-9\n5 1,2e-9\n15 1,3e-9\n";
 /// let format = TextFormat::default().with_delimiter(Delimiter::Blanks).with_decimal_comma(true);
-/// # #[cfg(feature = "csv")]
-/// # {
 /// let body = Measurements::from_csv_reader(Experiment::Creep, text.as_bytes(), Units::SI, format)?.fit()?;
 /// assert_eq!(body.report().samples()[0].x, 0.5);
-/// # }
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,7 +73,11 @@ impl TextTable {
     pub(crate) fn read(reader: impl Read, name: &str, mut format: TextFormat) -> Result<TextTable> {
         let bytes = super::bytes(reader, name)?;
         if bytes.contains(&0) {
-            return Err(Error::Unreadable { file: name.into(), reason: "it is not a text file".into(), kind: None });
+            return Err(Error::File(FileError::Unreadable {
+                file: name.into(),
+                reason: "it is not a text file".into(),
+                kind: None,
+            }));
         }
         let text = String::from_utf8_lossy(&bytes);
         // byte order mark of some spreadsheets
@@ -210,7 +210,6 @@ impl TextRow<'_> {
     }
 
     /// Whether a field is a number with a decimal point or a decimal comma.
-    #[cfg(feature = "csv")]
     pub(crate) fn has_numbers(&self) -> bool {
         self.fields.iter().any(|field| number(field, false).or(number(field, true)).is_some())
     }

@@ -3,12 +3,8 @@
 use std::sync::Arc;
 
 use super::definiteness::least_eigenvalue;
-use super::influence::{Body, indices, magnitude};
-use super::layer::Remainder;
-use super::layout::{Ends, Layout};
-use super::line_load::{Strip, wave_number};
-use super::love::Love;
-use super::{InfluenceKernel, MEMORY_WHILE_MADE};
+use super::influence::indices;
+use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Remainder, Strip, magnitude, wave_number};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
@@ -269,5 +265,5 @@ pub(super) fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
     let reaches = datum >= grid.lengths()[axis];
     within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;
     within("datum of a line load", datum, datum <= FARTHEST_DATUM, "at most 1e120 m")?;
-    Ok(Strip::new(grid.spacing()[axis], datum))
+    Ok(Strip { side: grid.spacing()[axis], datum })
 }

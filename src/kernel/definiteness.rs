@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 
-use super::transform::SpectralOperator;
+use super::SpectralOperator;
 use crate::sum::sum_of_pairs;
 
 /// Lanczos steps: the extreme eigenvalues converge first.

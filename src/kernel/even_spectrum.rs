@@ -5,8 +5,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use realfft::{RealFftPlanner, RealToComplex};
 
-use super::layout::{Ends, Layout};
-use super::transform::Shares;
+use super::{Ends, Layout, Shares};
 
 /// A real even function of wave numbers.
 pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;

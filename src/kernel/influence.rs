@@ -4,12 +4,10 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
-use super::InfluenceKernel;
 use super::even_spectrum::{Symbol, even_spectrum};
-use super::layer::Layer;
-use super::layout::{Ends, Layout, is_fast, waves_at};
-use super::line_load::{uniform, wave_number};
-use super::transform::Shares;
+use super::layout::{is_fast, waves_at};
+use super::line_load::uniform;
+use super::{Ends, InfluenceKernel, Layer, Layout, Shares, wave_number};
 use crate::Grid;
 
 /// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance in cells
@@ -59,11 +57,6 @@ impl InfluenceKernel {
             (Body::HalfSpace, Some(across)) if self.is_plane() => Some(HalfSpace::Line { across }),
             _ => None,
         }
-    }
-
-    /// Whether the body is a half-space, whose displacement is positive everywhere around a load.
-    pub(crate) fn is_half_space(&self) -> bool {
-        self.half_space_below() == Some(HalfSpace::LoadedOnGrid)
     }
 
     /// The layer, if the body is one: its Poisson's ratio must equal the material's.
@@ -148,7 +141,7 @@ impl InfluenceKernel {
     }
 
     /// The greatest compliance of a wave \[m\], if the mean has none.
-    pub(super) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
+    pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         *self.facts.softest.get_or_init(|| match self.body {
             _ if self.periodic != [true; 2] || (self.response)([0, 0]) != 0.0 => None,
             // the longest wave: 2/q = L/π
@@ -157,9 +150,14 @@ impl InfluenceKernel {
         })
     }
 
+    /// Whether the mean displacement is fixed: then the approach cannot exceed the approach of full contact.
+    pub(crate) fn mean_is_held(&self) -> bool {
+        self.softest_wave_if_mean_is_held().is_some()
+    }
+
     /// Whether a pressure raises the surface somewhere, as beside the load on a layer that bulges, or to keep the mean.
     /// Costs a line of coefficients, more where each is a sum over waves: computed at the first call.
-    pub(super) fn raises(&self) -> bool {
+    pub(crate) fn raises(&self) -> bool {
         let [n1, n2] = self.grid.cells();
         let negative = |at: [usize; 2]| self.coefficient_at(at) < 0.0;
         *self.facts.raises.get_or_init(|| match (self.body, self.periodic) {
@@ -211,14 +209,7 @@ impl fmt::Display for InfluenceKernel {
     }
 }
 
-impl fmt::Debug for InfluenceKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("InfluenceKernel")
-            .field("grid", &self.grid)
-            .field("body", &self.to_string())
-            .finish_non_exhaustive()
-    }
-}
+debug_by!(self: InfluenceKernel => grid: self.grid, body: self.to_string());
 
 /// |q| \[1/m\] of the wave numbers of periods \[cells\].
 pub(super) fn magnitude(grid: &Grid, period: [usize; 2]) -> impl Fn([usize; 2]) -> f64 + 'static {

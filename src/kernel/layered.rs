@@ -1,11 +1,8 @@
 //! Constructors of the kernels of layers.
 
-use super::InfluenceKernel;
 use super::constructors::{check_line, representable, strip};
-use super::influence::{Body, longest_side, magnitude};
-use super::layer::{Layer, Remainder};
-use super::line_load::{Strip, wave_number};
-use super::love::Love;
+use super::influence::longest_side;
+use super::{Body, InfluenceKernel, Layer, Love, Remainder, Strip, magnitude, wave_number};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
@@ -69,7 +66,7 @@ impl InfluenceKernel {
     /// their ratio, is not in \[1e-100, 1e100\] (m), or the compliance of a wave vanishes in `f64`.
     pub fn layer_periodic(grid: &Grid, layer: Layer) -> Result<InfluenceKernel> {
         representable(grid)?;
-        let mean = layer.compliance_of_period();
+        let mean = if layer.is_on_rigid() { layer.mean() } else { 0.0 };
         let allowed = "2 or more: the mean of this surface is not displaced";
         count_within("cells of a periodic grid", grid.len(), mean != 0.0 || grid.len() > 1, allowed)?;
         let longest = longest_side(grid);
@@ -126,7 +123,7 @@ fn layer_strip(grid: &Grid, layer: Layer, axis: usize, datum: Option<f64>) -> Re
     let side = grid.spacing()[axis];
     check_side(side, layer)?;
     match datum {
-        None if layer.is_on_rigid() => Ok(Strip::new(side, 2.0 * layer.thickness())),
+        None if layer.is_on_rigid() => Ok(Strip { side, datum: 2.0 * layer.thickness() }),
         Some(datum) if !layer.is_on_rigid() => strip(grid, axis, datum),
         None => {
             let allowed = "a distance: that at which the displacement of the half-space is zero";

@@ -23,16 +23,12 @@ const UNDERFLOW: f64 = 745.0;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strip {
     /// Length of a cell \[m\].
-    side: f64,
+    pub(crate) side: f64,
     /// Distance from a line load at which the displacement is zero \[m\].
-    datum: f64,
+    pub(crate) datum: f64,
 }
 
 impl Strip {
-    pub(crate) fn new(side: f64, datum: f64) -> Strip {
-        Strip { side, datum }
-    }
-
     /// The coefficient of the cell `i` cells away for the wave number `kappa` \[1/m\].
     pub(crate) fn coefficient(&self, i: usize, kappa: f64) -> f64 {
         if kappa == 0.0 { self.line(i) } else { self.wave(i, kappa) }
@@ -121,7 +117,7 @@ mod tests {
     #[test]
     fn coefficients_are_their_integrals() {
         for (side, datum) in [(1.0, 1.0), (2.0e-6, 1.0e-3), (0.5, 4.0e3)] {
-            let strip = Strip::new(side, datum);
+            let strip = Strip { side, datum };
             for i in [0, 1, 2, 5, 17, 40, 1000, 100_000] {
                 let exact = -FRAC_2_PI * by_quadrature(side, i, |s| (s / datum).ln());
                 let scale = exact.abs().max(1e-3 * side);
@@ -143,7 +139,7 @@ mod tests {
     #[test]
     fn waves_of_a_strip_add_up_to_westergaards() {
         for kappa in [0.05, 0.3, 2.0, 40.0] {
-            let strip = Strip::new(1.0, 1.0);
+            let strip = Strip { side: 1.0, datum: 1.0 };
             let sum = strip.coefficient(0, kappa) + 2.0 * (1..2000).map(|i| strip.coefficient(i, kappa)).sum::<f64>();
             assert!((sum * kappa / 2.0 - 1.0).abs() < 1e-13, "{kappa}: {sum}");
         }
@@ -151,7 +147,7 @@ mod tests {
 
     #[test]
     fn coefficients_add_up_to_a_uniform_pressure() {
-        let (cells, strip) = (400, Strip::new(0.25, 300.0));
+        let (cells, strip) = (400, Strip { side: 0.25, datum: 300.0 });
         let row = |i: usize| (0..cells).map(|j: usize| strip.coefficient(i.abs_diff(j), 0.0)).sum::<f64>();
         let mean = (0..cells).map(row).sum::<f64>() / cells as f64;
         assert_abs_diff_eq!(mean / uniform(100.0, 300.0), 1.0, epsilon = 1e-5);

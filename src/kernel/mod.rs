@@ -39,8 +39,11 @@ use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
 use crate::parallel::Rows;
-use influence::{Body, Response};
-use layout::Layout;
+use influence::{Body, Response, magnitude};
+use layer::Remainder;
+use layout::{Ends, Layout};
+use line_load::{Strip, wave_number};
+use love::Love;
 use transform::Shares;
 
 /// Memory that making an operator takes, relative to the memory of the operator: its spectrum, and the transform that yields
@@ -102,9 +105,8 @@ pub struct Workspace(pub(crate) TransformWorkspace);
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalKernel {
-    /// On the whole grid, whose lengths are the periods of the waves.
-    kernel: InfluenceKernel,
-    /// The local rows.
+    /// The kernel on the whole grid, whose lengths are the periods of the waves.
+    pub(crate) whole: InfluenceKernel,
     grid: Grid,
     rows: Rows,
     folded: [bool; 2],
@@ -258,7 +260,7 @@ impl InfluenceKernel {
         } else {
             Arc::new(self.make(layout, Shares::new(&layout, rows)))
         };
-        LocalKernel { kernel: self.clone(), grid: part.clone(), rows: rows.clone(), folded, operator }
+        LocalKernel { whole: self.clone(), grid: part.clone(), rows: rows.clone(), folded, operator }
     }
 
     /// Fingerprint of the kernel among kernels of the same kind.
@@ -293,40 +295,17 @@ impl LocalKernel {
         &self.rows
     }
 
-    /// The greatest compliance of a wave \[m\], if the mean has none.
-    pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
-        self.kernel.softest_wave_if_mean_is_held()
-    }
-
-    /// Whether the mean displacement is fixed: then the approach cannot exceed the approach of full contact.
-    pub(crate) fn mean_is_held(&self) -> bool {
-        self.softest_wave_if_mean_is_held().is_some()
-    }
-
-    /// Whether a pressure raises the surface somewhere, so that displacements may be negative.
-    pub(crate) fn raises(&self) -> bool {
-        self.kernel.raises()
-    }
-
-    /// The layer, if the body is one.
-    pub(crate) fn layer(&self) -> Option<&Layer> {
-        self.kernel.layer_of()
-    }
-
-    /// An approximate inverse, on a layout without padding.
-    pub(crate) fn inverse(&self) -> SpectralOperator {
-        let (layout, symbol) = self.kernel.inverse(self.rows.cells(), self.folded);
-        SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol)
-    }
-
-    /// Buffers for the [`inverse`](LocalKernel::inverse), beside the buffers of [`LocalKernel::workspace`].
-    pub(crate) fn inverse_workspace(&self, inverse: &SpectralOperator) -> TransformWorkspace {
-        inverse.workspace_beside(&self.operator)
+    /// An approximate inverse, on a layout without padding, and its buffers beside [`LocalKernel::workspace`].
+    pub(crate) fn inverse(&self) -> (SpectralOperator, TransformWorkspace) {
+        let (layout, symbol) = self.whole.inverse(self.rows.cells(), self.folded);
+        let inverse = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
+        let work = inverse.workspace_beside(&self.operator);
+        (inverse, work)
     }
 
     /// Axes along which the cells are one whole period.
     pub(crate) fn periodic_axes(&self) -> [bool; 2] {
-        [0, 1].map(|axis| self.kernel.periodic_axes()[axis] && !self.folded[axis])
+        [0, 1].map(|axis| self.whole.periodic_axes()[axis] && !self.folded[axis])
     }
 
     /// Number of mirror images of each cell, itself included.
@@ -336,11 +315,6 @@ impl LocalKernel {
 
     pub(crate) fn workspace(&self) -> Workspace {
         Workspace(self.operator.workspace())
-    }
-
-    /// The coefficient of a cell on itself \[m\].
-    pub(crate) fn self_influence(&self) -> f64 {
-        self.kernel.self_influence()
     }
 
     /// [`InfluenceKernel::convolve`] for fields of the right length.

@@ -1,5 +1,3 @@
-use std::fmt;
-
 use crate::ascending::Ascending;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
@@ -37,11 +35,7 @@ impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
     }
 }
 
-impl<F> fmt::Debug for FnHistory<F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FnHistory").field("breakpoints", &self.breakpoints.as_slice()).finish_non_exhaustive()
-    }
-}
+debug_by!(self: FnHistory<F> => breakpoints: self.breakpoints.as_slice());
 
 impl<F: Fn(f64) -> Load + Send + Sync> LoadHistory for FnHistory<F> {
     fn at(&self, t: f64) -> Load {

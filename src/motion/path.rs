@@ -61,11 +61,7 @@ impl<F: Fn(f64) -> [f64; 2] + Send + Sync> FnPath<F> {
     }
 }
 
-impl<F> fmt::Debug for FnPath<F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FnPath").finish_non_exhaustive()
-    }
-}
+debug_by!(self: FnPath<F> =>);
 
 impl<F: Fn(f64) -> [f64; 2] + Send + Sync> Path for FnPath<F> {
     fn at(&self, t: f64) -> [f64; 2] {

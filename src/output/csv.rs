@@ -41,8 +41,6 @@ fn number(value: f64) -> String {
 
 /// A run as a CSV file with one row per step, each passed to the operating system when its `write` returns.
 ///
-/// Needs the feature `csv`.
-///
 /// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
@@ -94,7 +92,7 @@ impl CsvHistory {
     ///
     /// # Errors
     /// As [`CsvHistory::create`], except that the file may exist; something else than a file may not
-    /// ([`Error::NotAFile`](crate::Error::NotAFile)).
+    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn create_or_replace(
         path: impl AsRef<Path>,
         metadata: &Metadata,

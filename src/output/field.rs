@@ -1,6 +1,5 @@
 //! The fields of a contact that can be written.
 
-#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
 use crate::{Result, ViscoelasticContact};
 
 /// A field that can be written, with one value per cell.
@@ -23,30 +22,25 @@ pub enum Field {
     Gap,
 }
 
+/// Name in files and SI unit of each field.
+const NAMES_AND_UNITS: [(&str, &str); 3] = [("pressure", "Pa"), ("displacement", "m"), ("gap", "m")];
+
 impl Field {
     /// All fields.
     pub const ALL: [Field; 3] = [Field::Pressure, Field::Displacement, Field::Gap];
 
     /// Name in files.
     pub fn name(self) -> &'static str {
-        match self {
-            Field::Pressure => "pressure",
-            Field::Displacement => "displacement",
-            Field::Gap => "gap",
-        }
+        NAMES_AND_UNITS[self as usize].0
     }
 
     /// SI unit.
     pub fn unit(self) -> &'static str {
-        match self {
-            Field::Pressure => "Pa",
-            Field::Displacement | Field::Gap => "m",
-        }
+        NAMES_AND_UNITS[self as usize].1
     }
 
     /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the values of
     /// a field that the contact does not store.
-    #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {
             Field::Pressure => Ok(contact.pressure()),

@@ -108,7 +108,6 @@ mod tests {
         for format in [
             #[cfg(feature = "npy")]
             Format::Npz,
-            #[cfg(feature = "vtk")]
             Format::Vtk,
         ] {
             for failing in 0..4 {

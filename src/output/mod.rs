@@ -3,12 +3,12 @@
 //! | output | feature | opened by |
 //! |---|---|---|
 //! | `FrameSeries`: a folder of frames as NPZ archives | `npy` | NumPy, Julia, MATLAB |
-//! | `FrameSeries`: a folder of frames as VTK images, with a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
+//! | `FrameSeries`: a folder of frames as VTK images, with a `series.pvd` | – | ParaView, VisIt, PyVista |
 //! | `write_npy`, `write_field_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
 //! | `write_stress`: the stress in a volume as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
-//! | `write_stress`: the stress in a volume as a VTK grid | `vtk` | ParaView, VisIt, PyVista |
+//! | `write_stress`: the stress in a volume as a VTK grid | – | ParaView, VisIt, PyVista |
 //! | `write_states`, `read_states`: elastic states as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
-//! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
+//! | `CsvHistory`: one row per step | – | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
 //! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed,
@@ -18,7 +18,7 @@
 //! frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), and `create_or_replace` removes them first.
 //! Files that are written at once (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one
 //! is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
-//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended to its
+//! [`FileError::NotAFile`](crate::FileError::NotAFile). While a file is being written, the process ID and `.part` are appended to its
 //! name; a process that is killed leaves the file under that name.
 //!
 //! Where [ranks](crate::parallel) share out a contact, all of them call a function that writes it. Rank 0 writes the same bytes
@@ -29,36 +29,28 @@
 //! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
 //! can be repeated.
 
-#[cfg(feature = "csv")]
 mod csv;
 #[cfg(feature = "npy")]
 mod deferred;
 mod field;
-#[cfg(any(feature = "npy", feature = "vtk"))]
 mod field_values;
 mod metadata;
 #[cfg(feature = "npy")]
 mod npy;
 #[cfg(feature = "npy")]
 mod npz;
-#[cfg(any(feature = "npy", feature = "vtk"))]
 mod series;
 #[cfg(feature = "npy")]
 mod states;
-#[cfg(any(feature = "npy", feature = "vtk"))]
 mod stress;
-#[cfg(feature = "vtk")]
 mod vtk;
 
-#[cfg(feature = "csv")]
 pub use csv::CsvHistory;
 pub use field::Field;
 pub use metadata::Metadata;
 #[cfg(feature = "npy")]
 pub use npy::{write_field_npy, write_npy};
-#[cfg(any(feature = "npy", feature = "vtk"))]
 pub use series::{Format, FrameSeries};
 #[cfg(feature = "npy")]
 pub use states::{read_states, write_states};
-#[cfg(any(feature = "npy", feature = "vtk"))]
 pub use stress::write_stress;

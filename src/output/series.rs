@@ -10,7 +10,6 @@ use crate::file::{check_regular, failed, replace};
 use crate::output::field_values::write_fields;
 #[cfg(feature = "npy")]
 use crate::output::npz;
-#[cfg(feature = "vtk")]
 use crate::output::vtk;
 use crate::output::{Field, Metadata};
 
@@ -34,7 +33,7 @@ pub enum Format {
     /// ```
     #[cfg(feature = "npy")]
     Npz,
-    /// Files of VTK. Needs the feature `vtk`.
+    /// Files of VTK.
     ///
     /// Frames are images `frame_000000.vti` and so on, and `series.pvd` lists them with their times. Open this file in
     /// ParaView, even while the run continues. An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1
@@ -45,7 +44,6 @@ pub enum Format {
     ///
     /// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView
     /// shows one of them.
-    #[cfg(feature = "vtk")]
     Vtk,
 }
 
@@ -59,15 +57,12 @@ impl Format {
         match self {
             #[cfg(feature = "npy")]
             Format::Npz => true,
-            #[cfg(feature = "vtk")]
             Format::Vtk => false,
         }
     }
 }
 
 /// A run as a folder of files, one per frame, with the same fields and metadata in each.
-///
-/// Needs the feature `npy` or `vtk`.
 ///
 /// ```
 /// # #[cfg(feature = "npy")] {
@@ -178,7 +173,6 @@ impl FrameSeries {
         write_fields(&path, (contact, fields, *format), buffer, |out, values| match format {
             #[cfg(feature = "npy")]
             Format::Npz => npz::write_frame(out, (contact, area), metadata, values),
-            #[cfg(feature = "vtk")]
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
         if !format.is_by_rows() {

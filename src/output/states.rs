@@ -9,7 +9,7 @@ use std::sync::Arc;
 use zip::ZipArchive;
 
 use crate::Grid;
-use crate::error::{Error, Result};
+use crate::error::{Error, FileError, Result};
 use crate::file::{npy, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
@@ -88,10 +88,11 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
 /// Needs the feature `npy`.
 ///
 /// # Errors
-/// If the file cannot be read, or its arrays are no elastic states ([`Error::Unreadable`]).
+/// If the file cannot be read, or its arrays are no elastic states ([`FileError::Unreadable`](crate::FileError::Unreadable)).
 pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let path = path.as_ref();
-    let refused = |reason: String| Error::Unreadable { file: path.display().to_string(), reason, kind: None };
+    let refused =
+        |reason: String| Error::File(FileError::Unreadable { file: path.display().to_string(), reason, kind: None });
     let arrays = read_arrays(path)?;
     let array = |name: &str, length: usize| match arrays.get(name) {
         Some(values) if values.len() == length => Ok(&values[..]),
@@ -141,11 +142,9 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
 /// The arrays of real numbers in an archive, by their names.
 fn read_arrays(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
     let file = path.display().to_string();
-    let refused = |reason: String| Error::Unreadable { file: file.clone(), reason, kind: None };
-    let unopened = |error: io::Error| Error::Unreadable {
-        file: file.clone(),
-        reason: error.to_string(),
-        kind: Some(error.kind()),
+    let refused = |reason: String| Error::File(FileError::Unreadable { file: file.clone(), reason, kind: None });
+    let unopened = |error: io::Error| {
+        Error::File(FileError::Unreadable { file: file.clone(), reason: error.to_string(), kind: Some(error.kind()) })
     };
     let opened = File::open(path).map_err(unopened)?;
     // arrays are not compressed

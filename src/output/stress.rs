@@ -9,7 +9,6 @@ use crate::file::replace;
 use crate::observe::{Stress, StressVolume};
 #[cfg(feature = "npy")]
 use crate::output::npz::Archive;
-#[cfg(feature = "vtk")]
 use crate::output::vtk::{CLOSING, Section, write_array, write_opening};
 use crate::output::{Format, Metadata};
 
@@ -25,8 +24,6 @@ const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 /// A VTK file is a rectilinear grid (`.vtr`), which ParaView opens: its points lie below the centres of the cells, with x1 and x2
 /// as x and y and the depth as z. `stress [Pa]` is a symmetric tensor, `von Mises stress [Pa]` and `Tresca stress [Pa]` are
 /// scalars; `TimeValue` \[s\] and the [`Metadata`] as the JSON text `metadata` are field data.
-///
-/// Needs the feature `npy` or `vtk`.
 ///
 /// ```
 /// # #[cfg(feature = "npy")] {
@@ -62,7 +59,6 @@ pub fn write_stress(
     replace(path.as_ref(), |out| match format {
         #[cfg(feature = "npy")]
         Format::Npz => write_archive(out, contact, volume, &metadata),
-        #[cfg(feature = "vtk")]
         Format::Vtk => write_rectilinear(out, contact.time(), volume, &metadata),
     })
 }
@@ -105,7 +101,6 @@ const QUANTITIES: [(&str, Quantity); 8] = [
     ("tresca", Stress::tresca),
 ];
 
-#[cfg(feature = "vtk")]
 fn write_rectilinear(out: &mut impl Write, time: f64, volume: &StressVolume, metadata: &str) -> io::Result<()> {
     let ([n1, n2], count) = (volume.grid.cells(), volume.values.len());
     let depths = volume.depths.len();

@@ -28,11 +28,8 @@ impl Rows {
         let pieces = (0..self.ranks()).map(|rank| {
             let rows = common(self.own(), to.of(rank));
             // an empty piece may begin beyond the local rows
-            if rows.is_empty() {
-                Vec::new()
-            } else {
-                field[(rows.start - own.start) * columns..(rows.end - own.start) * columns].to_vec()
-            }
+            let cells = (rows.start - own.start) * columns..(rows.end - own.start) * columns;
+            field.get(cells).unwrap_or_default().to_vec()
         });
         self.exchange(pieces.collect(), |rank| common(self.of(rank), to.own()).len() * columns)
     }

@@ -60,7 +60,6 @@
 //! does not leave less.
 
 mod exchange;
-#[cfg(any(feature = "checkpoint", feature = "npy", feature = "vtk"))]
 mod file;
 mod lanes;
 mod ranks;

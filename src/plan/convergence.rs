@@ -1,7 +1,7 @@
 //! How the states of a run converge with the mesh.
 
 use crate::Grid;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::load::Load;
 use crate::plan::Accuracy;
 use crate::plan::error_law::{ErrorLaw, ORDERS};
@@ -63,7 +63,7 @@ impl ContactSize {
         let mut size = *self;
         for _ in 0..MAX_GROWTHS {
             match compute(&size) {
-                Err(Error::ContactAtEdge { .. }) => size.reach = size.reach.map(|half| GROWTH * half),
+                Err(Error::Step(StepError::ContactAtEdge { .. })) => size.reach = size.reach.map(|half| GROWTH * half),
                 other => return other,
             }
         }

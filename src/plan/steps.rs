@@ -1,7 +1,7 @@
 //! The steps of a trial run and their error in time, from the differences between runs.
 
 use crate::Grid;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::plan::Accuracy;
 use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, StepState, TrialScene, greatest};
 
@@ -54,7 +54,11 @@ impl Steps {
             let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
             match Steps::with_tolerance(&TrialScene { tolerance, ..*scene }, grid) {
                 Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
-                Err(error @ (Error::ContactAtEdge { .. } | Error::OutOfMemory { .. } | Error::Cancelled { .. })) => {
+                Err(
+                    error @ (Error::Step(StepError::ContactAtEdge { .. })
+                    | Error::OutOfMemory { .. }
+                    | Error::Cancelled { .. }),
+                ) => {
                     return Err(error);
                 }
                 _ => break,

@@ -2,7 +2,7 @@
 
 use crate::Grid;
 use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::extent::Extent;
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
@@ -120,7 +120,7 @@ impl TrialScene<'_> {
         let mut lengths = [self.first_length()?; 2];
         for _ in 0..MAX_DOMAINS {
             match self.follow(Grid::new([DOMAIN_CELLS; 2], lengths)?, &[]) {
-                Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
+                Err(Error::Step(StepError::ContactAtEdge { .. })) => lengths = lengths.map(|length| 1.7 * length),
                 Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
                 Err(error) => return Err(error),
                 Ok(run) => {
@@ -157,7 +157,7 @@ impl TrialScene<'_> {
         let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
         match (TrialScene { tolerance, ..*self }.follow(grid, &stops)) {
-            Err(Error::StepTooShort { .. } | Error::NotConverged { .. }) => Ok(None),
+            Err(Error::Step(StepError::StepTooShort { .. }) | Error::Step(StepError::NotConverged { .. })) => Ok(None),
             finer => {
                 let mut states = finer?.states.into_iter();
                 Ok(times.iter().map(|&time| states.find(|state| state.time == time)).collect())
@@ -237,7 +237,7 @@ impl TrialScene<'_> {
 fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32) -> Result<StepReport> {
     let before = contact.load();
     match contact.step(dt, load) {
-        Err(Error::NotConverged { .. }) if halvings > 0 && dt > 0.0 => {
+        Err(Error::Step(StepError::NotConverged { .. })) if halvings > 0 && dt > 0.0 => {
             advance(contact, 0.5 * dt, before.towards(&load, 0.5), halvings - 1)?;
             advance(contact, 0.5 * dt, load, halvings - 1)
         }

@@ -1,6 +1,5 @@
 //! Animations of a run.
 
-use std::fmt;
 use std::fs::File;
 use std::io;
 use std::mem::ManuallyDrop;
@@ -12,8 +11,7 @@ use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
 use crate::plot::picture::check_extension;
-use crate::plot::quantity::color_scale;
-use crate::plot::{Map, Picture};
+use crate::plot::{Map, Picture, color_scale};
 
 /// A run as an animated GIF that repeats endlessly.
 ///
@@ -172,16 +170,7 @@ fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
     if top == usize::MAX { [0, 0, 1, 1] } else { [left, top, right - left + 1, bottom - top + 1] }
 }
 
-impl fmt::Debug for Animation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Animation")
-            .field("path", &self.path)
-            .field("field", &self.field)
-            .field("size", &self.size)
-            .field("frames", &self.frames)
-            .finish_non_exhaustive()
-    }
-}
+debug_by!(self: Animation => path: self.path, field: self.field, size: self.size, frames: self.frames);
 
 #[cfg(test)]
 mod tests {

@@ -3,13 +3,11 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::plot::axis::{Axis, Room};
-use crate::plot::canvas::Canvas;
-use crate::plot::frame::{BELOW, Frame, width_beside};
+use crate::plot::frame::width_beside;
 use crate::plot::legend::{self, points_along};
 use crate::plot::map::extremes;
-use crate::plot::quantity::{drawable, drawable_as_power};
-use crate::plot::{Color, Picture, Quantity};
+use crate::plot::quantity::drawable_as_power;
+use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Picture, Quantity, Room, drawable};
 
 /// Width and height of a chart in pixels.
 const SIZE: [u32; 2] = [1200, 800];

@@ -1,9 +1,7 @@
 //! The colour bar beside a map.
 
-use crate::plot::axis::{Axis, Room, TICK_SIZE};
-use crate::plot::canvas::{Anchor, Canvas};
 use crate::plot::frame::LABEL_SIZE;
-use crate::plot::{Color, Quantity};
+use crate::plot::{Anchor, Axis, Canvas, Color, Quantity, Room, TICK_SIZE};
 
 /// Width of a colour bar with its numbers and label in pixels.
 pub(super) const BAR_WIDTH: u32 = 155;

@@ -1,8 +1,6 @@
 //! The frame of charts and maps: axes, grid and labels around an area.
 
-use crate::plot::Color;
-use crate::plot::axis::{Axis, TICK_SIZE};
-use crate::plot::canvas::{Anchor, Canvas};
+use crate::plot::{Anchor, Axis, Canvas, Color, TICK_SIZE};
 
 /// Sizes of the labels of axes and of titles in pixels per em.
 pub(super) const LABEL_SIZE: f64 = 27.0;

@@ -1,10 +1,7 @@
 //! The legend of a chart, and where it hides least.
 
-use crate::plot::axis::TICK_SIZE;
-use crate::plot::canvas::{Anchor, Canvas};
 use crate::plot::chart::Curve;
-use crate::plot::frame::Frame;
-use crate::plot::{Color, Legend, font};
+use crate::plot::{Anchor, Canvas, Color, Frame, Legend, TICK_SIZE, font};
 
 /// Height of an entry, length of its line, and the space around entries in pixels.
 const ENTRY: f64 = 34.0;
@@ -15,24 +12,13 @@ const INSET: f64 = 14.0;
 /// Curves are regarded as points at most this far apart, in pixels.
 const SPACING: f64 = 5.0;
 
-/// All positions, corners first.
-const ALL: [Legend; 9] = [
-    Legend::UpperRight,
-    Legend::UpperLeft,
-    Legend::LowerRight,
-    Legend::LowerLeft,
-    Legend::UpperMiddle,
-    Legend::LowerMiddle,
-    Legend::MiddleRight,
-    Legend::MiddleLeft,
-    Legend::MiddleMiddle,
-];
+/// All positions, corners first: rows of three from the top, each from the left.
+const ALL: [usize; 9] = [2, 0, 8, 6, 1, 7, 5, 3, 4];
 
 impl Legend {
-    /// The rectangle of a legend of this size: left, top, right and bottom.
-    fn rectangle(self, [width, height]: [f64; 2], frame: &Frame) -> [f64; 4] {
-        // rows of positions from the top, each from the left
-        let (row, column) = (self as usize / 3, self as usize % 3);
+    /// The rectangle of a legend of this size at a position: left, top, right and bottom.
+    fn rectangle(position: usize, [width, height]: [f64; 2], frame: &Frame) -> [f64; 4] {
+        let (row, column) = (position / 3, position % 3);
         let start = |low: f64, high: f64, size: f64| [low + INSET, 0.5 * (low + high - size), high - INSET - size];
         let left = start(frame.left, frame.right, width)[column];
         let top = start(frame.top, frame.bottom, height)[row];
@@ -46,7 +32,8 @@ impl Legend {
             let near = |low: f64, high: f64, value: f64| (low - 6.0..=high + 6.0).contains(&value);
             points.iter().filter(|[x, y]| near(left, right, *x) && near(top, bottom, *y)).count()
         };
-        let positions = std::iter::once(self).chain(ALL).map(|position| position.rectangle(size, frame));
+        let positions =
+            std::iter::once(self as usize).chain(ALL).map(|position| Legend::rectangle(position, size, frame));
         let counted = positions.map(|rectangle| (rectangle, covered(rectangle)));
         counted.min_by_key(|(_, covered)| *covered).unwrap_or_default()
     }
@@ -103,7 +90,7 @@ mod tests {
         let size = [300.0, 100.0];
         let line = |from: [f64; 2], to: [f64; 2]| points_along(&[from, to]).collect::<Vec<_>>();
         let rising = line([100.0, 650.0], [1100.0, 50.0]);
-        let at = |legend: Legend| legend.rectangle(size, &frame);
+        let at = |legend: Legend| Legend::rectangle(legend as usize, size, &frame);
         // where it is wanted, as long as it hides nothing there
         assert_eq!(Legend::UpperLeft.place(size, &frame, &rising).0, at(Legend::UpperLeft));
         assert_eq!(Legend::LowerRight.place(size, &frame, &rising).0, at(Legend::LowerRight));

@@ -4,12 +4,8 @@ use std::path::Path;
 
 use crate::Grid;
 use crate::error::{Result, exact_length, least_length};
-use crate::plot::axis::{Axis, Room};
-use crate::plot::canvas::Canvas;
 use crate::plot::color_bar::{self, BAR_WIDTH};
-use crate::plot::frame::{BELOW, Frame};
-use crate::plot::quantity::{color_scale, drawable};
-use crate::plot::{Color, Picture, Quantity};
+use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Picture, Quantity, Room, color_scale, drawable};
 
 /// Width of the space to the left and to the right of a map and height of that above it in pixels.
 const LEFT: u32 = 115;

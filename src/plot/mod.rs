@@ -66,3 +66,8 @@ pub use history::{History, HistoryColumn};
 pub use map::Map;
 pub use picture::Picture;
 pub use quantity::Quantity;
+
+use axis::{Axis, Room, TICK_SIZE};
+use canvas::{Anchor, Canvas};
+use frame::{BELOW, Frame};
+use quantity::{color_scale, drawable};

@@ -1,15 +1,15 @@
 //! Pictures in memory, and as PNG and SVG files.
 
-use std::fmt;
 use std::io;
 use std::path::Path;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
-use crate::error::{Error, Result, count_within, least_length};
+use crate::error::{Error, FileError, Result, count_within, least_length};
 use crate::file::replace;
-use crate::plot::canvas::{Canvas, Element, png_file};
+use crate::plot::Canvas;
+use crate::plot::canvas::{Element, png_file};
 
 /// Greatest width of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
@@ -72,7 +72,7 @@ impl Picture {
     /// them, of a pixel for each cell. An existing file is replaced when the new one is complete.
     ///
     /// # Errors
-    /// [`Error::Extension`] if the extension is another, or if the file cannot be written.
+    /// [`FileError::Extension`](crate::FileError::Extension) if the extension is another, or if the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         match check_extension(path, &["png", "svg"])? {
@@ -114,15 +114,11 @@ impl Picture {
 /// The index of the extension of a file among those allowed, in upper or lower case.
 pub(super) fn check_extension(path: &Path, allowed: &'static [&'static str]) -> Result<usize> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let unknown = || Error::Extension { path: path.display().to_string(), allowed };
+    let unknown = || Error::File(FileError::Extension { path: path.display().to_string(), allowed });
     allowed.iter().position(|allowed| *allowed == extension).ok_or_else(unknown)
 }
 
-impl fmt::Debug for Picture {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Picture").field("size", &self.size).finish_non_exhaustive()
-    }
-}
+debug_by!(self: Picture => size: self.size);
 
 #[cfg(test)]
 mod tests {
@@ -170,7 +166,10 @@ mod tests {
     fn the_extension_determines_the_format() {
         for name in ["a.jpg", "png", "a", "a.svg.gz"] {
             let refused = plain([2, 2], 0).save(file(name)).unwrap_err();
-            assert!(matches!(refused, Error::Extension { allowed: ["png", "svg"], .. }), "{name}: {refused}");
+            assert!(
+                matches!(refused, Error::File(FileError::Extension { allowed: ["png", "svg"], .. })),
+                "{name}: {refused}"
+            );
             assert!(refused.to_string().ends_with(&format!("{name}: the extension must be .png or .svg")), "{refused}");
             assert!(!file(name).exists());
         }

@@ -48,15 +48,9 @@ impl Quantity {
     }
 }
 
-impl From<&str> for Quantity {
-    fn from(name: &str) -> Quantity {
+impl<T: Into<String>> From<T> for Quantity {
+    fn from(name: T) -> Quantity {
         Quantity { name: name.into(), unit: None }
-    }
-}
-
-impl From<String> for Quantity {
-    fn from(name: String) -> Quantity {
-        Quantity { name, unit: None }
     }
 }
 
@@ -102,12 +96,8 @@ pub(super) fn color_scale([low, high]: [f64; 2]) -> Result<()> {
 
 /// Accepts values that a logarithmic axis can show.
 pub(super) fn drawable_as_power(field: &'static str, value: f64) -> Result<f64> {
-    within(
-        field,
-        value,
-        (1.0 / MAX_DRAWABLE..=MAX_DRAWABLE).contains(&value),
-        "in [1e-100, 1e100] on a logarithmic axis",
-    )
+    let inside = (1.0 / MAX_DRAWABLE..=MAX_DRAWABLE).contains(&value);
+    within(field, value, inside, "in [1e-100, 1e100] on a logarithmic axis")
 }
 
 /// Formats a value in SI with its unit to four digits, and all digits before the point: "412.4 µs".

@@ -1,5 +1,3 @@
-use std::fmt;
-
 use crate::rheology::Rheology;
 
 /// A rheology given by a closure J(t): shear creep compliance \[1/Pa\] at t ≥ 0 \[s\].
@@ -33,11 +31,7 @@ impl<F: Fn(f64) -> f64 + Send + Sync> FnRheology<F> {
     }
 }
 
-impl<F> fmt::Debug for FnRheology<F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FnRheology").finish_non_exhaustive()
-    }
-}
+debug_by!(self: FnRheology<F> =>);
 
 impl<F: Fn(f64) -> f64 + Send + Sync> Rheology for FnRheology<F> {
     fn creep_compliance(&self, t: f64) -> f64 {

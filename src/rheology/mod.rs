@@ -86,7 +86,6 @@ pub use slow_creep::SlowCreep;
 #[cfg(feature = "checkpoint")]
 pub(crate) use spectrum::SavedRelaxation;
 pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
-#[cfg(feature = "csv")]
 pub use table::Units;
 pub use table::{Experiment, Isotherm, MasterCurve, Measurements};
 pub use temperature_history::TemperatureHistory;

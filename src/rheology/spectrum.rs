@@ -63,12 +63,8 @@ impl CreepSpectrum {
     /// If a compliance or the fluidity is neither 0 nor in \[1e-100, 1e100\], a time is not in that range, or
     /// everything is zero (a rigid body).
     pub fn new(glassy: f64, fluidity: f64, terms: &[(f64, f64)]) -> Result<CreepSpectrum> {
-        magnitude("glassy compliance", glassy)?;
-        magnitude("fluidity", fluidity)?;
-        let terms = sorted_terms(["retarded compliance", "retardation time"], terms)?;
-        if glassy == 0.0 && fluidity == 0.0 {
-            least_length("creep spectrum", terms.len(), 1)?;
-        }
+        let names = ["creep spectrum", "glassy compliance", "fluidity", "retarded compliance", "retardation time"];
+        let terms = sorted_terms(names, [glassy, fluidity], terms)?;
         Ok(CreepSpectrum { glassy, fluidity, terms })
     }
 
@@ -147,12 +143,14 @@ impl RelaxationSpectrum {
     /// If a modulus or the viscosity is neither 0 nor in \[1e-100, 1e100\], a time is not in that range, or
     /// everything is zero (no body).
     pub fn new(equilibrium: f64, viscosity: f64, terms: &[(f64, f64)]) -> Result<RelaxationSpectrum> {
-        magnitude("equilibrium modulus", equilibrium)?;
-        magnitude("immediate viscosity", viscosity)?;
-        let terms = sorted_terms(["relaxing modulus", "relaxation time"], terms)?;
-        if equilibrium == 0.0 && viscosity == 0.0 {
-            least_length("relaxation spectrum", terms.len(), 1)?;
-        }
+        let names = [
+            "relaxation spectrum",
+            "equilibrium modulus",
+            "immediate viscosity",
+            "relaxing modulus",
+            "relaxation time",
+        ];
+        let terms = sorted_terms(names, [equilibrium, viscosity], terms)?;
         Ok(RelaxationSpectrum { equilibrium, viscosity, terms })
     }
 
@@ -189,17 +187,20 @@ impl RelaxationSpectrum {
 const LEAST: f64 = 1e-100;
 const MOST: f64 = 1e100;
 
-/// Accepts coefficients of a series.
-fn magnitude(field: &'static str, value: f64) -> Result<f64> {
-    within(field, value, value == 0.0 || (LEAST..=MOST).contains(&value), "0, or in [1e-100, 1e100]")
-}
-
-/// Checks (strength, time) pairs, sorts them by time, merges equal times, drops zero strengths.
-fn sorted_terms([strength_name, time_name]: [&'static str; 2], terms: &[(f64, f64)]) -> Result<Vec<(f64, f64)>> {
+/// Checks the ends of a series and its (strength, time) pairs, sorts the pairs by time, merges equal times, drops zero strengths.
+fn sorted_terms(
+    [series, first, second, strength_name, time_name]: [&'static str; 5],
+    ends: [f64; 2],
+    terms: &[(f64, f64)],
+) -> Result<Vec<(f64, f64)>> {
+    let inside = |value: f64| (LEAST..=MOST).contains(&value);
+    let magnitude = |field, value: f64| within(field, value, value == 0.0 || inside(value), "0, or in [1e-100, 1e100]");
+    magnitude(first, ends[0])?;
+    magnitude(second, ends[1])?;
     let mut sorted = Vec::with_capacity(terms.len());
     for &(strength, time) in terms {
         magnitude(strength_name, strength)?;
-        within(time_name, time, (LEAST..=MOST).contains(&time), "in [1e-100, 1e100]")?;
+        within(time_name, time, inside(time), "in [1e-100, 1e100]")?;
         if strength > 0.0 {
             sorted.push((strength, time));
         }
@@ -212,6 +213,9 @@ fn sorted_terms([strength_name, time_name]: [&'static str; 2], terms: &[(f64, f6
         }
         equal
     });
+    if ends == [0.0; 2] {
+        least_length(series, sorted.len(), 1)?;
+    }
     Ok(sorted)
 }
 

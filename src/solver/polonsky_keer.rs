@@ -99,7 +99,7 @@ impl PolonskyKeer {
             return numerator / (problem.compliance * denominator);
         }
         // too few cells to have a direction: the inverse of a cell's influence on itself
-        1.0 / (problem.compliance * problem.kernel.self_influence())
+        1.0 / (problem.compliance * problem.kernel.whole.self_influence())
     }
 
     /// Advances, clips, presses penetrating cells and restores the balance; returns whether any cell joined the contact.
@@ -139,7 +139,7 @@ impl PolonskyKeer {
     /// Whether a body carries no pressure, or too little to change the gap.
     fn is_unloaded(&self, problem: &Problem<'_>, body: usize, solution: &Solution) -> bool {
         let greatest = |field: &[f64]| self.set.cells(problem, body).map(|k| field[k].abs()).fold(0.0, f64::max);
-        let sunk = problem.compliance * problem.kernel.self_influence() * greatest(&solution.pressure);
+        let sunk = problem.compliance * problem.kernel.whole.self_influence() * greatest(&solution.pressure);
         sunk <= f64::EPSILON * greatest(problem.gap)
     }
 }

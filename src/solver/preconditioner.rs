@@ -31,8 +31,7 @@ impl Preconditioner {
     /// The preconditioner of a kernel, whose buffers it borrows.
     pub(crate) fn new(kernel: &LocalKernel, lender: &mut Workspace) -> Preconditioner {
         let (rows, [n1, n2]) = (kernel.rows(), kernel.rows().cells());
-        let operator = kernel.inverse();
-        let work = kernel.inverse_workspace(&operator);
+        let (operator, work) = kernel.inverse();
         let extension = Extension::new(rows, kernel.periodic_axes(), attenuation(kernel));
         let mut preconditioner =
             Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
@@ -81,7 +80,7 @@ impl Preconditioner {
 
 /// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like the half-space.
 fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
-    let layer = kernel.layer()?;
+    let layer = kernel.whole.layer_of()?;
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
     let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());
     // blocks are as long as broad in cells

@@ -85,7 +85,7 @@ impl<'a> Problem<'a> {
     /// Rounding of the gap where a prescribed motion closes it, and of c K p on bodies whose mean displacement is held: a
     /// nearly uniform pressure displaces them hardly at all.
     pub(crate) fn rounding(&self, pressure: &[f64]) -> f64 {
-        let displaced = match self.kernel.softest_wave_if_mean_is_held() {
+        let displaced = match self.kernel.whole.softest_wave_if_mean_is_held() {
             Some(softest) => self.compliance * softest * self.rows().greatest(greatest(pressure)),
             None => 0.0,
         };
@@ -105,11 +105,6 @@ impl<'a> Problem<'a> {
     /// The bodies under a force that is not zero, and those whose approach is given.
     pub(crate) fn loaded_bodies(&self) -> impl Iterator<Item = usize> {
         (0..self.bodies.len()).filter(|&body| !self.released(body))
-    }
-
-    /// Whether the force on every body is zero.
-    pub(crate) fn all_released(&self) -> bool {
-        self.loaded_bodies().next().is_none()
     }
 
     /// Whether cell `k` may carry pressure.

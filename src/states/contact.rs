@@ -1,15 +1,16 @@
 //! A creeping contact on elastic states.
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::{Error, Result, StatesError, non_negative};
+use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory, is_known};
 use crate::states::curve::{ElasticStates, approach_at};
-use crate::states::levels::{Demand, Levels};
+use crate::states::elastic::ElasticContact;
+use crate::states::levels::{Demand, Levels, Wanted};
 
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
@@ -19,6 +20,7 @@ use crate::states::levels::{Demand, Levels};
 #[derive(Clone)]
 pub struct StatesContact {
     scene: Arc<Scene>,
+    pub(super) states: Arc<ElasticStates>,
     pub(super) levels: Levels,
     pub(super) time: f64,
     pub(super) reduced_time: f64,
@@ -27,7 +29,8 @@ pub struct StatesContact {
 /// What steps do not change.
 #[derive(Clone)]
 struct Scene {
-    states: Arc<ElasticStates>,
+    /// Solves the state of each step.
+    elastic: Option<Arc<Mutex<ElasticContact>>>,
     temperature: Option<TemperatureHistory>,
     known_until: f64,
     interpolant: Interpolant,
@@ -65,9 +68,9 @@ impl StatesContact {
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
         let (states, known_until) = (Arc::clone(states), material.known_until());
-        let scene = Scene { states, temperature: None, known_until, interpolant: Interpolant::CorrectedLinear };
+        let scene = Scene { elastic: None, temperature: None, known_until, interpolant: Interpolant::CorrectedLinear };
         let levels = Levels::new(ExponentialRule::new(&creep));
-        Ok(StatesContact { scene: Arc::new(scene), levels, time: 0.0, reduced_time: 0.0 })
+        Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
     }
 
     /// With a temperature that changes: the material creeps in reduced time.
@@ -82,6 +85,18 @@ impl StatesContact {
     pub fn with_linear_steps(mut self) -> StatesContact {
         Arc::make_mut(&mut self.scene).interpolant = Interpolant::Linear;
         self
+    }
+
+    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last one, and added to the states of
+    /// this contact. Steps then agree with those of a [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also under a given approach, in area
+    /// to the cell. Without it, the approach and the level under a given approach err by the interpolation of the sweep; the level under a given force does not err.
+    ///
+    /// # Errors
+    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of [`Builder::build`](crate::contact::Builder::build).
+    pub fn with_exact_states(mut self) -> Result<StatesContact> {
+        let elastic = self.states.elastic_contact()?;
+        Arc::make_mut(&mut self.scene).elastic = Some(Arc::new(Mutex::new(elastic)));
+        Ok(self)
     }
 
     /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
@@ -104,12 +119,37 @@ impl StatesContact {
         };
         let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
         if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::BeyondMaterial { time, age: reduced, known_until: self.scene.known_until });
+            return Err(Error::Step(StepError::BeyondMaterial {
+                time,
+                age: reduced,
+                known_until: self.scene.known_until,
+            }));
         }
-        let demand = self.demand(load)?;
-        self.levels.step(&self.scene.states, (time, length), self.scene.interpolant, demand)?;
+        let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
+        let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
+        if self.scene.elastic.is_some() && wanted.level > 0.0 {
+            self.solve(wanted)?;
+            wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
+        }
+        self.levels.accept(&self.states, demand, wanted.level);
         (self.time, self.reduced_time) = (time, reduced);
         Ok(self.report())
+    }
+
+    /// Adds the elastic state at a level to the states of this contact.
+    fn solve(&mut self, Wanted { level, give, sum }: Wanted) -> Result<()> {
+        let Some(elastic) = &self.scene.elastic else { return Ok(()) };
+        let (tilt, drive) = (self.states.tilt, sum + self.states.rest.approach);
+        let load = if give == f64::INFINITY {
+            Load::Force { normal: level, tilt }
+        } else if give == 0.0 {
+            Load::Approach { approach: drive, tilt }
+        } else {
+            Load::Spring { stiffness: 1.0 / give, drive, tilt }
+        };
+        let solved = elastic.lock().unwrap_or_else(PoisonError::into_inner).solve(load)?;
+        Arc::make_mut(&mut self.states).insert(solved);
+        Ok(())
     }
 
     /// The contact as it is, to come back to: a clone.
@@ -126,7 +166,8 @@ impl StatesContact {
         }
     }
 
-    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they were, bitwise.
+    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they were, bitwise, with exact
+    /// states to the tolerance of the solver.
     ///
     /// # Errors
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
@@ -144,6 +185,7 @@ impl StatesContact {
     }
 
     pub(super) fn copy_from(&mut self, other: &StatesContact) {
+        self.states.clone_from(&other.states);
         self.levels.copy_from(&other.levels);
         (self.time, self.reduced_time) = (other.time, other.reduced_time);
     }
@@ -163,11 +205,11 @@ impl StatesContact {
     }
 
     fn demand(&self, load: Load) -> Result<Demand> {
-        if load.tilt() != self.scene.states.tilt {
-            let swept = Load::Force { normal: 0.0, tilt: self.scene.states.tilt }.to_string();
+        if load.tilt() != self.states.tilt {
+            let swept = Load::Force { normal: 0.0, tilt: self.states.tilt }.to_string();
             return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
         }
-        let rest = self.scene.states.rest.approach;
+        let rest = self.states.rest.approach;
         match load {
             Load::Force { normal, .. } => Ok(Demand::Force(normal)),
             Load::Approach { approach, .. } => Ok(Demand::Depth { depth: approach - rest, give: 0.0 }),
@@ -190,7 +232,7 @@ impl StatesContact {
 
     /// The elastic states that it is made of.
     pub fn states(&self) -> &Arc<ElasticStates> {
-        &self.scene.states
+        &self.states
     }
 
     /// Time \[s\].
@@ -205,13 +247,13 @@ impl StatesContact {
 
     /// Approach of the origin \[m\].
     pub fn approach(&self) -> f64 {
-        let depth = self.levels.motions.depth + self.scene.states.rest.approach;
-        depth - approach_at(self.scene.states.load_point(), 0.0, self.tilt())
+        let depth = self.levels.motions.depth + self.states.rest.approach;
+        depth - approach_at(self.states.load_point(), 0.0, self.tilt())
     }
 
     /// Tilt along x1 and x2 \[rad\].
     pub fn tilt(&self) -> [f64; 2] {
-        let (rest, turned) = (self.scene.states.rest.tilt, self.levels.motions.tilt);
+        let (rest, turned) = (self.states.rest.tilt, self.levels.motions.tilt);
         [rest[0] + turned[0], rest[1] + turned[1]]
     }
 
@@ -222,12 +264,12 @@ impl StatesContact {
 
     /// Contact area \[m²\].
     pub fn contact_area(&self) -> f64 {
-        self.scene.states.area(self.levels.level)
+        self.states.area(self.levels.level)
     }
 
     /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
     pub fn stiffness_over_modulus(&self) -> f64 {
-        self.scene.states.stiffness(self.levels.level)
+        self.states.stiffness(self.levels.level)
     }
 
     /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its traction w_i \[Pa\]. With

@@ -7,8 +7,11 @@ use crate::Grid;
 use crate::contact::Builder;
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
+use crate::states::elastic::Solved;
 use crate::states::pressed::Pressed;
 
+/// States nearer than this factor of the level are one.
+const NEAREST: f64 = 1e-12;
 /// Upper limit of the steps of Newton's method.
 const MAX_STEPS: usize = 100;
 
@@ -161,6 +164,26 @@ impl ElasticStates {
         let kept_well = kept == 0 || kept == self.states.len() && self.pressures.iter().all(fits);
         count_within("pressures of elastic states", kept, kept_well, "one for each state, on cells of the grid")?;
         Ok(self)
+    }
+
+    /// Adds a state, unless one as near as rounding, or out of order by it, is there.
+    pub(super) fn insert(&mut self, Solved { state, pressure }: Solved) {
+        let at = self.states.partition_point(|other| other.level < state.level);
+        let depth = self.depth_of(&state);
+        let is_below =
+            |other: &ElasticState| other.level * (1.0 + NEAREST) < state.level && self.depth_of(other) < depth;
+        let is_above =
+            |other: &ElasticState| other.level > state.level * (1.0 + NEAREST) && self.depth_of(other) > depth;
+        let fits =
+            at.checked_sub(1).is_none_or(|k| is_below(&self.states[k])) && self.states.get(at).is_none_or(is_above);
+        if !fits || depth.is_nan() || depth <= 0.0 {
+            return;
+        }
+        self.states.insert(at, state);
+        if !self.pressures.is_empty() {
+            self.pressures.insert(at, pressure);
+        }
+        self.nodes = self.nodes();
     }
 
     /// The states, by ascending level.

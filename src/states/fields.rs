@@ -1,6 +1,5 @@
 //! Fields of a contact on elastic states.
 
-use crate::contact::ViscoelasticContact;
 use crate::error::{Result, StatesError};
 use crate::load::Load;
 use crate::states::contact::StatesContact;
@@ -43,18 +42,18 @@ impl StatesContact {
     /// All fields, exact: by an elastic contact at the level of each group, from the smallest to the largest.
     ///
     /// # Errors
-    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of [`ViscoelasticContact::step`].
+    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
     pub fn fields(&self) -> Result<StatesFields> {
         let states = self.states();
         let mut elastic = states.elastic_contact()?;
-        elastic.step(0.0, Load::Force { normal: 0.0, tilt: states.tilt })?;
-        let cells = elastic.grid().len();
+        let apart = elastic.under(Load::Force { normal: 0.0, tilt: states.tilt })?;
+        let cells = apart.grid().len();
         let mut fields =
             StatesFields { pressure: vec![0.0; cells], displacement: vec![0.0; cells], gap: vec![0.0; cells] };
-        elastic.gap_into(&mut fields.gap)?;
+        apart.gap_into(&mut fields.gap)?;
         let (mut before, mut gap) = (fields.clone(), vec![0.0; cells]);
         for (top, traction, displacement) in self.levels.groups() {
-            elastic.step(0.0, Load::Force { normal: top, tilt: states.tilt })?;
+            let elastic = elastic.under(Load::Force { normal: top, tilt: states.tilt })?;
             elastic.gap_into(&mut gap)?;
             let parts = [
                 (traction, &mut fields.pressure, &mut before.pressure, elastic.pressure()),
@@ -84,10 +83,5 @@ impl ElasticStates {
         if upper > 0 {
             shares[upper - 1] += weight * (1.0 - share);
         }
-    }
-
-    /// An elastic contact of unit compliance on this surface, undisturbed.
-    fn elastic_contact(&self) -> Result<ViscoelasticContact> {
-        self.scene.clone().ok_or(StatesError::NoScene)?.build()
     }
 }

@@ -1,6 +1,6 @@
 //! The levels of a contact: groups with one past each, and the level up to which they are held.
 
-use crate::error::{Error, Result, StatesError};
+use crate::error::{Error, Result, StatesError, StepError};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::states::curve::{ElasticStates, Motions};
 
@@ -18,6 +18,14 @@ pub(super) enum Demand {
     /// A depth of the load point below the first touch of the undisturbed bodies \[m\], which a spring of the compliance `give` \[m/N\] prescribes:
     /// depth less give times force; 0 for a given approach.
     Depth { depth: f64, give: f64 },
+}
+
+/// A level c, and how it is found: δ(c) + `give` c = `sum`; `give` is infinite where it does not depend on the states.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wanted {
+    pub(super) level: f64,
+    pub(super) give: f64,
+    pub(super) sum: f64,
 }
 
 /// Levels from the top of the group before to its own, with one past.
@@ -99,26 +107,33 @@ impl Levels {
         self.history.reset_differences();
     }
 
-    /// Advances by `dt` to `time`. A step that fails changes nothing.
-    pub(super) fn step(
+    /// The level up to which groups are held at the end of a step, and the sum δ(c) + `give` c/C_Δ that a demand for a depth finds it by.
+    /// Changes nothing that steps are made of.
+    pub(super) fn wanted(
         &mut self,
         states: &ElasticStates,
         (time, dt): (f64, f64),
         interpolant: Interpolant,
         demand: Demand,
-    ) -> Result<()> {
+    ) -> Result<Wanted> {
         self.history.predict(dt, interpolant, &mut self.trial);
         let compliance = self.history.rule().compliance();
         if compliance == 0.0 {
-            return Err(Error::NoElasticResponse { time, what: "a jump of the load (ramp it instead)" });
+            return Err(Error::Step(StepError::NoElasticResponse {
+                time,
+                what: "a jump of the load (ramp it instead)",
+            }));
         }
         if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {
             return Err(StatesError::OutOfOrder { time, displacement }.into());
         }
-        let level = match demand {
-            Demand::Force(force) => self.level_of_force(compliance, force),
-            Demand::Depth { depth, give } => self.level_of_depth(states, compliance, [depth, give]),
+        let wanted = match demand {
+            Demand::Force(force) => {
+                Wanted { level: self.level_of_force(compliance, force), give: f64::INFINITY, sum: 0.0 }
+            }
+            Demand::Depth { depth, give } => self.level_of_depth(states, give / compliance, depth),
         };
+        let level = wanted.level;
         if level.is_nan() || level > states.last_level() {
             let (needed, last) = match demand {
                 Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),
@@ -129,13 +144,17 @@ impl Levels {
         if level > 0.0 && level < states.first_level() * (1.0 - ROUNDING) {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
+        Ok(wanted)
+    }
+
+    /// Accepts the step of [`Levels::wanted`].
+    pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, level: f64) {
         self.cut_at(states, level);
-        self.accept(level, compliance);
+        self.hold(level);
         if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
             self.lift = self.motions.depth - depth;
             self.motions.depth = depth;
         }
-        Ok(())
     }
 
     /// The groups, each with its bottom, that of the first being 0, and its W if nothing holds it.
@@ -165,25 +184,25 @@ impl Levels {
         self.bottom(self.groups.len()).0 + (force - carried) * compliance
     }
 
-    /// The level c up to which groups are held where D(c) + `give` F(c) = `depth`, with D(c) = δ(c) + Σ W Δδ above c; NaN beyond the
-    /// sweep.
-    fn level_of_depth(&self, states: &ElasticStates, compliance: f64, [depth, give]: [f64; 2]) -> f64 {
-        let yielding = give / compliance;
+    /// The level c up to which groups are held where D(c) + `give` Σ (1 − W) Δl = `depth`, with D(c) = δ(c) + Σ W Δδ above c; NaN
+    /// beyond the sweep.
+    fn level_of_depth(&self, states: &ElasticStates, give: f64, depth: f64) -> Wanted {
         let mut reached: f64 =
             self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum();
         if depth <= reached {
-            return 0.0;
+            return Wanted { level: 0.0, give, sum: 0.0 };
         }
         for (bottom, lower, group, free) in self.spans() {
-            let more = (1.0 - free) * (group.motions.depth - lower.depth + yielding * (group.top - bottom));
+            let more = (1.0 - free) * (group.motions.depth - lower.depth + give * (group.top - bottom));
             if reached + more >= depth {
-                let here = lower.depth + yielding * bottom + (depth - reached) / (1.0 - free);
-                return states.level_where(yielding, here).clamp(bottom, group.top);
+                let sum = lower.depth + give * bottom + (depth - reached) / (1.0 - free);
+                return Wanted { level: states.level_where(give, sum).clamp(bottom, group.top), give, sum };
             }
             reached += more;
         }
         let (top, motions) = self.bottom(self.groups.len());
-        states.level_where(yielding, motions.depth + yielding * top + (depth - reached))
+        let sum = motions.depth + give * top + (depth - reached);
+        Wanted { level: states.level_where(give, sum), give, sum }
     }
 
     /// Splits the group that contains a level there, or adds a group up to it.
@@ -203,8 +222,9 @@ impl Levels {
         self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
     }
 
-    /// Holds the groups up to a level, accepts the step, and merges groups with the same past.
-    fn accept(&mut self, level: f64, compliance: f64) {
+    /// Holds the groups up to a level, commits the step, and merges groups with the same past.
+    fn hold(&mut self, level: f64) {
+        let compliance = self.history.rule().compliance();
         let held = self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL));
         let (mut force, mut motions) = (0.0, Motions::default());
         for k in 0..self.groups.len() {

@@ -40,6 +40,7 @@
 
 mod contact;
 mod curve;
+mod elastic;
 mod fields;
 mod levels;
 mod pressed;

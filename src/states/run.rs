@@ -1,7 +1,7 @@
 //! A contact on elastic states along a load history.
 
 use crate::contact::Stepping;
-use crate::error::{Error, LoadError, Result, within};
+use crate::error::{Error, LoadError, Result, StepError, within};
 use crate::load::{Load, LoadHistory};
 use crate::states::contact::{StatesContact, StatesReport};
 
@@ -159,7 +159,7 @@ impl StatesRun<'_> {
             let end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
             let middle = now + 0.5 * (end - now);
             if !(now < middle && middle < end) {
-                return Err(Error::StepTooShort { time: now, dt: length, tolerance });
+                return Err(Error::Step(StepError::StepTooShort { time: now, dt: length, tolerance }));
             }
             let report = match self.whole_and_halves([now, middle, end]) {
                 Ok(report) => report,

@@ -11,6 +11,7 @@ use crate::kernel::{InfluenceKernel, Layer};
 use crate::load::{Load, Tilt};
 use crate::rheology::{Elastic, Material};
 use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at, load_point};
+use crate::states::elastic::{ElasticContact, Solved};
 use crate::states::pressed::Pressed;
 
 /// How far a sweep goes.
@@ -135,12 +136,12 @@ impl Sweep {
         // C = (1 − ν) J/2 = 1 Pa⁻¹
         let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
         let scene = self.builder.material(unit).settings(self.settings);
-        let contact = scene.clone().build()?;
+        let elastic = ElasticContact::new(&scene)?;
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
         let at = load_point(&self.tilt);
-        let grid = contact.grid().clone();
+        let grid = elastic.grid().clone();
         let mut solver = Solver {
-            contact,
+            elastic,
             tilt: self.tilt,
             at,
             rest: Rest { approach: 0.0, tilt },
@@ -156,7 +157,7 @@ impl Sweep {
         };
         let last = match to {
             Reach::Level(level) => level,
-            Reach::Approach(approach) => solver.force_at(approach)?,
+            Reach::Approach(approach) => solver.level_at(approach)?,
         };
         solver.sweep(last)?;
         let mut states = solver.finish();
@@ -168,7 +169,7 @@ impl Sweep {
 
 /// The elastic contact that finds states.
 struct Solver<P> {
-    contact: ViscoelasticContact,
+    elastic: ElasticContact,
     tilt: [Tilt; 2],
     /// The load point.
     at: [f64; 2],
@@ -186,18 +187,11 @@ struct Solver<P> {
     progress: P,
 }
 
-/// A state and its pressure.
-struct Solved {
-    state: ElasticState,
-    pressure: Pressed,
-}
-
 impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
-    /// The force at an approach of the load point.
-    fn force_at(&mut self, approach: f64) -> Result<f64> {
-        self.contact.step(0.0, Load::Approach { approach, tilt: self.tilt })?;
-        match self.contact.force() {
-            force if force > 0.0 => Ok(force),
+    /// The level at an approach of the load point.
+    fn level_at(&mut self, approach: f64) -> Result<f64> {
+        match self.elastic.solve(Load::Approach { approach, tilt: self.tilt })?.state.level {
+            level if level > 0.0 => Ok(level),
             _ => Err(Error::OutOfRange {
                 field: "approach that a sweep reaches",
                 value: approach,
@@ -207,18 +201,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     }
 
     fn solve(&mut self, level: f64) -> Result<Solved> {
-        self.contact.step(0.0, Load::Force { normal: level, tilt: self.tilt })?;
-        let contact = &self.contact;
-        let state = ElasticState {
-            level,
-            approach: contact.approach(),
-            tilt: contact.tilt(),
-            stiffness: contact.stiffness_over_modulus()?,
-            area: contact.contact_area(),
-            cells: contact.contact_cells(),
-            patches: contact.patches()?.all.len(),
-        };
-        Ok(Solved { state, pressure: Pressed::new(contact.pressure()) })
+        self.elastic.solve(Load::Force { normal: level, tilt: self.tilt })
     }
 
     /// Adds a state, unless the sweep is to end.

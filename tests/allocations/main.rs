@@ -30,6 +30,8 @@ fn main() {
     println!("warm steps of ranks allocate nothing: ok");
     ranks::ranks_announce_what_is_counted();
     println!("ranks announce what is counted: ok");
+    memory::documents_state_what_builders_announce();
+    println!("documents state what builders announce: ok");
     memory::builders_announce_what_is_counted();
     println!("builders announce what is counted: ok");
 }

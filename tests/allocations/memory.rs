@@ -1,6 +1,7 @@
 //! The memory that a builder predicts, against the bytes that are allocated.
 
-use crate::common::bodies::elastic;
+use crate::common::figures;
+use crate::common::{builder_on, elastic, maxwell};
 use std::alloc::System;
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use stats_alloc::Region;
 use viscocontact::Result;
-use viscocontact::contact::Memory;
+use viscocontact::contact::{Builder, Memory};
 use viscocontact::prelude::*;
 
 use crate::ALLOCATOR;
@@ -22,6 +23,31 @@ const OF_FITS: f64 = 64.0e3;
 fn taken(region: &Region<'_, System>) -> f64 {
     let change = region.change();
     change.bytes_allocated as f64 - change.bytes_deallocated as f64
+}
+
+/// The bytes of a computed cell that documents state: with one relaxation time, on one thread, from 128² to 4096² cells; and in a
+/// line contact.
+pub fn documents_state_what_builders_announce() {
+    let per_cell = |builder: Builder, cells: usize| builder.memory().unwrap().total() as f64 / cells as f64;
+    let bytes = || {
+        let settings = Settings::default().with_symmetry(false).with_window(false);
+        let squares = [128, 256, 512, 1024, 2048, 4096].map(|n| {
+            let grid = Grid::square(n, 4.0e-3).unwrap();
+            per_cell(builder_on(grid, maxwell()).settings(settings), n * n)
+        });
+        let grid = Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap();
+        let kernel = Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap());
+        (squares, per_cell(builder_on(grid, maxwell()).kernel(kernel).settings(settings), 16384))
+    };
+    #[cfg(feature = "rayon")]
+    let (squares, line) = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(bytes);
+    #[cfg(not(feature = "rayon"))]
+    let (squares, line) = bytes();
+    let (least, most) = (squares.into_iter().fold(f64::INFINITY, f64::min), squares.into_iter().fold(0.0, f64::max));
+    println!("{squares:?} {line}");
+    assert!(least > 100.0 && most < 1.2 * least, "{squares:?}");
+    figures::figure("memory", &format!("{least:.0} to {most:.0}")).unwrap();
+    figures::figure("memory of a line", &format!("{line:.0}")).unwrap();
 }
 
 struct Scene {
@@ -122,7 +148,7 @@ pub fn builders_announce_what_is_counted() {
         let memory: Memory = match builder.memory() {
             Ok(memory) => memory,
             Err(error) => {
-                assert!(scene.fitted || matches!(error, Error::NoElasticResponse { .. }), "{error}");
+                assert!(scene.fitted || matches!(error, Error::Step(StepError::NoElasticResponse { .. })), "{error}");
                 assert_eq!(builder.build().unwrap_err().to_string(), error.to_string());
                 continue;
             }

@@ -7,8 +7,7 @@ use viscocontact::parallel::{Ranks, Threads};
 use viscocontact::prelude::*;
 
 use crate::ALLOCATOR;
-use crate::common::bodies::zener;
-use crate::common::spheres::builder_of;
+use crate::common::{builder_of, zener};
 
 const SIZE: usize = 3;
 

@@ -1,9 +1,7 @@
 //! A step allocates nothing: every buffer is made when the contact is built.
 
 use crate::ALLOCATOR;
-use crate::common::bodies::zener;
-use crate::common::spheres::{builder_of, sphere, sphere_on};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
+use crate::common::{StepLoadedSphere, builder_of, sphere, sphere_on, zener};
 use stats_alloc::Region;
 use viscocontact::prelude::*;
 

@@ -4,8 +4,7 @@ use stats_alloc::Region;
 use viscocontact::prelude::*;
 
 use crate::ALLOCATOR;
-use crate::common::bodies::zener;
-use crate::common::spheres::sphere_on;
+use crate::common::{sphere_on, zener};
 
 const STEPS: usize = 100;
 /// Calls of a step: its contact problem, and the estimate of its error.

@@ -5,6 +5,8 @@ pub mod bodies;
 pub mod chosen_scenes;
 pub mod draws;
 pub mod environment;
+#[path = "../../examples/support/figures.rs"]
+pub mod figures;
 pub mod gauss;
 pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
@@ -38,3 +40,15 @@ pub mod temporary;
 pub mod truth;
 pub mod watched_ranks;
 pub mod watched_runs;
+
+// what most tests begin with
+pub use bodies::{E_STAR, G, elastic, maxwell, power_law, three_times, zener};
+pub use draws::Draws;
+pub use environment::from_environment;
+pub use noise::{noise, uniform};
+pub use random_scenes::RandomScene;
+pub use ratios::Ratios;
+pub use spheres::{RADIUS, builder_of, builder_on, contact_of, sphere, sphere_on};
+pub use step_loaded_sphere::StepLoadedSphere;
+pub use temporary::Temporary;
+pub use truth::Truth;

@@ -123,7 +123,6 @@ fn frames(source: &mut Source) -> Verdict {
             Err(error) => return refused(error),
         }
     }
-    #[cfg(feature = "vtk")]
     if source.chance(0.5) {
         match FrameSeries::create(folder.path("vtk"), Format::Vtk, &scene, &chosen) {
             Ok(mut series) => {

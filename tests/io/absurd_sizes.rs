@@ -1,6 +1,6 @@
 //! Grids that no machine has memory for: every call returns an error with the bytes, before anything is filled.
 
-use crate::common::bodies::maxwell;
+use crate::common::maxwell;
 use std::hint::black_box;
 use std::sync::Arc;
 

@@ -3,9 +3,7 @@
 mod ranks;
 mod scenes;
 
-use crate::common::bodies::{power_law, three_times};
-use crate::common::spheres::{builder_of, builder_on, sphere, sphere_on};
-use crate::common::temporary::Temporary;
+use crate::common::{Temporary, builder_of, builder_on, power_law, sphere, sphere_on, three_times, uniform};
 use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +11,6 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::common::noise::uniform;
 use crate::common::runs::{scenes, wandering};
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;

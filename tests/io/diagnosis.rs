@@ -1,7 +1,6 @@
 //! Warnings of steps, and the reasons of failed steps.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{builder_of, sphere_on};
+use crate::common::{builder_of, elastic, maxwell, sphere_on};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::{Error, Trend};
@@ -35,7 +34,7 @@ fn contact_near_the_edge_is_warned_of_before_it_touches() {
                     clear += 1;
                 }
                 Err(error) => {
-                    assert!(matches!(error, Error::ContactAtEdge { .. }), "{error}");
+                    assert!(matches!(error, Error::Step(StepError::ContactAtEdge { .. })), "{error}");
                     break;
                 }
             }
@@ -58,7 +57,7 @@ fn material_beyond_its_data_is_warned_of() {
     assert!(warnings(&mut honest, 0.01).contains(Warnings::FASTER_THAN_MATERIAL));
     assert!(!warnings(&mut honest, 1.0).contains(Warnings::NEAR_END_OF_MATERIAL));
     assert!(warnings(&mut honest, 5.0).contains(Warnings::NEAR_END_OF_MATERIAL));
-    assert!(matches!(honest.step(5.0, Load::force(0.1)), Err(Error::BeyondMaterial { .. })));
+    assert!(matches!(honest.step(5.0, Load::force(0.1)), Err(Error::Step(StepError::BeyondMaterial { .. }))));
 
     let mut bold = contact(48, Material::incompressible(table.extrapolated()), Settings::default());
     bold.step(0.0, Load::force(0.1)).unwrap();
@@ -82,7 +81,9 @@ fn a_failed_solve_says_what_to_do() {
     let failure = |settings: Settings| {
         let error = contact(48, maxwell(), settings).step(0.0, Load::force(0.5)).unwrap_err();
         let text = error.to_string();
-        let Error::NotConverged { iterations, residual, convergence, .. } = error else { panic!("{error}") };
+        let Error::Step(StepError::NotConverged { iterations, residual, convergence, .. }) = error else {
+            panic!("{error}")
+        };
         let (first, last) = (convergence.residuals()[0], *convergence.residuals().last().unwrap());
         assert!(convergence.residuals().len() <= 33 && first.0 == 0 && last == (iterations, residual));
         (convergence, text)

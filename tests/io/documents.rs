@@ -12,13 +12,24 @@ fn root() -> &'static Path {
 
 /// The Markdown files of the repository, with their text.
 fn documents() -> Vec<(PathBuf, String)> {
-    let markdown = |folder: PathBuf| {
-        let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-        files.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect::<Vec<_>>()
-    };
-    let files = [".", "docs", "docs/guide"].map(|folder| markdown(root().join(folder))).concat();
+    let files = files_of(root(), "md");
     assert!(files.len() >= 12, "{files:?}");
     files.into_iter().map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
+}
+
+/// The files under a folder with an extension, without what was built or written there.
+fn files_of(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let entries = entries.filter(|path| !["target", "out", ".git"].iter().any(|name| path.ends_with(name)));
+    let files = entries.flat_map(|path| if path.is_dir() { files_of(&path, extension) } else { vec![path] });
+    files.filter(|path| path.extension().is_some_and(|found| found == extension)).collect()
+}
+
+/// The anchors of a page: its headings in lower case, hyphens for blanks, without punctuation, as forges make them.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let headings = text.lines().filter_map(|line| line.strip_prefix('#')?.trim_start_matches('#').strip_prefix(' '));
+    let kept = |c: &char| c.is_alphanumeric() || "-_ ".contains(*c);
+    headings.map(|heading| heading.to_lowercase().chars().filter(kept).collect::<String>().replace(' ', "-")).collect()
 }
 
 /// What follows each `start` up to `end`.
@@ -30,11 +41,13 @@ fn between<'a>(text: &'a str, start: &'a str, end: char) -> impl Iterator<Item =
 fn links_lead_somewhere() {
     let (mut broken, mut shown) = (Vec::new(), BTreeSet::new());
     for (path, text) in documents() {
-        for link in between(&text, "](", ')').filter(|link| !link.contains("://") && !link.starts_with('#')) {
-            let target = path.parent().unwrap().join(link.split('#').next().unwrap());
+        for link in between(&text, "](", ')').filter(|link| !link.contains("://") && !link.starts_with("mailto:")) {
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { path.clone() } else { path.parent().unwrap().join(file) };
+            let there = || anchor.is_empty() || anchors(&fs::read_to_string(&target).unwrap()).contains(anchor);
             match target.canonicalize() {
-                Ok(target) => _ = shown.insert(target),
-                Err(_) => broken.push(format!("{}: {link}", path.display())),
+                Ok(target) if there() => _ = shown.insert(target),
+                _ => broken.push(format!("{}: {link}", path.display())),
             }
         }
     }
@@ -148,6 +161,34 @@ fn findings_of_fuzzing_have_their_tests() {
     assert!(missing.is_empty() && found > 25, "{found} {missing:?}");
 }
 
+/// Figures between marks are written by programs: each mark ends, has a program that names it, and begins no line, which would
+/// not be text of the line any more.
+#[test]
+fn figures_have_their_programs() {
+    let programs = [sources(&root().join("tests")), sources(&root().join("examples"))].concat();
+    let programs: String = programs.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let page_of_the_crate = root().join("src/lib.rs");
+    let text_of_the_crate = fs::read_to_string(&page_of_the_crate).unwrap();
+    let (mut wrong, mut found) = (Vec::new(), 0);
+    for (path, text) in documents().into_iter().chain([(page_of_the_crate, text_of_the_crate)]) {
+        for part in text.split("<!-- figures ").skip(1) {
+            let (name, after) = part.split_once(" -->").unwrap();
+            found += 1;
+            if name == "NAME" {
+                continue; // how marks are written
+            }
+            if !after.contains("<!-- end -->") || !programs.contains(&format!("(\"{name}\", ")) {
+                wrong.push(format!("{}: {name}", path.display()));
+            }
+        }
+        let lines = text.lines().map(|line| line.trim_start_matches("//! "));
+        wrong.extend(
+            lines.filter(|line| line.starts_with("<!-- figures ") && line.contains("end -->")).map(str::to_owned),
+        );
+    }
+    assert!(wrong.is_empty() && found > 20, "{found} {wrong:#?}");
+}
+
 /// Every example has its place in the gallery and the README, packages of their own included.
 #[test]
 fn examples_are_shown() {
@@ -183,10 +224,7 @@ fn programs_of_the_readme_are_complete() {
 
 /// The Rust files under a folder, without what was built there.
 fn sources(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let entries = entries.filter(|path| !path.ends_with("target"));
-    let files = entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] });
-    files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+    files_of(folder, "rs")
 }
 
 /// TeX needs a script, and Markdown removes backslashes: formulas are plain text, which every viewer shows right.

@@ -1,9 +1,8 @@
 //! Bad input gets its own error, and a failed step leaves the contact as it was.
 
-use crate::common::bodies::maxwell;
 use crate::common::refused::field;
-use crate::common::spheres::{builder_on, sphere, sphere_on};
 use crate::common::watched_runs::seen;
+use crate::common::{builder_on, maxwell, sphere, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::process::Command;
 use std::sync::Arc;
@@ -60,7 +59,7 @@ fn build_says_what_a_material_cannot_do() {
         builder_on(grid(), material).settings(settings).build().map(drop)
     };
     let voigt = || Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
-    assert!(matches!(build(voigt(), TimeRule::Rectangle), Err(Error::NoElasticResponse { .. })));
+    assert!(matches!(build(voigt(), TimeRule::Rectangle), Err(Error::Step(StepError::NoElasticResponse { .. }))));
     assert_eq!(build(voigt(), TimeRule::Backward), Ok(()));
     let closure = || Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));
     // nor as one of two bodies, of which the other has a series
@@ -121,7 +120,7 @@ fn contact_at_the_edge_is_an_error_unless_allowed() {
     let mut contact = sphere_on(grid(), maxwell(), Settings::default());
     contact.step(0.0, Load::force(0.5)).unwrap();
     let error = assert_untouched(&mut contact, 0.1, Load::force(50.0));
-    let Error::ContactAtEdge { cells, time } = error else { panic!("{error}") };
+    let Error::Step(StepError::ContactAtEdge { cells, time }) = error else { panic!("{error}") };
     assert!(cells > 0 && time == 0.1);
     let mut allowed = sphere_on(grid(), maxwell(), Settings::default().with_edge(Edge::Allow));
     allowed.step(0.0, Load::force(50.0)).unwrap();
@@ -134,7 +133,9 @@ fn running_out_of_iterations_is_an_error_with_numbers() {
         let settings = Settings::default().with_tolerance(1e-12).with_max_iterations(2).with_solver(solver);
         let mut contact = sphere_on(grid(), maxwell(), settings);
         let error = assert_untouched(&mut contact, 0.0, Load::force(0.5));
-        let Error::NotConverged { iterations, residual, tolerance, .. } = error else { panic!("{error}") };
+        let Error::Step(StepError::NotConverged { iterations, residual, tolerance, .. }) = error else {
+            panic!("{error}")
+        };
         assert!(iterations == 2 && residual > tolerance);
     }
 }
@@ -213,9 +214,9 @@ fn everything_travels_between_threads() {
 #[test]
 fn forces_beyond_numbers_are_refused() {
     let mut contact = sphere_on(Grid::square(8, 4.0e3).unwrap(), maxwell(), Settings::default());
-    assert!(matches!(contact.step(0.0, Load::force(5e-324)), Err(Error::Overflow { .. })));
+    assert!(matches!(contact.step(0.0, Load::force(5e-324)), Err(Error::Step(StepError::Overflow { .. }))));
     let mut contact = sphere_on(grid(), maxwell(), Settings::default());
-    assert!(matches!(contact.step(0.0, Load::force(1e308)), Err(Error::Overflow { .. })));
+    assert!(matches!(contact.step(0.0, Load::force(1e308)), Err(Error::Step(StepError::Overflow { .. }))));
 }
 
 /// A history that names a corner in the past would stop the run, or turn it back.
@@ -249,8 +250,8 @@ fn failures_leave_the_foundation_as_it_was() {
     foundation.press(0.0, 0.5).unwrap();
     let see = |f: &AxisymmetricContact| (f.time(), f.approach(), f.force(), f.contact_radius(), f.pressure(1e-4));
     let before = see(&foundation);
-    assert!(matches!(foundation.press(1.0, 1e6), Err(Error::BeyondReach { .. })));
-    assert!(matches!(foundation.indent(1.0, 1.0), Err(Error::BeyondReach { .. })));
+    assert!(matches!(foundation.press(1.0, 1e6), Err(Error::Step(StepError::BeyondReach { .. }))));
+    assert!(matches!(foundation.indent(1.0, 1.0), Err(Error::Step(StepError::BeyondReach { .. }))));
     assert_eq!(see(&foundation), before);
     let nothing = AxisymmetricContact::new(&Profile::new(|_| f64::INFINITY), &maxwell(), 10, 1.0).unwrap_err();
     assert!(matches!(nothing, Error::NothingToTouch { .. }));
@@ -281,17 +282,16 @@ fn a_program_that_returns_an_error_says_what_to_do() {
     let advice = "enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there";
     let expected = format!("Error: at t = 0 s the contact touches the edge of the grid on 60 cells: {advice}\n");
     assert_eq!(printed(&[]), expected);
-    if cfg!(feature = "csv") {
-        let (path, cause) = ("no/such/folder/history.csv", "No such file or directory (os error 2)");
-        assert_eq!(printed(&[path]), format!("Error: {path} cannot be written: {cause}\n"));
-    }
+    let (path, cause) = ("no/such/folder/history.csv", "No such file or directory (os error 2)");
+    assert_eq!(printed(&[path]), format!("Error: {path} cannot be written: {cause}\n"));
 }
 
 /// The alternate form prints the fields of an error, as its pattern names them.
 #[test]
 fn an_error_prints_its_fields_when_asked() {
-    let edge = Error::ContactAtEdge { time: 0.5, cells: 12 };
-    assert_eq!(format!("{edge:#?}"), "ContactAtEdge {\n    time: 0.5,\n    cells: 12,\n}");
+    let edge = Error::Step(StepError::ContactAtEdge { time: 0.5, cells: 12 });
+    let fields = "ContactAtEdge {\n        time: 0.5,\n        cells: 12,\n    }";
+    assert_eq!(format!("{edge:#?}"), format!("Step(\n    {fields},\n)"));
     assert_eq!(format!("{:#?}", Error::OtherContact), "OtherContact");
     let load = Error::from(LoadError::InvalidBreakpoint { after: 1.0, breakpoint: 0.5 });
     let fields = "InvalidBreakpoint {\n        after: 1.0,\n        breakpoint: 0.5,\n    }";

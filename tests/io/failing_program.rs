@@ -8,7 +8,6 @@ fn main() -> viscocontact::Result<()> {
         .geometry(&Sphere::new(10.0e-3)?)
         .material(Material::incompressible(Elastic::new(1.0e6)?))
         .build()?;
-    #[cfg(feature = "csv")]
     if let Some(path) = std::env::args_os().nth(1) {
         use viscocontact::output::{CsvHistory, Metadata};
         CsvHistory::create(path, &Metadata::new("Ball on rubber"), &contact, &[])?;

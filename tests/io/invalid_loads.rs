@@ -1,8 +1,7 @@
 //! Loads that are none, wherever a run looks at its history.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{builder_of, sphere_on};
 use crate::common::watched_runs::seen;
+use crate::common::{builder_of, elastic, maxwell, sphere_on};
 use std::sync::{Arc, Mutex};
 
 use proptest::prelude::*;

@@ -9,9 +9,8 @@ mod errors;
 mod house;
 mod interface;
 mod invalid_loads;
-#[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
 mod output;
-#[cfg(all(feature = "csv", feature = "npy", feature = "vtk"))]
+#[cfg(feature = "npy")]
 mod output_of_ranks;
 mod paper;
 #[cfg(feature = "plot")]
@@ -22,7 +21,7 @@ mod snapshot;
 mod tracing;
 
 /// Runs an ignored test in a process of its own, in which files end at 32 KiB.
-#[cfg(all(unix, any(feature = "plot", all(feature = "csv", feature = "npy", feature = "vtk"))))]
+#[cfg(all(unix, any(feature = "plot", feature = "npy")))]
 fn with_room_for_32_kib(test: &str, folder: &std::path::Path) -> std::process::Output {
     // writes beyond 64 blocks of 512 bytes fail in the child, which is not killed for them
     let limited = format!("trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact {test} --ignored --nocapture");

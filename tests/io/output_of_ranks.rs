@@ -3,9 +3,7 @@
 use std::fs;
 use std::sync::Arc;
 
-use crate::common::bodies::zener;
-use crate::common::spheres::builder_on;
-use crate::common::temporary::Temporary;
+use crate::common::{Temporary, builder_on, zener};
 use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;

@@ -1,8 +1,7 @@
 //! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
 
-use crate::common::bodies::maxwell;
 use crate::common::refused::field;
-use crate::common::temporary::Temporary;
+use crate::common::{Temporary, maxwell};
 use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::Path;

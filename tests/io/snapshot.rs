@@ -1,10 +1,8 @@
 //! States kept in memory and restored: the same steps again, to the last bit.
 
-use crate::common::bodies::three_times;
 use crate::common::runs::{scenes, wandering};
-use crate::common::spheres::sphere_on;
-use crate::common::temporary::Temporary;
 use crate::common::watched_runs::seen;
+use crate::common::{Temporary, sphere_on, three_times};
 use std::path::Path;
 use viscocontact::prelude::*;
 

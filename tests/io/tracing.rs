@@ -1,6 +1,6 @@
 //! Events for subscribers of `tracing`.
 
-use crate::common::spheres::{builder_on, sphere_on};
+use crate::common::{builder_on, sphere_on};
 use std::sync::{Arc, Mutex};
 use std::thread::ThreadId;
 

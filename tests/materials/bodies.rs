@@ -1,8 +1,7 @@
 //! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series, direct sums.
 
-use crate::common::bodies::maxwell;
 use crate::common::refused::field;
-use crate::common::spheres::RADIUS;
+use crate::common::{RADIUS, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
@@ -181,14 +180,14 @@ fn a_body_without_an_exact_series_is_fitted_over_the_times_it_is_wanted_for() {
     assert_abs_diff_eq!(last / 1e5, 1.0, epsilon = 1e-12);
     // a step beyond is refused and changes nothing
     let before = (contact.time(), contact.approach());
-    assert!(matches!(contact.step(1e5, Load::force(FORCE)), Err(Error::BeyondMaterial { .. })));
+    assert!(matches!(contact.step(1e5, Load::force(FORCE)), Err(Error::Step(StepError::BeyondMaterial { .. }))));
     assert_eq!(before, (contact.time(), contact.approach()));
     contact.step(0.1, Load::force(FORCE)).unwrap();
 
     // nor does a failed first step change what was fitted
     let mut contact = builder(64, 0.5e-6).material(closure()).times(1e-5..=1e10).build().unwrap();
     contact.step(0.0, Load::force(FORCE)).unwrap();
-    assert!(matches!(contact.step(1e9, Load::force(1e6 * FORCE)), Err(Error::ContactAtEdge { .. })));
+    assert!(matches!(contact.step(1e9, Load::force(1e6 * FORCE)), Err(Error::Step(StepError::ContactAtEdge { .. }))));
     contact.step(1e-3, Load::force(FORCE)).unwrap();
     let [first, _] = contact.material().fit_reports().next().unwrap().range().unwrap();
     assert_abs_diff_eq!(first / 1e-5, 1.0, epsilon = 1e-12);
@@ -272,7 +271,7 @@ fn direct_sums_keep_within_their_memory() {
         contact.step(0.1, Load::force(FORCE)).unwrap();
     }
     let error = contact.step(0.1, Load::force(FORCE)).unwrap_err();
-    assert!(matches!(error, Error::HistoryFull { steps: 5, limit: 10_240, .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::HistoryFull { steps: 5, limit: 10_240, .. })), "{error}");
     assert_abs_diff_eq!(contact.time(), 0.5, epsilon = 1e-15);
 }
 

@@ -1,8 +1,7 @@
 //! Random tables of bodies of one to four relaxation times, with noise of up to 3 % and without, that begin before or after
 //! the relaxation: their creep against the exact one at all measured times. `TABLE_SEEDS` (60) tables of each kind are drawn.
 
-use crate::common::environment::from_environment;
-use crate::common::noise::uniform;
+use crate::common::{from_environment, uniform};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum};
 

@@ -1,17 +1,12 @@
 //! Tables of measured data: fits, noise, invalid tables, and files.
 
-#[cfg(feature = "csv")]
 mod dialects;
-#[cfg(feature = "csv")]
 mod files;
-#[cfg(feature = "csv")]
 mod units;
 
-use crate::common::noise::noise;
-use crate::common::spheres::sphere_on;
+use crate::common::{noise, sphere_on};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
-#[cfg(feature = "csv")]
 use viscocontact::Result;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
@@ -125,7 +120,7 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
     contact.step(0.0, Load::force(0.1)).unwrap();
     contact.step(100.0, Load::force(0.1)).unwrap();
     let error = contact.step(1.0, Load::force(0.1)).unwrap_err();
-    assert_eq!(error, Error::BeyondMaterial { time: 101.0, age: 101.0, known_until: 100.0 });
+    assert_eq!(error, Error::Step(StepError::BeyondMaterial { time: 101.0, age: 101.0, known_until: 100.0 }));
     assert_eq!(contact.time(), 100.0);
     // time at rest does not count
     for time_rule in [TimeRule::Exponential, TimeRule::Backward] {
@@ -137,7 +132,7 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
         contact.step(0.0, Load::force(0.1)).unwrap();
         contact.step(50.0, Load::force(0.1)).unwrap();
         let error = contact.step(51.0, Load::force(0.1)).unwrap_err();
-        assert!(matches!(error, Error::BeyondMaterial { known_until: 100.0, .. }), "{error}");
+        assert!(matches!(error, Error::Step(StepError::BeyondMaterial { known_until: 100.0, .. })), "{error}");
     }
     // the choice
     let trusted = body.extrapolated();

@@ -1,9 +1,7 @@
 //! Tables of few rows: smooth bodies over four to eight decades, with and without noise. What is fitted is compared with the
 //! exact model at the rows and between them. `SPARSE_SEEDS` (2) times seven bodies are drawn.
 
-use crate::common::environment::from_environment;
-use crate::common::noise::{noise, uniform};
-use crate::common::spheres::sphere_on;
+use crate::common::{from_environment, noise, sphere_on, uniform};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSeries, CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};

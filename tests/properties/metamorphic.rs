@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::common::contact_of;
 use crate::common::related::{TIGHT, assert_ends_like, assert_same, difference, end, field, forces, pressures, tight};
-use crate::common::spheres::contact_of;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::laws::Scenario;

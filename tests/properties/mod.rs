@@ -5,5 +5,5 @@ mod laws;
 mod metamorphic;
 #[cfg(feature = "laws")]
 mod metamorphic_time;
-#[cfg(all(feature = "csv", feature = "npy", feature = "vtk"))]
+#[cfg(feature = "npy")]
 mod ranks;

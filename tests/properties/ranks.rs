@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::any_scene::{AnyScene, Course, Stepper};
 use crate::common::chosen_scenes;
-use crate::common::environment::from_environment;
-use crate::common::temporary::Temporary;
+use crate::common::{Temporary, from_environment};
 use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::Threads;
 use viscocontact::prelude::*;

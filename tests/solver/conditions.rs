@@ -1,9 +1,6 @@
 //! Every solution satisfies the contact conditions, and both solvers find the same one.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::noise::uniform;
-use crate::common::spheres::{builder_of, contact_of};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
+use crate::common::{StepLoadedSphere, builder_of, contact_of, elastic, maxwell, uniform};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -231,7 +228,7 @@ proptest! {
             let load = scene.load(step);
             match ours.step(dt, load) {
                 // the load acts on the rim of the face
-                Err(Error::LoadOutsideHull { .. }) => return Ok(()),
+                Err(Error::Step(StepError::LoadOutsideHull { .. })) => return Ok(()),
                 report => {
                     // the fall-back may be asked to settle rounding where next to nothing presses
                     let report = report.unwrap();
@@ -317,7 +314,7 @@ fn pressures_are_never_negative_when_iterations_run_out() {
                         assert!((contact.force() / force - 1.0).abs() < 1e-9, "{max_iterations} {tolerance:e}");
                         solved += 1;
                     }
-                    Err(Error::NotConverged { .. }) => given_up += 1,
+                    Err(Error::Step(StepError::NotConverged { .. })) => given_up += 1,
                     Err(error) => panic!("unexpected {error}"),
                 }
             }

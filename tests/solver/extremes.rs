@@ -1,8 +1,9 @@
 //! Steps, times, moduli, lengths and loads at the ends of their ranges.
 
-use crate::common::bodies::{elastic, maxwell, three_times, zener};
-use crate::common::noise::uniform;
-use crate::common::spheres::{RADIUS, builder_of, builder_on, contact_of, sphere};
+use crate::common::figures;
+use crate::common::{
+    RADIUS, builder_of, builder_on, contact_of, elastic, maxwell, sphere, three_times, uniform, zener,
+};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::contact::Warnings;
@@ -21,7 +22,7 @@ fn held(material: &Material, force: f64, t: f64) -> f64 {
 /// Eight steps of Δ after a jump, Δ/τ from 1e-12 to 1e12, every rule: the table of docs/accuracy.md.
 #[test]
 fn every_length_of_step_errs_by_no_more_than_its_rule() {
-    println!("| Δ/τ | exponential | backward | rectangle (paper) |\n|---|---|---|---|");
+    let mut table = "| Δ/τ | exponential | backward | rectangle (paper) |\n|---|---|---|---|".to_owned();
     for exponent in (-12..=12).step_by(3) {
         let dt = 10f64.powi(exponent);
         let mut row = format!("| 1e{exponent} |");
@@ -51,8 +52,10 @@ fn every_length_of_step_errs_by_no_more_than_its_rule() {
                 _ => {}
             }
         }
-        println!("{row}");
+        table += &format!("\n{row}");
     }
+    println!("{table}");
+    figures::figure("any length of step", &table).unwrap();
 }
 
 /// After a huge step nothing rings: the pressure stays where it is, and of one sign.
@@ -253,7 +256,7 @@ fn contact_grows_from_one_cell_to_all() {
     );
     // and what cannot be represented is said
     let error = contact.step(0.0, Load::force(1e-323)).and_then(|_| contact.step(0.0, Load::force(1e308))).unwrap_err();
-    assert!(matches!(error, Error::Overflow { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::Overflow { .. })), "{error}");
 }
 
 /// Loads and steps at the ends of the range: whatever a step accepts is a number.
@@ -306,7 +309,7 @@ fn moments_beyond_numbers_are_refused() {
         .build()
         .unwrap();
     let error = contact.step(0.0, Load::force(1.0e220)).unwrap_err();
-    assert!(matches!(error, Error::Overflow { what: "the moment of the force", .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::Overflow { what: "the moment of the force", .. })), "{error}");
     contact.step(0.0, Load::force(1.0e215)).unwrap();
     assert_abs_diff_eq!(contact.moment()[0], 0.3e305, epsilon = 0.1 * 0.3e305);
 }

@@ -1,12 +1,9 @@
 //! Limit states: loads on the rim of the hull, pivots that a touch balances, loads and steps at the ends of the numbers.
 //! `LIMIT_SCENES` (120) scenes of each kind.
 
-use crate::common::spheres::builder_of;
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::plan::{Accuracy, Plan};
 use viscocontact::prelude::*;
-
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
 
 fn bodies(draws: &mut Draws) -> Material {
     match draws.below(2) {
@@ -111,7 +108,7 @@ fn loads_on_the_rim_of_the_hull_are_carried() {
             [0, 1].map(|axis| at[axis] + 1e-6 * (at[axis] - middle[axis]) - inwards * (middle[axis] - at[axis]));
         if inwards < 1e-9 {
             let refused = contact.step(0.1, Load::eccentric_force(force, beyond));
-            assert!(matches!(refused, Err(Error::LoadOutsideHull { .. })), "seed {seed}");
+            assert!(matches!(refused, Err(Error::Step(StepError::LoadOutsideHull { .. }))), "seed {seed}");
         }
     }
     println!("{solved} steps, {on_rim} scenes exactly on the rim");

@@ -1,7 +1,6 @@
 //! Loads that tilt, prescribe the approach, let go and come back, on elastic and creeping bodies.
 
-use crate::common::bodies::{E_STAR, elastic};
-use crate::common::spheres::contact_of;
+use crate::common::{E_STAR, contact_of, elastic};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{AxisymmetricContact, Profile, RigidPunch};
 use viscocontact::load::LoadError;
@@ -199,12 +198,12 @@ fn tilt_creeps() {
 fn loads_that_would_topple_are_refused_at_once() {
     let mut contact = punch(64);
     let error = contact.step(0.0, Load::eccentric_force(1.0, [1.1 * RADIUS, 0.0])).unwrap_err();
-    let Error::LoadOutsideHull { body: 0, at, .. } = error else { panic!("{error}") };
+    let Error::Step(StepError::LoadOutsideHull { body: 0, at, .. }) = error else { panic!("{error}") };
     assert_eq!(at, [1.1 * RADIUS, 0.0]);
     // what cannot tilt cannot topple
     contact.step(0.0, Load::Force { normal: 1.0, tilt: [Tilt::Fixed(0.0), Tilt::Free { at: 0.0 }] }).unwrap();
     let hinge = Load::Force { normal: 1.0, tilt: [Tilt::Free { at: 1.1 * RADIUS }, Tilt::Fixed(0.0)] };
-    assert!(matches!(contact.step(0.0, hinge), Err(Error::LoadOutsideHull { .. })));
+    assert!(matches!(contact.step(0.0, hinge), Err(Error::Step(StepError::LoadOutsideHull { .. }))));
     // two feet hold what lies between them
     let feet = FnGeometry::new(|x: f64, _| if x.abs() > 0.5e-3 { 0.0 } else { f64::INFINITY });
     let settings = Settings::default().with_edge(Edge::Allow);

@@ -3,9 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
-use crate::common::ratios::Ratios;
+use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 

@@ -6,9 +6,8 @@ use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::common::bodies::{elastic, zener};
-use crate::common::spheres::builder_on;
 use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
+use crate::common::{builder_on, elastic, zener};
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
 

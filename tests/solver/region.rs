@@ -1,8 +1,7 @@
 //! What is computed is a matter of speed alone: on the cells that contact can reach, or on a quarter of them, the answer is the
 //! same. Random scenes are in `properties::metamorphic`.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{RADIUS, builder_of, builder_on};
+use crate::common::{RADIUS, builder_of, builder_on, elastic, maxwell};
 use viscocontact::prelude::*;
 
 /// The same scene with and without what spares cells.

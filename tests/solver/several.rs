@@ -2,9 +2,7 @@
 //! contact solves. `SEVERAL_SCENES` (30) scenes of six steps, from `SEVERAL_FIRST` (2360) on: of these, the 2378th once left
 //! the fall-back without a gain.
 
-use crate::common::bodies::elastic;
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
+use crate::common::{Draws, elastic, from_environment};
 use viscocontact::prelude::*;
 
 /// Numbers of the stream in which that scene was found.
@@ -74,7 +72,7 @@ fn steps_of_several_bodies_converge() {
                     }
                     assert!(contact.pressure().iter().all(|&p| p >= 0.0), "scene {scene}");
                 }
-                Err(Error::LoadOutsideHull { .. }) => outside += 1,
+                Err(Error::Step(StepError::LoadOutsideHull { .. })) => outside += 1,
                 Err(error) => panic!("scene {scene} after {dt} s under {loads:?}: {error}"),
             }
         }

@@ -3,10 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::common::bodies::{E_STAR, elastic, maxwell, zener};
-use crate::common::environment::from_environment;
-use crate::common::spheres::{contact_of, sphere};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
+use crate::common::{E_STAR, StepLoadedSphere, contact_of, elastic, from_environment, maxwell, sphere, zener};
 use viscocontact::analytic::Hertz;
 use viscocontact::prelude::*;
 

@@ -1,7 +1,6 @@
 //! Indenters that move: two frames that must agree, energy, roughness of either body, and steps that fail.
 
-use crate::common::bodies::elastic;
-use crate::common::spheres::{builder_of, contact_of, sphere_on};
+use crate::common::{builder_of, contact_of, elastic, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
@@ -152,7 +151,7 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     contact.step_along(&travel, 0.01, load).unwrap();
     let mut twin = contact.clone();
     // over the edge, and nowhere
-    assert!(matches!(contact.step_along(&travel, 0.2, load), Err(Error::ContactAtEdge { .. })));
+    assert!(matches!(contact.step_along(&travel, 0.2, load), Err(Error::Step(StepError::ContactAtEdge { .. }))));
     let lost = Travel::new(sphere(), FnPath::new(|_| [f64::NAN, 0.0]));
     assert!(matches!(contact.step_along(&lost, 0.01, load), Err(Error::OutOfRange { field: "position along x1", .. })));
     contact.step(0.01, load).unwrap();
@@ -168,8 +167,11 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     moving.step_over([2, 0], 0.01, load).unwrap();
     let mut twin = moving.clone();
     let error = moving.step_over([2, 0], 0.01, Load::eccentric_force(0.1, [1.0, 0.0])).unwrap_err();
-    assert!(matches!(error, Error::LoadOutsideHull { .. }));
-    assert!(matches!(moving.step_over([2, 0], 0.01, Load::force(30.0)), Err(Error::ContactAtEdge { .. })));
+    assert!(matches!(error, Error::Step(StepError::LoadOutsideHull { .. })));
+    assert!(matches!(
+        moving.step_over([2, 0], 0.01, Load::force(30.0)),
+        Err(Error::Step(StepError::ContactAtEdge { .. }))
+    ));
     moving.step_over([1, 0], 0.01, load).unwrap();
     twin.step_over([1, 0], 0.01, load).unwrap();
     let pairs = moving.pressure().iter().zip(twin.pressure());
@@ -263,7 +265,7 @@ fn motions_without_contact_are_refused() {
                 contact.step(0.0, Load::force(20.0)).unwrap();
             }
             let ended = contact.toward_steady(motion(load)).unwrap().run();
-            assert!(matches!(ended, Err(Error::NoContact { .. })), "{load:?}: {ended:?}");
+            assert!(matches!(ended, Err(Error::Step(StepError::NoContact { .. }))), "{load:?}: {ended:?}");
         }
     }
     let mut fixed = builder(&grid, &cylinder, Frame::Bodies).build().unwrap();

@@ -1,7 +1,7 @@
 //! Rough surfaces on periodic bodies: the work of the solver, and published results.
 
-use crate::common::bodies::{E_STAR, G, elastic};
-use crate::common::spheres::builder_of;
+use crate::common::figures;
+use crate::common::{E_STAR, G, builder_of, elastic};
 use std::sync::Arc;
 
 use crate::common::rough::self_affine;
@@ -52,6 +52,7 @@ fn area_is_proportional_to_small_loads() {
     let mean = kappas.iter().sum::<f64>() / count;
     let spread = (kappas.iter().map(|kappa| (kappa - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
     println!("κ = {mean:.3} ± {spread:.3}");
+    figures::figure("area over load", &format!("{mean:.2} ± {spread:.2}")).unwrap();
     assert!(spread < 0.15, "{spread}");
 }
 
@@ -67,10 +68,16 @@ fn half_full_contact_takes_a_quarter_of_the_other_solvers_work() {
             "{solver:?}: {} convolutions, {} preconditioners",
             report.convolutions, report.preconditioner_applications
         );
-        report.convolutions + report.preconditioner_applications
+        [report.convolutions, report.preconditioner_applications]
     };
     // nothing is padded: a preconditioner costs as much as a convolution
     let (active_set, polonsky_keer) = (work(Solver::ActiveSet), work(Solver::PolonskyKeer));
+    let [half, most] = [active_set, polonsky_keer];
+    let text =
+        format!("{} convolutions and {} preconditioners; Polonsky–Keer {} convolutions", half[0], half[1], most[0]);
+    figures::figure("half of the cells in contact", &text).unwrap();
+    let [active_set, polonsky_keer] =
+        [half, most].map(|[convolutions, preconditioners]| convolutions + preconditioners);
     assert!(active_set <= 60 && 4 * active_set <= polonsky_keer, "{active_set} {polonsky_keer}");
 }
 
@@ -81,6 +88,9 @@ fn nearly_full_contact_converges() {
     let mut contact = pressed(&grid, &shape, elastic(), Settings::default());
     let report = contact.step(0.0, Load::force(force(1.25))).unwrap();
     println!("{} of the cells: {report:?}", share_of_cells(&contact));
+    let text =
+        format!("{} convolutions and {} preconditioners", report.convolutions, report.preconditioner_applications);
+    figures::figure("nearly all cells in contact", &text).unwrap();
     assert!((0.985..0.995).contains(&share_of_cells(&contact)), "{}", share_of_cells(&contact));
     assert!(report.convolutions <= 40 && report.fallback_iterations == 0, "{report:?}");
 }

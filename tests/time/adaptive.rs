@@ -1,8 +1,8 @@
 //! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
 
-use crate::common::bodies::{elastic, maxwell};
+use crate::common::figures;
 use crate::common::histories::{Scene, scenes};
-use crate::common::spheres::{RADIUS, builder_on, contact_of};
+use crate::common::{RADIUS, builder_on, contact_of, elastic, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;
@@ -39,7 +39,7 @@ fn errors_are_what_was_asked_for() {
         let fine = run(&scene, 2e-6, &times);
         let greatest = [1, 2].map(|which| fine.history.iter().map(|state| state[which].abs()).fold(0.0, f64::max));
         let by_approach = scene.name.contains("approach");
-        let mut line = String::new();
+        let (mut line, mut row) = (String::new(), String::new());
         for (tolerance, run) in TOLERANCES.into_iter().zip(&runs) {
             let mut worst = [0.0_f64; 2];
             for state in run.history.iter().filter(|state| state[0] > 0.0) {
@@ -57,6 +57,7 @@ fn errors_are_what_was_asked_for() {
                 run.rejected,
                 run.work
             );
+            row += &format!(" {error:.2} ({}) |", run.history.len() as u64 + run.rejected);
             // the approach of a held force on a Maxwell body is exact whatever the steps: u is linear in C(t)
             if scene.name != "Maxwell, held" {
                 assert!((0.02..2.0).contains(&error), "{} at {tolerance:e}: {error}", scene.name);
@@ -65,6 +66,8 @@ fn errors_are_what_was_asked_for() {
             }
         }
         println!("{}:{line}", scene.name);
+        let name = scene.name.replace("|sin|", "abs(sin)"); // bars part the cells of a table
+        figures::row("adaptive", &format!("| {name} |"), row.trim_start()).unwrap();
     }
 }
 
@@ -162,7 +165,7 @@ fn tolerances_and_impossible_loads_are_refused() {
             Err(error) => break error,
         }
     };
-    assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
 
     // nor where the series of the body resolves longer times only: an end, not a step tried for ever
     let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
@@ -174,12 +177,13 @@ fn tolerances_and_impossible_loads_are_refused() {
             Err(error) => break error,
         }
     };
-    assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
 }
 
 /// Area by p² extrapolated to the edge, against Hertz, wherever the contact lies on the mesh.
 #[test]
 fn areas_are_known_to_a_part_of_a_cell() {
+    let mut rows = Vec::new();
     for (cells, allowed) in [(64, 3e-3), (256, 5e-4)] {
         let mut worst = [0.0_f64; 2];
         for k in 0..12 {
@@ -200,8 +204,14 @@ fn areas_are_known_to_a_part_of_a_cell() {
             }
         }
         println!("{cells}²: {:.1e}, counted cells {:.1e}", worst[0], worst[1]);
+        rows.push(worst.map(|error| format!("{error:.1e}")));
         assert!(worst[0] < allowed, "{cells}: {:e}", worst[0]);
     }
+    let [[coarse, counted], [fine, counted_fine]] = &rows[..] else { unreachable!() };
+    figures::figure("area on 64² cells", coarse).unwrap();
+    let all =
+        format!("{coarse} at 64² cells and {fine} at 256²; that of counted cells is {counted} and {counted_fine}");
+    figures::figure("areas", &all).unwrap();
     // a square punch ends with its cells
     let mut contact = ViscoelasticContact::builder(Grid::square(64, 1.0e-3).unwrap())
         .geometry(&FlatPunch::rectangular([0.5e-3, 0.25e-3]).unwrap())
@@ -238,7 +248,9 @@ fn steps_of_the_last_digit_come_to_an_end() {
             };
             match end {
                 Ok(_) => {}
-                Err(Error::StepTooShort { time, .. }) if (time / at - 1.0).abs() < 1e-9 => stopped += 1,
+                Err(Error::Step(StepError::StepTooShort { time, .. })) if (time / at - 1.0).abs() < 1e-9 => {
+                    stopped += 1
+                }
                 Err(error) => panic!("{jump} at {at} s: {error}"),
             }
         }

@@ -1,6 +1,9 @@
 //! Whether the error estimated for steps of given length is the one they make.
 
-use crate::common::spheres::sphere_on;
+use std::collections::BTreeMap;
+
+use crate::common::figures;
+use crate::common::sphere_on;
 use viscocontact::prelude::*;
 
 /// Approach, or force where the approach is given, at every multiple of `dt` by steps of that over `parts`, and the greatest
@@ -20,6 +23,14 @@ fn run(material: &Material, load: &dyn LoadHistory, dt: f64, parts: u32) -> (Vec
     (answer, run.error_budget().time.expect("steps were taken"))
 }
 
+/// Loads, and their rows in docs/accuracy.md.
+const RATIOS: [(&str, &str); 4] = [
+    ("force held", "force held after a jump (of Maxwell: exact)"),
+    ("force ramp", "force that grows linearly"),
+    ("force sine", "force 1 − cos, whose course in the first step nothing tells"),
+    ("approach ramp", "approach that grows linearly"),
+];
+
 /// Steps of the reference in one step of a run under test.
 const PARTS: u32 = 16;
 
@@ -38,6 +49,8 @@ fn the_error_of_given_steps_is_estimated() {
         ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap())),
     ];
     let mut failures = Vec::new();
+    // of bodies with elastic response, by load and length of the steps
+    let mut ranges = BTreeMap::<(&str, &str), [f64; 2]>::new();
     for (body, material) in &materials {
         let held = |load| Box::new(StepLoad::new(load).unwrap());
         let ramp = |from, to| Box::new(Ramp::new(from, to, 2.0).unwrap());
@@ -69,6 +82,12 @@ fn the_error_of_given_steps_is_estimated() {
                     error / estimate
                 );
                 println!("{line}");
+                let judged = !matches!((*body, *what), ("Kelvin-Voigt", _) | ("Maxwell", "force held"));
+                if judged && let Some(range) = RATIOS.iter().find(|(load, _)| load == what) {
+                    let [least, most] =
+                        ranges.entry((range.1, if dt > 0.3 { "0.5" } else { "0.1" })).or_insert([f64::INFINITY, 0.0]);
+                    (*least, *most) = (least.min(error / estimate), most.max(error / estimate));
+                }
                 // errors of the solver are not those of the steps
                 let high_enough = error < if *tight { 3.0 } else { 5.0 } * estimate + 1e-8;
                 let low_enough = !tight || error > estimate / 3.0 || error < 1e-8;
@@ -79,4 +98,9 @@ fn the_error_of_given_steps_is_estimated() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+    for (_, row) in RATIOS {
+        let [long, short] =
+            ["0.5", "0.1"].map(|dt| ranges[&(row, dt)]).map(|[least, most]| format!("{least:.2} … {most:.2}"));
+        figures::row("errors over estimates", &format!("| {row} |"), &format!("{long} | {short} |")).unwrap();
+    }
 }

@@ -1,7 +1,6 @@
 //! Following a load history: which times are met, and with which load.
 
-use crate::common::bodies::maxwell;
-use crate::common::spheres::sphere_on;
+use crate::common::{maxwell, sphere_on};
 use viscocontact::prelude::*;
 
 fn contact(material: Material) -> ViscoelasticContact {

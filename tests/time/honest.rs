@@ -5,11 +5,8 @@
 //! with that number, `HONEST_STEPS=300000` finds the truth of more scenes, and `HONEST_TRUTHS=/tmp/truths` keeps it in that
 //! file for the next time.
 
-use crate::common::environment::from_environment;
-use crate::common::random_scenes::RandomScene;
-use crate::common::ratios::Ratios;
-use crate::common::truth::Truth;
 use crate::common::watched_runs::{Stopped, Watched, watch};
+use crate::common::{RandomScene, Ratios, Truth, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];

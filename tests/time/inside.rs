@@ -10,14 +10,9 @@ use viscocontact::Error;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-use crate::common::bodies::elastic;
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
 use crate::common::histories::{self, Scene};
-use crate::common::random_scenes::RandomScene;
-use crate::common::ratios::Ratios;
 use crate::common::runs::scenes;
-use crate::common::spheres::builder_on;
+use crate::common::{Draws, RandomScene, Ratios, builder_on, elastic, from_environment};
 
 /// A history that is one until a time, and another from then on.
 #[derive(Debug)]

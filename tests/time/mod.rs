@@ -11,6 +11,7 @@ mod returns;
 mod springs;
 mod states;
 mod states_kept;
+mod states_outside;
 mod temperature;
 mod time_rules;
 mod uncached;

@@ -2,7 +2,7 @@
 //! without elastic response.
 
 use crate::common::protocol::Protocol;
-use crate::common::spheres::{builder_of, builder_on};
+use crate::common::{builder_of, builder_on};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -273,12 +273,12 @@ proptest! {
         };
         let mut twin = contact.clone();
         let error = contact.step(0.0, load).unwrap_err();
-        prop_assert!(matches!(error, Error::NoElasticResponse { .. }), "{error}");
+        prop_assert!(matches!(error, Error::Step(StepError::NoElasticResponse { .. })), "{error}");
         prop_assert!(error.to_string().contains("ramp the load"), "{error}");
         if !pressed {
             let history = StepLoad::new(load).unwrap();
             let error = twin.clone().follow(&history, Stepping::fixed(DT), 1.0).next_step().unwrap_err();
-            prop_assert!(matches!(error, Error::NoElasticResponse { .. }), "{error}");
+            prop_assert!(matches!(error, Error::Step(StepError::NoElasticResponse { .. })), "{error}");
         }
         prop_assert_eq!((contact.pressure(), contact.displacement()), (twin.pressure(), twin.displacement()));
         let load = Load::force(0.4 * FORCE);
@@ -387,8 +387,14 @@ fn lifted_indenters_move_at_once() {
         contact.step(DT, Load::force(0.1)).unwrap();
     }
     let cells = |x: f64| (x / grid.spacing()[0]).round() as isize;
-    assert!(matches!(along.step_along(&travel, 0.0, Load::force(0.1)), Err(Error::NoElasticResponse { .. })));
-    assert!(matches!(over.step_over([cells(-1.0e-3), 0], 0.0, Load::force(0.1)), Err(Error::NoElasticResponse { .. })));
+    assert!(matches!(
+        along.step_along(&travel, 0.0, Load::force(0.1)),
+        Err(Error::Step(StepError::NoElasticResponse { .. }))
+    ));
+    assert!(matches!(
+        over.step_over([cells(-1.0e-3), 0], 0.0, Load::force(0.1)),
+        Err(Error::Step(StepError::NoElasticResponse { .. }))
+    ));
     let before = along.displacement().to_vec();
     along.step_along(&travel, 0.0, lifted).unwrap();
     over.step_over([cells(-1.0e-3), 0], 0.0, lifted).unwrap();

@@ -2,13 +2,9 @@
 //!
 //! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test suite time::protocols_run -- --nocapture`.
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
 use crate::common::random_histories::FromSmallLoad;
-use crate::common::random_scenes::RandomScene;
-use crate::common::ratios::Ratios;
-use crate::common::spheres::builder_on;
 use crate::common::watched_runs::watch;
+use crate::common::{Draws, RandomScene, Ratios, builder_on, from_environment};
 use viscocontact::prelude::*;
 
 /// A run of so many contact problems does not end.

@@ -5,11 +5,8 @@
 //! `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`; `RETURNS_FIRST=17`
 //! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes.
 
-use crate::common::environment::from_environment;
-use crate::common::random_scenes::RandomScene;
-use crate::common::ratios::Ratios;
-use crate::common::truth::Truth;
 use crate::common::watched_runs::watch;
+use crate::common::{RandomScene, Ratios, Truth, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];

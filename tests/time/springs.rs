@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
+use crate::common::{Draws, from_environment};
 use viscocontact::contact::TimeRule;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;

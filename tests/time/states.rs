@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
+use crate::common::{Draws, from_environment};
 use approx::assert_relative_eq;
 use viscocontact::contact::{Edge, TimeRule};
 use viscocontact::geometry::Sum;
@@ -53,9 +52,9 @@ fn levels_under_a_force_do_not_depend_on_the_shape() {
     };
     assert_relative_eq!(held(&mut contact, 1.0, 1.0), 1.6635977, max_relative = 1e-6);
     contact.step(0.0, Load::force(0.4 * unit)).unwrap();
-    assert_relative_eq!(contact.level() / unit, 0.7605870, max_relative = 1e-5);
+    assert_relative_eq!(contact.level() / unit, 0.7605870, max_relative = 1e-6);
     for (time, level) in [(1.25, 0.8522827), (2.0, 1.0542604), (5.0, 1.3876905), (20.0, 1.5953345)] {
-        assert_relative_eq!(held(&mut contact, time, 0.4), level, max_relative = 1e-5);
+        assert_relative_eq!(held(&mut contact, time, 0.4), level, max_relative = 1e-6);
     }
 }
 
@@ -231,7 +230,7 @@ impl Scene {
 /// Pressures, motions and cells of both, step by step, in histories of force or approach with jumps, holds, separation and renewed contact.
 #[test]
 fn random_contacts_are_superpositions_of_their_elastic_states() {
-    let (mut compared, mut refused, mut apart, mut interpolated) = (0, 0, 0, 0.0);
+    let (mut compared, mut refused, mut apart, mut interpolated, mut worst) = (0, 0, 0, 0.0, [0.0; 2]);
     for number in 0..from_environment("STATES_SCENES", 28) {
         let scene = random_scene(number);
         let mut draws = Draws::new(number);
@@ -262,6 +261,11 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
         let last = states.states().last().unwrap();
         let (by_force, by_spring) = (draws.chance(0.5), draws.chance(0.5));
         let softer = draws.power_of_ten(-2.0, 2.0);
+        // under a given force the level is exact without it
+        let exact = !by_force || draws.chance(0.3);
+        if exact {
+            contact = contact.with_exact_states().unwrap();
+        }
         for step in 0..14 {
             let dt = if step % 6 == 0 { 0.0 } else { draws.power_of_ten(-2.0, 1.0) };
             let share = if draws.chance(0.12) { 0.0 } else { draws.between(0.05, 0.95) };
@@ -286,13 +290,17 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
                 apart += 1;
                 continue;
             }
-            // interpolated between states under a given approach; a part of the depth is much of a small contact
+            // a part of the depth is much of a small contact
             let small = 0.03 * last.level * equilibrium / full.force();
-            let tolerance = if by_force { 1e-7 } else { 3e-3 * small.max(1.0) };
-            assert_relative_eq!(full.force(), contact.force(), max_relative = tolerance);
+            let tolerance = if by_force { 1e-7 } else { 1e-7 * small.max(1.0) };
+            let off = (full.force() - contact.force()).abs() / full.force();
+            worst[0] = f64::max(worst[0], off / tolerance);
+            assert!(off < tolerance, "{} step {step}: force off by {off:.1e}", scene.name);
             // a state between two of the sweep errs by some 1e-5 of the greatest depth
+            let allowed = if exact { 1e-8 } else { 5e-5 };
             let off = (full.approach() - contact.approach()).abs() / scene.depth;
-            assert!(off < 5e-5, "{} step {step}: approach off by {off:.1e}, {} groups", scene.name, report.groups);
+            worst[1] = f64::max(worst[1], off / allowed);
+            assert!(off < allowed, "{} step {step}: approach off by {off:.1e}, {} groups", scene.name, report.groups);
             let fields = contact.fields().unwrap();
             let greatest = |a: &[f64], b: &[f64]| {
                 let both = a.iter().zip(b).filter(|(a, b)| a.is_finite() || b.is_finite());
@@ -302,7 +310,7 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
             assert!(differ < 3.0 * tolerance * most, "{} step {step}: {:.1e}", scene.name, differ / most);
             full.gap_into(&mut gap).unwrap();
             let differ = greatest(&fields.gap, &gap).max(greatest(&fields.displacement, full.displacement()));
-            assert!(differ < 5e-5 * scene.depth, "{} step {step}: {:.1e}", scene.name, differ / scene.depth);
+            assert!(differ < allowed * scene.depth, "{} step {step}: {:.1e}", scene.name, differ / scene.depth);
             // kept pressures are linear between states
             let kept = contact.pressure().unwrap();
             let [linear, all] = [
@@ -312,14 +320,14 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
             interpolated = f64::max(interpolated, linear / all);
             let pairs = fields.pressure.iter().zip(full.pressure());
             let cells = pairs.filter(|(a, b)| (**a > 1e-9 * most) != (**b > 1e-9 * most)).count();
-            // cells join in eights on an even shape
-            assert!(cells == 0 || !by_force && cells <= 8, "{} step {step}: {cells} cells differ", scene.name);
+            assert!(cells == 0, "{} step {step}: {cells} cells differ", scene.name);
             compared += 1;
         }
     }
     assert!(interpolated < 0.05, "{interpolated}");
     println!(
-        "kept pressures differ from exact ones by {interpolated:.1e}; {compared} states compared, {apart} apart, {refused} scenes refused"
+        "kept pressures differ from exact ones by {interpolated:.1e}; {compared} states compared, {apart} apart, {refused} scenes refused; worst \
+         force and approach over what is allowed {worst:.1?}"
     );
     assert!(compared > 4 * refused && apart > 0, "{compared} {refused} {apart}");
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::temporary::Temporary;
+use crate::common::Temporary;
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
 

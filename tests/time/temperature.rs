@@ -6,10 +6,10 @@ use viscocontact::observe::Stress;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-use crate::common::draws::Draws;
+use crate::common::figures;
 use crate::common::random_bodies::random_body;
 use crate::common::refused::field;
-use crate::common::spheres::builder_on;
+use crate::common::{Draws, builder_on};
 
 const REFERENCE: f64 = 300.0;
 
@@ -196,13 +196,15 @@ fn adaptive_steps_end_on_corners_and_keep_their_error() {
         (answers, ends.len())
     };
     let (truth, _) = run(1e-8);
-    for tolerance in [1e-3, 1e-4, 1e-5] {
+    let ratios = [1e-3, 1e-4, 1e-5].map(|tolerance| {
         let (answers, steps) = run(tolerance);
         assert_eq!(answers.len(), truth.len());
         let error = answers.iter().zip(&truth).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         println!("{tolerance:e}: error {error:.1e} in {steps} steps");
         assert!(error < 2.0 * tolerance, "{tolerance:e}: error {error:.1e} in {steps} steps");
-    }
+        format!("{:.2}", error / tolerance)
+    });
+    figures::figure("errors at changing temperatures", &ratios.join(", ")).unwrap();
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! How each time rule converges, and what it survives.
 
-use crate::common::bodies::{maxwell, zener};
-use crate::common::spheres::{builder_of, contact_of, sphere_on};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
+use crate::common::{StepLoadedSphere, builder_of, contact_of, maxwell, sphere_on, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 

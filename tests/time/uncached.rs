@@ -1,10 +1,8 @@
 //! The cost that the source paper states: its history of pressures, with one convolution for each past step in every step.
 
-use crate::common::spheres::builder_on;
+use crate::common::{StepLoadedSphere, builder_on, maxwell, three_times};
 use std::sync::Arc;
 
-use crate::common::bodies::{maxwell, three_times};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
 
@@ -100,14 +98,14 @@ fn uncached_sums_are_refused_where_cached_ones_are() {
     let build = |material, settings: Settings| sphere(material, settings).build();
     let uncached = Settings::paper_literal().with_tolerance(TIGHT);
     let voigt = Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
-    assert!(matches!(build(voigt, uncached), Err(Error::NoElasticResponse { .. })));
+    assert!(matches!(build(voigt, uncached), Err(Error::Step(StepError::NoElasticResponse { .. }))));
     let moving = uncached.with_frame(Frame::Indenter);
     assert!(matches!(build(maxwell(), moving), Err(Error::WrongFrame { .. })));
     // a step longer than the relaxation time is warned of, and the third increment does not fit
     let mut contact = build(maxwell(), uncached.with_history_limit(2 * 24 * 20 * 8)).unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
     assert!(contact.step(1.5, Load::force(0.1)).unwrap().warnings.contains(Warnings::RINGS));
-    assert!(matches!(contact.step(0.1, Load::force(0.1)), Err(Error::HistoryFull { steps: 2, .. })));
+    assert!(matches!(contact.step(0.1, Load::force(0.1)), Err(Error::Step(StepError::HistoryFull { steps: 2, .. }))));
     // a field more than the cached sum
     let memory = |settings: Settings| sphere(maxwell(), settings.with_tolerance(TIGHT)).memory().unwrap();
     let [cached, uncached] = [Settings::paper(), Settings::paper_literal()].map(memory);

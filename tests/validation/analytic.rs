@@ -1,7 +1,6 @@
 //! The reference solutions against each other and against textbook forms.
 
-use crate::common::bodies::{maxwell, zener};
-use crate::common::spheres::RADIUS;
+use crate::common::{RADIUS, maxwell, zener};
 use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 

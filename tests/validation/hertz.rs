@@ -1,6 +1,6 @@
 //! Elastic contacts against their closed forms, and how fast the mesh converges to them.
 
-use crate::common::bodies::{E_STAR, elastic};
+use crate::common::{E_STAR, elastic};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile, RigidPunch};
 use viscocontact::prelude::*;

@@ -8,10 +8,11 @@
 //! f = 2E*δ for a flat punch and 2E*(δ − x²/R) for a paraboloid, whose pressure ends smoothly where φ(a) = 0. The
 //! force is ∫₀ᵃ φ ds. L is the textbook's fraction here, nothing is shared with the crate.
 
-use crate::common::spheres::builder_of;
+use crate::common::builder_of;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::common::figures;
 use crate::common::gauss;
 use crate::common::rolling::eliminate;
 use approx::assert_abs_diff_eq;
@@ -244,6 +245,8 @@ fn layers_take_at_most_half_as_many_convolutions_again_as_a_half_space() {
         let loads = (0..12).map(|k| Load::approach(a * a / radius * (0.25 + 0.01 * f64::from(k))));
         loads.map(|load| contact.step(0.05, load).unwrap().convolution_equivalents()).sum::<f64>()
     };
+    // thick and medium layers; thin layers on rigid and stiff bases; thin layers on soft bases
+    let mut ranges = [[f64::INFINITY, 0.0]; 3];
     for wavy in [false, true] {
         let half_space = work(|grid, _| InfluenceKernel::half_space(grid), 0.5, 1.0, wavy);
         println!("half-space {half_space}");
@@ -264,9 +267,15 @@ fn layers_take_at_most_half_as_many_convolutions_again_as_a_half_space() {
                 let found = work(make, nu, a / ratio, wavy) / half_space;
                 println!("{name}, ν = {nu}, a/h = {ratio}, wavy {wavy}: {found:.2}");
                 assert!(found < 1.5, "{name}, ν = {nu}, a/h = {ratio}, wavy {wavy}: {found:.2}");
+                let [least, most] = &mut ranges[if ratio <= 3.0 { 0 } else { 1 + usize::from(name == "soft base") }];
+                (*least, *most) = (least.min(found), most.max(found));
             }
         }
     }
+    let [thick, thin, soft] = ranges.map(|[least, most]| format!("{least:.2} to {most:.2}"));
+    figures::figure("work on layers", &thick).unwrap();
+    figures::figure("work on thin layers", &thin).unwrap();
+    figures::figure("work on thin layers on soft bases", &soft).unwrap();
 }
 
 /// A wave pressed flat onto a creeping layer, the grid being its period: ω = A + C(t) K̄ p̄, and the pressure swings by

@@ -7,9 +7,7 @@ use viscocontact::geometry::Sum;
 use viscocontact::observe::MeshError;
 use viscocontact::prelude::*;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
-use crate::common::ratios::Ratios;
+use crate::common::{Draws, Ratios, from_environment};
 
 const LENGTH: f64 = 4.0e-3;
 const RADIUS: f64 = 8.0e-3;
@@ -185,8 +183,12 @@ impl Shape {
                 Ok(both) if both.iter().all(|(values, _)| values.iter().all(|&value| value > 0.0)) => {
                     return Some(both);
                 }
-                Err(Error::ContactAtEdge { .. } | Error::BeyondFullContact { .. }) => depth *= 0.6,
-                Ok(_) | Err(Error::NothingToTouch { .. } | Error::NotConverged { .. }) => depth *= 1.37,
+                Err(
+                    Error::Step(StepError::ContactAtEdge { .. }) | Error::Step(StepError::BeyondFullContact { .. }),
+                ) => depth *= 0.6,
+                Ok(_) | Err(Error::NothingToTouch { .. } | Error::Step(StepError::NotConverged { .. })) => {
+                    depth *= 1.37
+                }
                 Err(error) => panic!("{}: {error}", self.name),
             }
         }

@@ -1,7 +1,7 @@
 //! The loss of a cycle of an oscillating force on PMMA, against the complex compliance and the one-dimensional foundation.
 
+use crate::common::contact_of;
 use crate::common::oscillation::{Cycle, Oscillation};
-use crate::common::spheres::contact_of;
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::prelude::*;

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::bodies::{elastic, maxwell};
+use crate::common::figures;
 use crate::common::histories::{four_terms, triangle};
-use crate::common::spheres::{RADIUS, contact_of};
+use crate::common::{RADIUS, contact_of, elastic, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
@@ -66,6 +66,12 @@ fn check(name: &str, accuracy: Accuracy, outcome: &Outcome) {
     println!(
         "{name}, {plan}: approach {approach:.1e}, central pressure {pressure:.1e}; cells × convolutions {work:.1e}"
     );
+    if name != "planned" {
+        let [cells, _] = plan.grid.cells();
+        let pressure = if *pressure > 0.0 { format!("{pressure:.1e}") } else { "–".to_owned() };
+        let rest = format!("{cells}² | {} | {approach:.1e} | {pressure} |", plan.steps);
+        figures::row("presets", &format!("| {name} | {:e} |", accuracy.target()), &rest).unwrap();
+    }
     assert!(*approach <= accuracy.target(), "{name} {accuracy:?}: approach {approach:e}");
     assert!(*pressure <= accuracy.target(), "{name} {accuracy:?}: pressure {pressure:e}");
 }
@@ -107,11 +113,18 @@ fn held_spheres_are_as_accurate_as_planned() {
     let four = Material::incompressible(four_terms());
     for (name, material, until) in [("Maxwell", maxwell, 2.0), ("Zener", zener, 5.0), ("four times", four, 20.0)] {
         let exact = GrowingSphere::step(RADIUS, &material, 1.0).unwrap();
+        let mut plans = Vec::new();
         for accuracy in PRESETS {
             let outcome = deliver(&sphere, &material, &load, until, accuracy, |t, r| {
                 (exact.approach(t), Some(exact.pressure(r, t)))
             });
             check(name, accuracy, &outcome);
+            plans.push((outcome.plan.grid.cells()[0], outcome.plan.steps));
+        }
+        if name == "Maxwell" {
+            let [coarse, standard, fine] = [0, 1, 2].map(|k| format!("{}² cells and {} steps", plans[k].0, plans[k].1));
+            figures::figure("plan of the README", &standard).unwrap();
+            figures::figure("plans of a sphere", &format!("{coarse}, {standard}, {fine}")).unwrap();
         }
     }
 }
@@ -134,6 +147,7 @@ fn a_planned_run_is_a_thousand_times_less_work_than_the_papers() {
     let work: f64 = (0..15).map(|_| contact.step(0.02, Load::force(1.0)).unwrap().convolution_equivalents()).sum();
     let ratio = work / 15.0 * 100.0 * (cells * cells) as f64 / outcome.work;
     println!("paper / planned: {ratio:.0}");
+    figures::figure("paper over plan", &format!("{:.0}00", ratio / 100.0)).unwrap();
     assert!(ratio >= 1000.0, "{ratio}");
     // the paper's rule errs by 7.7e-3 at 100 steps (step_loaded_sphere)
     assert!(outcome.pressure < 7.7e-3);

@@ -8,9 +8,7 @@ use std::time::Instant;
 use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
 use viscocontact::prelude::*;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
-use crate::common::spheres::{RADIUS, builder_of};
+use crate::common::{Draws, RADIUS, builder_of, from_environment};
 
 const SLOPE: f64 = 0.05;
 const PUNCH: f64 = 1.0e-3;

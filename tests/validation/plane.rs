@@ -1,7 +1,6 @@
 //! Contacts in plane strain against Westergaard's and Hertz's closed forms.
 
-use crate::common::bodies::{E_STAR, elastic};
-use crate::common::spheres::builder_of;
+use crate::common::{E_STAR, builder_of, elastic};
 use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -61,12 +60,12 @@ fn a_wavy_surface_in_full_contact_is_westergaards() {
     assert_abs_diff_eq!(contact.approach() / 1e-3, 1.0, epsilon = 1e-9);
     assert_eq!(contact.contact_area(), 1.0);
     let error = contact.step(0.0, Load::approach(1.1e-3)).unwrap_err();
-    let Error::BeyondFullContact { greatest, .. } = error else { panic!("{error}") };
+    let Error::Step(StepError::BeyondFullContact { greatest, .. }) = error else { panic!("{error}") };
     assert_abs_diff_eq!(greatest / 1e-3, 1.0, epsilon = 1e-9);
     contact.step(0.0, Load::approach(0.5e-3)).unwrap();
     assert!(contact.contact_cells() < 64);
     let error = contact.step(0.0, Load::eccentric_force(1.0, [0.1, 0.0])).unwrap_err();
-    assert!(matches!(error, Error::TiltOfPeriodic { axis: Axis::X1, .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::TiltOfPeriodic { axis: Axis::X1, .. })), "{error}");
 }
 
 /// Hertz's line contact: a² = 4 P R/(π E*), p0 = 2P/(πa), P the force on a unit of length; the approach to a depth d is
@@ -124,7 +123,7 @@ fn flat_on_flat_is_solved_and_let_go() {
         .build()
         .unwrap();
     let error = two.step(0.0, &[Load::approach(1.0); 2]).unwrap_err();
-    assert!(matches!(error, Error::BeyondFullContact { .. }), "{error}");
+    assert!(matches!(error, Error::Step(StepError::BeyondFullContact { .. })), "{error}");
 }
 
 /// The estimate of the mesh's error falls with the mesh, and is zero where there is no rim.

@@ -3,6 +3,7 @@
 use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
+use crate::common::figures;
 use crate::common::rolling::{RollingCylinder, scaled_e1, scaled_ei};
 use viscocontact::prelude::*;
 
@@ -65,6 +66,7 @@ pub(super) fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Roll
 /// Five speeds over four decades, forth or back: peak pressure, width, both ends of contact, friction.
 #[test]
 fn rolling_ends_in_the_steady_state_of_the_reference() {
+    let (mut worst_peak, mut worst_width, mut frictions) = (0.0_f64, 0.0_f64, Vec::new());
     for (speed, direction) in [(0.01, 1.0), (0.1, -1.0), (1.0, 1.0), (10.0, -1.0), (100.0, 1.0)] {
         let scene = scene(speed);
         let (glassy, relaxed) = (scene.hertz(scene.glassy).0, scene.hertz(scene.glassy + scene.delayed).0);
@@ -77,17 +79,26 @@ fn rolling_ends_in_the_steady_state_of_the_reference() {
         assert!(peak.abs() < 1e-3, "{speed}: {peak}");
         assert!(width.abs() < 0.8, "{speed}: {width}");
         assert!(friction.abs() < 0.012, "{speed}: {friction}");
+        (worst_peak, worst_width) = (worst_peak.max(peak.abs()), worst_width.max(width.abs()));
+        frictions.push(friction.abs());
         let grid = rolled.contact.grid();
         let touched = (0..grid.len()).filter(|&i| rolled.contact.pressure()[i] > 0.0);
         let ends = touched.map(|i| direction * (grid.center(i, 0)[0] - rolled.at));
         let found = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
         assert!((found[0] - behind).abs() < 1.5 * side && (found[1] - ahead).abs() < 1.5 * side, "{speed}: {found:?}");
     }
+    let others = frictions[1..].iter().fold(0.0_f64, |most, error| most.max(*error));
+    let text = format!(
+        "maximum pressure {worst_peak:.1e}, width {worst_width:.2} cells, friction {:.1e} at the slowest speed, {others:.1e} at the          others",
+        frictions[0]
+    );
+    figures::figure("errors of rolling", &text).unwrap();
 }
 
 /// So slow that the body has time to relax, and so fast that it has none: Hertz, twice.
 #[test]
 fn very_slow_and_very_fast_rolling_is_hertzs() {
+    let mut errors = Vec::new();
     for (speed, compliance) in [(1e-4, 0.25 / G + 0.25 / G_K), (1e6, 0.25 / G)] {
         let scene = scene(speed);
         let (half_width, peak) = scene.hertz(compliance);
@@ -96,7 +107,11 @@ fn very_slow_and_very_fast_rolling_is_hertzs() {
         println!("v τ/a = {speed}: peak {peak:.1e}, width {width:.1e}, friction {:.1e}", rolled.friction());
         assert!(peak.abs() < 3e-3 && width.abs() < 6e-3, "{speed}: {peak} {width}");
         assert_abs_diff_eq!(rolled.friction(), 0.0, epsilon = 1e-3 * half_width / scene.radius);
+        errors.push([peak, width].map(|error| format!("{:.1e}", error.abs())));
     }
+    let [[slow, slow_width], [fast, fast_width]] = &errors[..] else { unreachable!() };
+    let text = format!("maximum pressure {slow} and {fast}, width {slow_width} and {fast_width}");
+    figures::figure("errors of very slow and very fast rolling", &text).unwrap();
 }
 
 /// The limits of the friction of the reference itself. Slow: v m₁/(R C∞), m₁ = C₁ λ, and a term of the order of v λ/a more,

@@ -2,8 +2,8 @@
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 
-use crate::common::bodies::{three_times, zener};
 use crate::common::indenters::{ClosedFaces, Indenters};
+use crate::common::{three_times, zener};
 use viscocontact::prelude::*;
 
 const SCENE: Indenters = Indenters { punch: 0.3e-3, sphere: 10.0e-3, distance: 1.0e-3, cells: 48 };

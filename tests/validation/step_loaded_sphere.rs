@@ -1,6 +1,8 @@
 //! The paper's scene against its Table 1: the figures that the README claims.
 
-use crate::common::step_loaded_sphere::{StepLoadedSphere, errors};
+use crate::common::StepLoadedSphere;
+use crate::common::figures;
+use crate::common::step_loaded_sphere::errors;
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 
@@ -19,6 +21,7 @@ fn assert_figures(scene: &StepLoadedSphere) -> f64 {
 #[test]
 fn maxwell_on_256_cells_in_100_steps_is_table_1() {
     let work = assert_figures(&StepLoadedSphere::maxwell());
+    figures::figure("convolutions per step", &format!("{work:.1}")).unwrap();
     assert!(work < 6.0, "{work} convolution equivalents per step");
 }
 

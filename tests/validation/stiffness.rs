@@ -1,7 +1,6 @@
 //! Contact stiffness against closed forms, and against the slope of force over approach.
 
-use crate::common::bodies::{G, elastic};
-use crate::common::spheres::{builder_of, sphere_on};
+use crate::common::{G, builder_of, elastic, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! The stress below the surface, of whole contacts: against Hertz, against the published places where bodies yield, and against
 //! the closed forms of a body whose Poisson's ratio changes.
 
-use crate::common::spheres::{builder_of, contact_of};
+use crate::common::{builder_of, contact_of};
 use std::sync::Arc;
 
 use super::rolling::{FINE, roll, scene};

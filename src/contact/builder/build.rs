@@ -2,22 +2,19 @@
 
 use std::sync::Arc;
 
-use crate::contact::builder::memory::{Footprint, Memory, symmetry_of};
-use crate::contact::builder::{Builder, LocalGap};
+use crate::contact::builder::LocalGap;
+use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
-use crate::contact::computation::Computation;
 use crate::contact::distributed::gap::SharedGap;
-use crate::contact::indenter::Indenter;
-use crate::contact::scene::Scene;
-use crate::contact::settings::{Frame, Settings, Solver, TimeRule};
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
-use crate::error::{Error, KernelError, RanksError, Result, count_within};
+use crate::contact::{
+    Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
+    ViscoelasticContact,
+};
+use crate::error::{Error, KernelError, RanksError, Result, StepError, count_within};
 use crate::geometry::Gap;
 use crate::hereditary::{History, Weighting};
-use crate::kernel::{InfluenceKernel, Layer};
+use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
 
@@ -236,7 +233,7 @@ impl Parts {
 /// Whether only a part of the grid is computed: on half-spaces only, since the displacement outside a window is bounded for
 /// these alone.
 pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
-    settings.window && history.has_far_field() && kernel.is_half_space()
+    settings.window && history.has_far_field() && kernel.half_space_below() == Some(HalfSpace::LoadedOnGrid)
 }
 
 /// The history of bodies of `material` by the time rule of the settings, on no cells yet.
@@ -251,7 +248,9 @@ fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> 
             })
         }
         _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
-        TimeRule::Rectangle if glassy == 0.0 => Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" }),
+        TimeRule::Rectangle if glassy == 0.0 => {
+            Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what: "the rectangle rule" }))
+        }
         TimeRule::Rectangle if settings.repeats_past => Ok(History::direct_sum(Weighting::EndUncached)),
         TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
         TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),

@@ -4,12 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::indenter::{Indenter, even_axes};
-use crate::contact::settings::{Settings, Solver};
-use crate::contact::state::State;
-use crate::contact::step::request::Trial;
+use crate::contact::indenter::even_axes;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
-use crate::contact::window::region::Region;
+use crate::contact::{Indenter, Region, Settings, Solver, State, Trial};
 use crate::error::{Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary::History;
@@ -73,19 +70,12 @@ impl Memory {
 /// The memory in MB, in total and by part.
 impl fmt::Display for Memory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mb = |bytes: u64| bytes as f64 * 1e-6;
         let Memory { computed_cells, grid, state, history, solver, kernel, each_step } = *self;
-        write!(
-            f,
-            "{:.1} MB with {computed_cells} cells computed (gap and pressure on the grid {:.1}, state {:.1}, history {:.1}, \
-             solver {:.1}, kernel {:.1})",
-            mb(self.total()),
-            mb(grid),
-            mb(state),
-            mb(history),
-            mb(solver),
-            mb(kernel)
-        )?;
+        let mb = |bytes: u64| bytes as f64 * 1e-6;
+        let [total, grid, state, history, solver, kernel] =
+            [self.total(), grid, state, history, solver, kernel].map(mb);
+        write!(f, "{total:.1} MB with {computed_cells} cells computed (gap and pressure on the grid {grid:.1}, ")?;
+        write!(f, "state {state:.1}, history {history:.1}, solver {solver:.1}, kernel {kernel:.1})")?;
         if each_step > 0 { write!(f, ", {:.1} MB more with each step", mb(each_step)) } else { Ok(()) }
     }
 }

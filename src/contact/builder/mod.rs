@@ -9,8 +9,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::builder::fit_range::Times;
-use crate::contact::settings::Settings;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;
@@ -89,7 +88,7 @@ impl Builder {
     /// both after the load first acts. Rheologies without an exact exponential series
     /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) cannot be built without it: their series is fitted over these
     /// times to within [`Settings::series_tolerance`], and a step that ends later fails with
-    /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial). All others ignore it.
+    /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial). All others ignore it.
     ///
     /// The creep up to the shortest time counts as immediate, so that bodies without elastic response can start with a jump
     /// of the load.
@@ -134,7 +133,7 @@ impl Builder {
     }
 
     /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
-    /// temperature of the law. The times of [`Builder::times`] and [`Error::BeyondMaterial`](crate::Error::BeyondMaterial) are
+    /// temperature of the law. The times of [`Builder::times`] and [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial) are
     /// reduced times; [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
     ///
     /// A step fails where the temperature is outside the range of the law.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::contact::run::follow::Run;
+use crate::contact::Run;
 use crate::contact::run::progress::Autosave;
 use crate::error::Result;
 

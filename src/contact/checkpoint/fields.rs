@@ -4,9 +4,8 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use super::format::{Input, Output};
-use crate::contact::state::State;
-use crate::contact::window::region::Region;
+use super::{Input, Output};
+use crate::contact::{Region, State};
 use crate::error::CheckpointError;
 use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;

@@ -11,11 +11,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::contact::computation::Computation;
-use crate::contact::indenter::Indenter;
-use crate::contact::run::progress::Progress;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Computation, Indenter, Progress, State, ViscoelasticContact};
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;
@@ -65,7 +61,7 @@ impl ViscoelasticContact {
     /// the file of one process.
     ///
     /// # Errors
-    /// If the file cannot be written, or there is something other than a file at `path` ([`Error::NotAFile`]).
+    /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.save_with(path.as_ref(), None)
     }

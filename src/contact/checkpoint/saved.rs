@@ -6,11 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::scene_fingerprint::Fingerprint;
 use crate::contact::builder::build::windowed;
-use crate::contact::run::progress::Progress;
-use crate::contact::scene::Scene;
-use crate::contact::state::{Clock, Equilibrium, State};
-use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
+use crate::contact::{Clock, Equilibrium, Progress, Region, Scene, State, ViscoelasticContact};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
@@ -29,10 +25,12 @@ pub(super) struct Saved<'a> {
 impl<'a> Saved<'a> {
     pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
         let (state, grid) = (&contact.computation.state, &contact.scene.grid);
+        let folded = state.region.folded();
+        let all = if state.region.is_shared() { Region::whole(grid, folded) } else { state.region.clone() };
         Saved {
             scene: Fingerprint::of(&contact.scene),
-            state: state.map(&state.region.of_all_ranks(), &mut |_| Vec::new()),
-            gap_folded: state.indenter.keeps_folded(state.region.folded(), grid),
+            state: state.map(&all, &mut |_| Vec::new()),
+            gap_folded: state.indenter.keeps_folded(folded, grid),
             progress: progress.map(Cow::Borrowed),
         }
     }
@@ -55,7 +53,7 @@ impl<'a> Saved<'a> {
 
     /// Rejects what a contact cannot go on from.
     pub(super) fn check(&self, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
-        self.scene.require(&Fingerprint::of(&contact.scene))?;
+        self.scene.require(&contact.scene)?;
         check(&self.state, contact)?;
         let (cells, region) = (contact.scene.grid.cells(), &self.state.region);
         if (0..2).any(|axis| self.gap_folded[axis] && !cells[axis].is_multiple_of(2)) {

@@ -6,9 +6,7 @@ use std::sync::OnceLock;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::scene::Scene;
-use crate::contact::settings::Settings;
-use crate::contact::window::region::Region;
+use crate::contact::{Region, Scene, Settings};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::rheology::Material;
@@ -47,7 +45,7 @@ impl Built {
     /// Of a gap on the whole grid, or on a region of local rows: a call of all ranks.
     pub(crate) fn new(gap: &Gap, region: &Region) -> Built {
         let (mut known, mut open, mut touchable) = ([0.0; MOMENTS], [0.0; MOMENTS], 0);
-        let [_, n2] = region.whole_cells();
+        let [_, n2] = region.whole.cells();
         for (k, &h) in gap.above.iter().enumerate() {
             for [i, j] in region.images_of(k) {
                 let [own, infinite] = if h.is_finite() { [h, 0.0] } else { [0.0, 1.0] };
@@ -139,53 +137,41 @@ impl Mark {
     }
 }
 
-/// What is compared.
-const PROPERTIES: [&str; 13] = [
-    "grid",
-    "number of rigid bodies",
-    "kernel",
-    "Settings::time_rule",
-    "Settings::frame",
-    "Settings::symmetry",
-    "Settings::window",
-    "Settings::series_tolerance",
-    "temperature",
-    "influence",
-    "contact compliance",
-    "geometry",
-    "assignment of cells to rigid bodies",
-];
-
 /// A scene, as far as it must not change. Solver, tolerance and limits may.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Fingerprint([Mark; PROPERTIES.len()]);
+pub(super) struct Fingerprint([Mark; 13]);
+
+/// What is compared, by name.
+fn marks(scene: &Scene) -> [(&'static str, Mark); 13] {
+    let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.settings;
+    let ([n1, n2], [d1, d2]) = (scene.grid.cells(), scene.grid.spacing());
+    [
+        ("grid", Mark::Text(format!("{n1} × {n2} cells of {d1:e} m × {d2:e} m"))),
+        ("number of rigid bodies", Mark::Text(scene.bodies.to_string())),
+        ("kernel", Mark::Text(scene.kernel.to_string())),
+        ("Settings::time_rule", Mark::Text(format!("{time_rule:?}"))),
+        ("Settings::frame", Mark::Text(format!("{frame:?}"))),
+        ("Settings::symmetry", Mark::Text(symmetry.to_string())),
+        ("Settings::window", Mark::Text(window.to_string())),
+        ("Settings::series_tolerance", Mark::Text(format!("{series_tolerance:e}"))),
+        ("temperature", Mark::Text(format!("{:?}", scene.temperature))),
+        ("influence", Mark::Numbers(scene.kernel.mark())),
+        ("contact compliance", scene.built.creep(&scene.material).clone()),
+        ("geometry", Mark::Numbers(scene.built.shape.clone())),
+        ("assignment of cells to rigid bodies", Mark::Text(scene.built.owners.clone())),
+    ]
+}
 
 impl Fingerprint {
     pub(super) fn of(scene: &Scene) -> Fingerprint {
-        let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.settings;
-        let ([n1, n2], [d1, d2]) = (scene.grid.cells(), scene.grid.spacing());
-        Fingerprint([
-            Mark::Text(format!("{n1} × {n2} cells of {d1:e} m × {d2:e} m")),
-            Mark::Text(scene.bodies.to_string()),
-            Mark::Text(scene.kernel.to_string()),
-            Mark::Text(format!("{time_rule:?}")),
-            Mark::Text(format!("{frame:?}")),
-            Mark::Text(symmetry.to_string()),
-            Mark::Text(window.to_string()),
-            Mark::Text(format!("{series_tolerance:e}")),
-            Mark::Text(format!("{:?}", scene.temperature)),
-            Mark::Numbers(scene.kernel.mark()),
-            scene.built.creep(&scene.material).clone(),
-            Mark::Numbers(scene.built.shape.clone()),
-            Mark::Text(scene.built.owners.clone()),
-        ])
+        Fingerprint(marks(scene).map(|(_, mark)| mark))
     }
 
     /// Rejects another scene, and reports the first difference.
-    pub(super) fn require(&self, built: &Fingerprint) -> Result<(), CheckpointError> {
-        for (what, (saved, built)) in PROPERTIES.into_iter().zip(self.0.iter().zip(&built.0)) {
-            if let Some(entry) = saved.difference(built) {
-                let [saved, built] = [saved, built].map(|mark| mark.entry(entry));
+    pub(super) fn require(&self, scene: &Scene) -> Result<(), CheckpointError> {
+        for (saved, (what, built)) in self.0.iter().zip(marks(scene)) {
+            if let Some(entry) = saved.difference(&built) {
+                let [saved, built] = [saved, &built].map(|mark| mark.entry(entry));
                 return Err(CheckpointError::OtherScene { what, saved, built });
             }
         }

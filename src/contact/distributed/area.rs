@@ -3,8 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{State, ViscoelasticContact};
 use crate::observe::area::{Pressed, REACH};
 use crate::parallel::Rows;
 

@@ -5,10 +5,7 @@ use std::hash::{DefaultHasher, Hasher};
 use std::ops::Range;
 
 use crate::Grid;
-use crate::contact::indenter::Indenter;
-use crate::contact::indenter::hull::Hull;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
+use crate::contact::{Hull, Indenter, Region, ViscoelasticContact};
 use crate::error::{Error, RanksError, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;
@@ -53,15 +50,11 @@ impl SharedGap<'_> {
             let mark = hasher.finish();
             [mark >> 32, mark & u64::from(u32::MAX)].map(|half| half as f64)
         });
-        let even1 = n1.is_multiple_of(2)
-            && rows.gather(
-                marks,
-                |rank| 2 * rows.of(rank).len(),
-                |all| {
-                    let marks = all.as_chunks::<2>().0;
-                    (0..n1 / 2).all(|i| marks[i] == marks[n1 - 1 - i])
-                },
-            );
+        let rows_agree = |all: &[f64]| {
+            let marks = all.as_chunks::<2>().0;
+            (0..n1 / 2).all(|i| marks[i] == marks[n1 - 1 - i])
+        };
+        let even1 = n1.is_multiple_of(2) && rows.gather(marks, |rank| 2 * rows.of(rank).len(), rows_agree);
         [even1, even2]
     }
 

@@ -3,10 +3,8 @@
 use std::ops::Range;
 
 use crate::Axis;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{State, ViscoelasticContact};
 use crate::error::{RanksError, Result, count_within, exact_length};
-#[cfg(any(feature = "npy", feature = "vtk"))]
 use crate::parallel::Rows;
 use crate::sum;
 
@@ -117,21 +115,18 @@ impl ViscoelasticContact {
     }
 
     /// Returns `own` if all ranks succeed, else an error on every rank.
-    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
         rows.together(|| rows.agree(own))
     }
 
     /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.
-    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         let rows = self.computation.state.region.rows();
         self.agreed(if rows.rank() == 0 { job().map(Some) } else { Ok(None) })
     }
 
     /// The local rows, with the reductions over all ranks.
-    #[cfg(any(feature = "npy", feature = "vtk"))]
     pub(crate) fn shared_rows(&self) -> Rows {
         self.computation.state.region.rows()
     }

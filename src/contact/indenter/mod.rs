@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Grid;
-use crate::contact::indenter::hull::Hull;
+use crate::contact::Hull;
 #[cfg(feature = "checkpoint")]
 use crate::contact::window::region::Region;
 use crate::error::Result;

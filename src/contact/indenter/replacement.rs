@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::indenter::Indenter;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Indenter, ViscoelasticContact};
 use crate::error::{Result, exact_length};
 use crate::geometry::{Gap, Geometry, evaluate};
 

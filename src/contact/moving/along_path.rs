@@ -2,12 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::indenter::Indenter;
-use crate::contact::read::report::StepReport;
-use crate::contact::settings::Frame;
-use crate::contact::state::State;
-use crate::contact::step::request::Step;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Frame, Indenter, State, Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result, exact_length};
 use crate::geometry::Gap;
 use crate::load::Load;

@@ -1,10 +1,10 @@
 //! Indenters that move along the surface, and the lateral force that moves them.
 
+use crate::contact::ViscoelasticContact;
+
 pub(in crate::contact) mod along_path;
 mod over_bodies;
 pub(in crate::contact) mod steady;
-
-use crate::contact::stepper::ViscoelasticContact;
 
 impl ViscoelasticContact {
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt

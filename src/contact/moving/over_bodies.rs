@@ -1,8 +1,6 @@
 //! Steps in which the indenter moves over the bodies, and the grid with it.
 
-use crate::contact::read::report::StepReport;
-use crate::contact::settings::Frame;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Frame, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::load::Loads;
 

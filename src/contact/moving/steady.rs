@@ -1,10 +1,8 @@
 //! Motion over the bodies to the steady state.
 
 use crate::axis::Axis;
-use crate::contact::read::report::StepReport;
-use crate::contact::settings::Frame;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, finite, within};
+use crate::contact::{Frame, StepReport, ViscoelasticContact};
+use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
 
@@ -123,7 +121,7 @@ impl SteadyRun<'_> {
         }
         let apart = self.contact.contact_cells() == 0;
         if apart && self.tried_to_touch {
-            return Err(Error::NoContact { time: self.contact.time() });
+            return Err(Error::Step(StepError::NoContact { time: self.contact.time() }));
         }
         if !apart && self.left == 0 && !self.next_stride()? {
             return Ok(None);
@@ -184,7 +182,7 @@ impl SteadyRun<'_> {
                 }
                 if self.travelled > MAX_GRID_LENGTHS * cells {
                     let (change, distance) = (self.change, self.distance());
-                    return Err(Error::NotSteady { distance, change, tolerance: limit });
+                    return Err(Error::Step(StepError::NotSteady { distance, change, tolerance: limit }));
                 }
                 (1, contact)
             }

@@ -1,15 +1,9 @@
 //! Read-only accessors, and the fields of a contact on the whole grid, or on the local rows of a rank.
 
-use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::contact::read::report::BodyState;
-use crate::contact::scene::Scene;
-use crate::contact::settings::Settings;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
+use crate::contact::{BodyState, Region, Scene, Settings, State, ViscoelasticContact};
 use crate::error::{Result, exact_length};
 use crate::extent::Extent;
 use crate::kernel::InfluenceKernel;
@@ -123,8 +117,8 @@ impl ViscoelasticContact {
 
     /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper).
     pub fn force(&self) -> f64 {
-        let state = &self.computation.state;
-        state.force_of(&state.current)
+        let State { region, current, .. } = &self.computation.state;
+        current.sum * region.grid().cell_area() * region.images() as f64
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\], Eq. 5 of the [paper](crate::paper).
@@ -183,18 +177,14 @@ impl ViscoelasticContact {
     }
 }
 
-impl fmt::Debug for ViscoelasticContact {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let state = &self.computation.state;
-        f.debug_struct("ViscoelasticContact")
-            .field("grid", &self.scene.grid)
-            .field("settings", &self.scene.settings)
-            .field("time", &state.clock.time)
-            .field("loads", &state.loads)
-            .field("motions", &state.current.motions)
-            .field("contact_cells", &state.current.contact_cells)
-            .finish_non_exhaustive()
-    }
+debug_by! {
+    self: ViscoelasticContact =>
+    grid: self.scene.grid,
+    settings: self.scene.settings,
+    time: self.computation.state.clock.time,
+    loads: self.computation.state.loads,
+    motions: self.computation.state.current.motions,
+    contact_cells: self.computation.state.current.contact_cells
 }
 
 /// Pressure and displacement on the whole grid, where only a region is computed; on the local rows, where ranks share

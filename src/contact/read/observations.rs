@@ -1,10 +1,8 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
 use crate::Axis;
-use crate::contact::settings::Solver;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Convergence, Error, Result, finite};
+use crate::contact::{Solver, State, ViscoelasticContact};
+use crate::error::{Convergence, Error, Result, StepError, finite};
 use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
@@ -91,11 +89,11 @@ impl ViscoelasticContact {
     /// If the iteration does not converge.
     pub fn stiffness_over_modulus(&self) -> Result<f64> {
         let State { clock, region, current, .. } = &self.computation.state;
-        let kernel = self.computation.window.kernel();
+        let kernel = &self.computation.window.kernel;
         if current.contact_cells == 0 {
             return Ok(0.0);
         }
-        if kernel.mean_is_held() && current.contact_cells == self.grid().len() {
+        if kernel.whole.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok(f64::INFINITY);
         }
         match kernel.rows().together(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0)))? {
@@ -104,7 +102,7 @@ impl ViscoelasticContact {
                 let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
                 let convergence =
                     Convergence::new(Vec::new(), tolerance, self.settings().solver == Solver::ActiveSet, false).into();
-                Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+                Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
             }
         }
     }

@@ -127,7 +127,7 @@ bitflags! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub struct Warnings: u16 {
         /// Contact is within two cells of an edge of the grid beyond which the bodies extend. Under a slightly greater load
-        /// a step fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
+        /// a step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge). Enlarge the grid. Only with
         /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
         const NEAR_EDGE = 1 << 0;
         /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh;
@@ -140,7 +140,7 @@ bitflags! {
         /// The step is shorter than the times for which the material is known: creep within it counts as elastic.
         const FASTER_THAN_MATERIAL = 1 << 3;
         /// One more step of this length would exceed the range in which the material is known, and fail with
-        /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial).
+        /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial).
         const NEAR_END_OF_MATERIAL = 1 << 4;
         /// The time rule oscillates at steps of this length. The rectangle rule does where the bodies creep in a step by more than
         /// they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.

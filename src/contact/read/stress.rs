@@ -1,6 +1,6 @@
 //! The stress in bodies whose Poisson's ratio changes as they creep.
 
-use crate::contact::settings::Frame;
+use crate::contact::Frame;
 use crate::error::{Error, MaterialError, Result, within};
 use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
@@ -80,13 +80,8 @@ impl StressHistory {
         let cells = contact.grid().len();
         let field = || memory::field("the history of the stress", cells, 0.0);
         let branches = law.terms.iter().map(|_| field()).collect::<Result<_>>()?;
-        Ok(StressHistory {
-            grid: contact.grid().clone(),
-            time: contact.reduced_time(),
-            law,
-            branches,
-            pressure: field()?,
-        })
+        let (grid, time, pressure) = (contact.grid().clone(), contact.reduced_time(), field()?);
+        Ok(StressHistory { grid, time, law, branches, pressure })
     }
 
     /// Takes in the step that the contact has made since the last call. Between two calls the pressure counts as linear in

@@ -9,7 +9,7 @@ use crate::contact::settings::Settings;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StepError};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
 
@@ -63,7 +63,7 @@ pub(super) fn adaptive_step(
         let (time, dt) = towards(now, stop, wanted);
         // near the resolution of the time, a shortened step may round to the same end again and again
         if time <= now || time >= tried {
-            return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
+            return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance: control.tolerance }));
         }
         tried = time;
         let loads = [history.before(time).validated_at(time)?];
@@ -80,7 +80,7 @@ pub(super) fn adaptive_step(
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, tolerance, [time, step.interval.dt], &outlook);
         let attempt = match contact.attempt(&step) {
-            Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
+            Err(Error::Step(StepError::NotConverged { .. })) if failures < MAX_SOLVER_RETRIES => {
                 failures += 1;
                 control.shorten(step.interval.dt);
                 add_work(&mut wasted, &contact.computation);

@@ -7,9 +7,8 @@ use std::sync::Arc;
 
 use educe::Educe;
 
-use crate::contact::indenter::Indenter;
 use crate::contact::state::extrapolation::Extrapolation;
-use crate::contact::window::region::Region;
+use crate::contact::{Indenter, Region};
 use crate::hereditary::{Field, History, Interpolant, Interval, Role};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
@@ -135,11 +134,6 @@ impl State {
         let mut values = 0;
         self.each(&mut |field| values += field.per_cell);
         values
-    }
-
-    /// Normal force on all bodies together \[N\].
-    pub(super) fn force_of(&self, equilibrium: &Equilibrium) -> f64 {
-        equilibrium.sum * self.region.grid().cell_area() * self.region.images() as f64
     }
 
     /// A copy on `region`; `map` gives its fields, one for each field here. Its sums are to be found anew.

@@ -1,12 +1,8 @@
 //! Copies of a contact in memory: snapshots for callers that try steps and take them back, and the state within a step.
 
-use std::fmt;
 use std::sync::Arc;
 
-use crate::contact::run::follow::Run;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Run, Scene, State, ViscoelasticContact};
 use crate::error::{Error, Result, within};
 use crate::load::{Load, Tilt};
 
@@ -26,11 +22,7 @@ impl Snapshot {
     }
 }
 
-impl fmt::Debug for Snapshot {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Snapshot").field("time", &self.state.clock.time).finish_non_exhaustive()
-    }
-}
+debug_by!(self: Snapshot => time: self.state.clock.time);
 
 impl ViscoelasticContact {
     /// The state as it is, to come back to.

@@ -1,11 +1,6 @@
 //! Acceptance of a computed step, and its warnings.
 
-use crate::contact::computation::Computation;
-use crate::contact::read::report::Warnings;
-use crate::contact::scene::Scene;
-use crate::contact::settings::{Edge, TimeRule};
-use crate::contact::state::State;
-use crate::contact::step::request::Step;
+use crate::contact::{Computation, Edge, Scene, State, Step, TimeRule, Warnings};
 use crate::extent::Extent;
 use crate::rheology::is_known;
 use crate::solver::RigidMotion;

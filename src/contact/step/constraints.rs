@@ -2,13 +2,8 @@
 
 use crate::Grid;
 use crate::axis::Axis;
-use crate::contact::scene::Scene;
-use crate::contact::settings::{Edge, Solver};
-use crate::contact::state::State;
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::region::Region;
-use crate::contact::window::window::Window;
-use crate::error::{Convergence, Error, Result, exact_length};
+use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
+use crate::error::{Convergence, Error, Result, StepError, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
@@ -24,16 +19,16 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
         let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
         let tilts_of_periodic = |axis: &Axis| tilts[axis.index()] && scene.kernel.periodic_axes()[axis.index()];
         if let Some(axis) = Axis::BOTH.into_iter().find(tilts_of_periodic) {
-            return Err(Error::TiltOfPeriodic { time, axis });
+            return Err(Error::Step(StepError::TiltOfPeriodic { time, axis }));
         }
         let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);
         if lost || !total.is_finite() {
-            return Err(Error::Overflow { time, what: "the force over the area of a cell" });
+            return Err(Error::Step(StepError::Overflow { time, what: "the force over the area of a cell" }));
         }
         let pressed = !translation || total > 0.0 || matches!(load, Load::Spring { .. });
         let balanced = tilt != [false; 2] && pressed;
         if balanced && step.indenter.hull(body, grid).balanced_at(point, tilt).is_none() {
-            return Err(Error::LoadOutsideHull { time, body, at: point });
+            return Err(Error::Step(StepError::LoadOutsideHull { time, body, at: point }));
         }
     }
     Ok(())
@@ -71,27 +66,35 @@ fn freedom(load: &Load, grid: &Grid) -> Freedom {
 pub(super) fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
     let Interval { time, reduced, .. } = step.interval;
     let (age, known_until) = (reduced - state.clock.undisturbed_until, scene.material.known_until());
-    if !touched || is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
+    if !touched || is_known(age, known_until) {
+        Ok(())
+    } else {
+        Err(Error::Step(StepError::BeyondMaterial { time, age, known_until }))
+    }
 }
 
 /// Rejects a compliance that overflows or underflows. It is 0 only in jumps of bodies without elastic response.
 pub(super) fn compliance_is_usable(c: f64, step: &Step<'_>) -> Result<()> {
     let Interval { time, dt, .. } = step.interval;
     let usable = c > 0.0 && c.is_finite() || c == 0.0 && dt == 0.0;
-    if usable { Ok(()) } else { Err(Error::Overflow { time, what: "the compliance of the step" }) }
+    if usable { Ok(()) } else { Err(Error::Step(StepError::Overflow { time, what: "the compliance of the step" })) }
 }
 
 /// Rejects an approach greater than the one that closes every gap, if the mean displacement is fixed: Σ h = Σ gap ≥ 0.
 pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>) -> Result<()> {
     let held = step.loads.iter().all(|load| matches!(load, Load::Approach { .. }));
-    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel().mean_is_held(), step.loads)
+    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel.whole.mean_is_held(), step.loads)
     else {
         return Ok(());
     };
-    let rows = window.kernel().rows();
+    let rows = window.kernel.rows();
     let left = rows.sum(&trial.gap) / rows.len() as f64;
     let greatest = approach + left;
-    if left > 0.0 { Ok(()) } else { Err(Error::BeyondFullContact { time: step.interval.time, approach, greatest }) }
+    if left > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::Step(StepError::BeyondFullContact { time: step.interval.time, approach, greatest }))
+    }
 }
 
 /// Rejects a contact problem that the solver did not solve.
@@ -100,15 +103,17 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
     let (time, dt, tolerance) = (step.interval.time, step.interval.length, step.tolerance);
     match outcome {
         Outcome::Converged => Ok(()),
-        Outcome::NotANumber => Err(Error::Overflow { time, what: "the residual of the contact problem" }),
+        Outcome::NotANumber => {
+            Err(Error::Step(StepError::Overflow { time, what: "the residual of the contact problem" }))
+        }
         Outcome::Unbalanced(body) => {
             let at = freedom(&step.loads[body], &scene.grid).point;
-            Err(Error::LoadOutsideHull { time, body, at })
+            Err(Error::Step(StepError::LoadOutsideHull { time, body, at }))
         }
         Outcome::OutOfIterations | Outcome::Stagnated => {
             let (active_set, stagnated) = (scene.settings.solver == Solver::ActiveSet, outcome == Outcome::Stagnated);
             let convergence = Convergence::new(trace.samples(), tolerance, active_set, stagnated).into();
-            Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+            Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
         }
     }
 }
@@ -130,12 +135,12 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
         (rows.sum(state.history.trial()).is_finite(), "the displacement"),
     ];
     if let Some((_, what)) = within_range.into_iter().find(|(is_finite, _)| !is_finite) {
-        return Err(Error::Overflow { time, what });
+        return Err(Error::Step(StepError::Overflow { time, what }));
     }
     if edge == Edge::Refuse {
         let cells = state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
         if cells > 0 {
-            return Err(Error::ContactAtEdge { time, cells });
+            return Err(Error::Step(StepError::ContactAtEdge { time, cells }));
         }
     }
     Ok(sum_of_pressure)

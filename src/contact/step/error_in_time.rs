@@ -2,11 +2,9 @@
 
 use std::ops::Range;
 
-use crate::contact::computation::Computation;
-use crate::contact::scene::Scene;
-use crate::contact::step::request::Step;
 use crate::contact::step::spring::has_stiff_spring;
 use crate::contact::window::placement::motion_tried;
+use crate::contact::{Computation, Scene, Step};
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;

@@ -1,8 +1,7 @@
 //! The gap of a step before any pressure, and the surface after it.
 
 use crate::Grid;
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::region::Region;
+use crate::contact::{Region, Step, Trial};
 use crate::geometry::Gap;
 use crate::hereditary::History;
 use crate::load::{Load, Tilt};

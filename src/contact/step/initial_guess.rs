@@ -1,9 +1,7 @@
 //! The initial guess of the pressure in a step.
 
 use crate::contact::state::extrapolation::MAX_REACH;
-use crate::contact::state::{Equilibrium, State};
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::window::Window;
+use crate::contact::{Equilibrium, State, Step, Trial, Window};
 use crate::parallel::{Rows, for_each_band};
 use crate::solver::{Counts, Freedom, RigidMotion};
 
@@ -53,7 +51,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
     trial.reach = reach;
     // full contact of bodies whose mean is held does not fix the force of a given approach
     let full = state.region.covers() && state.current.contact_cells == state.region.images() * rows.len();
-    if held && full && window.kernel().mean_is_held() {
+    if held && full && window.kernel.whole.mean_is_held() {
         return trial.solution.release();
     }
     if reach == 0.0 && wanted > 0.0 && !near(state.current.sum) {
@@ -210,7 +208,7 @@ pub(super) fn fill_guess(
     if !state.extrapolation.refresh_is_due() {
         fill(&mut guess.potential, &now.potential, &before.potential);
     } else if window.needs_potential() {
-        let (kernel, work) = window.kernel_and_work();
+        let (kernel, work) = (&window.kernel, &mut window.work);
         kernel.apply(&guess.pressure, &mut guess.potential, work);
         guess.counts.convolutions += 1;
     }

@@ -1,10 +1,8 @@
 //! Jumps of the load on bodies without elastic response.
 
-use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, fill_guess};
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::window::Window;
-use crate::error::{Error, Result};
+use crate::contact::{State, Step, Trial, Window};
+use crate::error::{Error, Result, StepError};
 use crate::geometry::Gap;
 use crate::solver::PENETRATION_SLACK;
 
@@ -33,7 +31,7 @@ pub(super) fn jump_without_response(
         trial.solution.release();
     } else {
         let what = "a jump of the load that changes the pressure (ramp the load over a short time instead)";
-        return Err(Error::NoElasticResponse { time: step.interval.time, what });
+        return Err(Error::Step(StepError::NoElasticResponse { time: step.interval.time, what }));
     }
     Ok(())
 }

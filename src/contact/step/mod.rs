@@ -25,15 +25,9 @@ pub(in crate::contact) mod spring;
 
 use std::sync::Arc;
 
-use crate::contact::computation::Computation;
-use crate::contact::read::report::StepReport;
-use crate::contact::scene::Scene;
-use crate::contact::state::{Equilibrium, State};
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::placement::{outgrown, region_for};
-use crate::contact::window::region::Region;
-use crate::error::{Error, Result, non_negative};
+use crate::contact::{Computation, Equilibrium, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact};
+use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
@@ -230,7 +224,7 @@ fn compute(
         let grown = match at.solve(scene, step) {
             Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
             // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::LoadOutsideHull { .. }) if at.state.history.far_source().is_some() => {
+            Err(Error::Step(StepError::LoadOutsideHull { .. })) if at.state.history.far_source().is_some() => {
                 Some(Region::whole(&scene.grid, at.state.region.folded()))
             }
             Err(error) => return Err(error),
@@ -249,7 +243,7 @@ impl Computation {
         material_is_known(scene, state, step, !state.is_undisturbed())?;
 
         // u = u_old + c K p
-        let (kernel, work) = window.kernel_and_work();
+        let (kernel, work) = (&window.kernel, &mut window.work);
         let (c, convolutions) = state.history.predict(step.interval, scene.history_inputs(), kernel, work)?;
         compliance_is_usable(c, step)?;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::indenter::Indenter;
+use crate::contact::Indenter;
 use crate::contact::step::spring::TriedSpring;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};

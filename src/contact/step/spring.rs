@@ -7,9 +7,7 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::step::request::{Step, Trial};
+use crate::contact::{Scene, State, Step, Trial};
 use crate::geometry::Gap;
 use crate::load::Load;
 use crate::solver::{ModeCoefficients, Outcome};

@@ -1,10 +1,6 @@
 //! Fields on a region, on the whole grid, and transferred to other regions.
 
-use crate::contact::indenter::Indenter;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::window::region::Region;
-use crate::contact::window::window::Window;
+use crate::contact::{Indenter, Region, Scene, State, Window};
 use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
@@ -127,7 +123,7 @@ pub(in crate::contact) fn transferred(
     indenter: &Indenter,
 ) -> (State, Window) {
     let mut window = Window::new(scene, &region, indenter);
-    let (kernel, work) = window.kernel_and_work();
+    let (kernel, work) = (&window.kernel, &mut window.work);
     state.history.apply_pending_step();
     let (from, cells) = (&state.region, region.len());
     let mut one = |own: &[f64], source: Option<&[f64]>| {

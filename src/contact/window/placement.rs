@@ -3,12 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::Grid;
-use crate::contact::indenter::Indenter;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::window::region::Region;
-use crate::contact::window::window::Window;
+use crate::contact::{Indenter, Region, Scene, State, Step, Trial, Window};
 use crate::error::{RanksError, Result};
 use crate::extent::Extent;
 use crate::geometry::Gap;
@@ -129,7 +124,7 @@ pub(in crate::contact) fn outgrown(
     let [l1, l2] = scene.grid.lengths();
     let motions = || (0..scene.bodies).map(|body| motion_tried(region, trial, step, body));
     let deepest = |m: RigidMotion| m.approach + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
-    if motions().all(|motion| deepest(motion) <= window.lowest_outside()) {
+    if motions().all(|motion| deepest(motion) <= window.lowest_outside) {
         return None;
     }
     let (grid, folded) = (region.grid(), region.folded());

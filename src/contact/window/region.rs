@@ -15,7 +15,7 @@ use crate::solver::{Freedom, Modes};
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Region {
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
-    pub(super) whole: Grid,
+    pub(in crate::contact) whole: Grid,
     /// Its cells, with the coordinates of the whole.
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
     grid: Grid,
@@ -52,12 +52,6 @@ impl Region {
         let rows = rows.of_cells([n1, n2]);
         let own = Region::new(grid, folded, [start + rows.own().start, first], [rows.own().len(), n2]);
         Region { shared: Some(rows), ..own }
-    }
-
-    /// The region whose rows ranks share out, or the region itself.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn of_all_ranks(&self) -> Region {
-        if self.is_shared() { Region::whole(&self.whole, self.folded) } else { self.clone() }
     }
 
     /// The local rows of it, if ranks share out the rows of `own`, or all of it.
@@ -236,12 +230,6 @@ impl Region {
         let along = move |axis: usize, own: usize| [Some(own), folded[axis].then(|| all[axis] - 1 - own)];
         let pairs = along(0, i).into_iter().flatten().map(move |i| (i, along(1, j)));
         pairs.flat_map(|(i, columns)| columns.into_iter().flatten().map(move |j| [i, j]))
-    }
-
-    /// Rows and columns of the whole grid.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn whole_cells(&self) -> [usize; 2] {
-        self.whole.cells()
     }
 
     /// The coordinates of its cell `k`.

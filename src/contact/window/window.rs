@@ -1,10 +1,6 @@
 //! What computes on a region of the grid.
 
-use crate::contact::indenter::Indenter;
-use crate::contact::scene::Scene;
-use crate::contact::settings::Solver;
-use crate::contact::step::request::Trial;
-use crate::contact::window::region::Region;
+use crate::contact::{Indenter, Region, Scene, Solver, Trial};
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
@@ -13,13 +9,13 @@ use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Pr
 /// another region and never saved.
 #[derive(Debug, Clone)]
 pub(crate) struct Window {
-    kernel: LocalKernel,
-    work: Workspace,
+    pub(in crate::contact) kernel: LocalKernel,
+    pub(in crate::contact) work: Workspace,
     solver: ContactSolver,
     /// The gap of the indenter on the region, if that is not the whole grid.
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
-    lowest_outside: f64,
+    pub(super) lowest_outside: f64,
     /// The number of the indenter that the gap belongs to.
     indenter: Option<u64>,
     /// What fetches rows of other ranks, if they share out the region.
@@ -34,15 +30,13 @@ enum ContactSolver {
 
 impl Window {
     pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
-        let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &region.rows());
+        let rows = region.rows();
+        let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &rows);
         let mut work = kernel.workspace();
         let solver = match scene.settings.solver {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
-            Solver::PolonskyKeer => {
-                ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&region.rows(), scene.bodies)))
-            }
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, scene.bodies))),
         };
-        let rows = region.rows();
         let beside = HaloExchange::new(&rows, rows.cells()[1])
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let mut window =
@@ -64,19 +58,6 @@ impl Window {
     /// The gap of the indenter on the region, which the window follows.
     pub(crate) fn gap<'a>(&'a self, indenter: &'a Indenter) -> &'a Gap {
         self.gap.as_ref().unwrap_or(indenter.gap())
-    }
-
-    pub(crate) fn lowest_outside(&self) -> f64 {
-        self.lowest_outside
-    }
-
-    pub(crate) fn kernel(&self) -> &LocalKernel {
-        &self.kernel
-    }
-
-    /// The kernel, and what its transforms work in.
-    pub(crate) fn kernel_and_work(&mut self) -> (&LocalKernel, &mut Workspace) {
-        (&self.kernel, &mut self.work)
     }
 
     /// The halo row of a field before the local rows, if another rank has it.
@@ -115,7 +96,7 @@ impl Window {
         };
         let outcome = match solver {
             _ if c == 0.0 => Outcome::Converged,
-            _ if problem.all_released() => {
+            _ if problem.loaded_bodies().next().is_none() => {
                 solution.release();
                 Outcome::Converged
             }

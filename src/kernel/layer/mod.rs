@@ -151,19 +151,13 @@ impl Layer {
     }
 
     /// The response to a uniform pressure on the whole endless surface.
-    fn mean(&self) -> f64 {
+    pub(super) fn mean(&self) -> f64 {
         match self.base {
             Base::Bonded | Base::Frictionless => {
                 self.thickness * (1.0 - 2.0 * self.poisson) / ((1.0 - self.poisson) * (1.0 - self.poisson))
             }
             Base::HalfSpace { .. } => f64::INFINITY,
         }
-    }
-
-    /// Displacement of the mean of a period under a uniform unit pressure: zero for an incompressible layer and on a half-space,
-    /// where the mean is the datum.
-    pub(super) fn compliance_of_period(&self) -> f64 {
-        if self.is_on_rigid() { self.mean() } else { 0.0 }
     }
 
     /// Whether the surface is at rest far from a load.

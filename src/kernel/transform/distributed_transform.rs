@@ -9,9 +9,8 @@ use std::ops::Range;
 use num_complex::Complex64;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
-use super::tasks::{ColumnsInPlace, RowsForward};
-use super::{AREA, SpectralOperator, TransformWorkspace};
-use crate::kernel::layout::Layout;
+use super::{AREA, ColumnsInPlace, RowsForward, SpectralOperator, TransformWorkspace};
+use crate::kernel::Layout;
 use crate::parallel::{Rows, TILE, for_each_share, part, rows_in_a_tile};
 
 /// The tiles of rows and the panels of columns that each rank has.
@@ -80,13 +79,12 @@ impl Shares {
     /// The numbers that go to the other ranks: where they lie rank by rank, tile by tile, and where in local rows of tiles.
     fn pieces(&self, across: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         let (rows, mut packed) = (self.down[self.rows.rank()].len(), 0);
-        self.across.iter().flat_map(move |panels| (0..rows).map(move |row| (row, panels.clone()))).map(
-            move |(row, panels)| {
-                let (from, length) = ((row * across + panels.start) * AREA, panels.len() * AREA);
-                packed += length;
-                (packed - length..packed, from..from + length)
-            },
-        )
+        let all = self.across.iter().flat_map(move |panels| (0..rows).map(move |row| (row, panels)));
+        all.map(move |(row, panels)| {
+            let (from, length) = ((row * across + panels.start) * AREA, panels.len() * AREA);
+            packed += length;
+            (packed - length..packed, from..from + length)
+        })
     }
 
     /// Most complex values that this rank has at a time, of local rows or of local columns.

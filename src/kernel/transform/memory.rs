@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::workspace::CACHE_LINE;
 use super::{AREA, Shares, TILE};
-use crate::kernel::layout::Layout;
+use crate::kernel::Layout;
 use crate::parallel::{lanes, rows_in_a_tile};
 
 const REAL: u128 = size_of::<f64>() as u128;

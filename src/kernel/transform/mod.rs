@@ -17,8 +17,6 @@ mod tasks;
 mod tiles;
 mod workspace;
 
-use std::fmt;
-
 use super::layout::Layout;
 use super::lines::Line;
 use crate::parallel::{TILE, for_each_share, rows_in_a_tile};
@@ -194,11 +192,7 @@ impl SpectralOperator {
     }
 }
 
-impl fmt::Debug for SpectralOperator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SpectralOperator").field("layout", &self.layout).finish_non_exhaustive()
-    }
-}
+debug_by!(self: SpectralOperator => layout: self.layout);
 
 #[cfg(test)]
 mod tests {

@@ -2,8 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::workspace::Lane;
-use super::{AREA, SpectralOperator};
+use super::{AREA, Lane, SpectralOperator};
 use crate::kernel::lines::{separate, unite};
 use crate::parallel::TILE;
 use crate::parallel::Task;

@@ -1,12 +1,11 @@
 //! Buffers of an operator: one set for each thread, aligned to cache lines.
 
-use std::fmt;
-
 use num_complex::Complex64;
 
 use super::column::ColumnWorkspace;
 use super::{SpectralOperator, TILE};
-use crate::kernel::layout::Layout;
+
+use crate::kernel::Layout;
 
 /// Buffers of a [`SpectralOperator`]: made once, used by every application.
 #[derive(Clone)]
@@ -58,18 +57,14 @@ impl Buffer {
 impl SpectralOperator {
     /// Buffers for [`SpectralOperator::apply`], for as many threads as pay off for this size.
     pub(crate) fn workspace(&self) -> TransformWorkspace {
-        self.buffers(self.lanes(), self.tiles())
-    }
-
-    fn lanes(&self) -> usize {
-        self.layout.lanes(self.shares.as_ref())
+        self.buffers(self.layout.lanes(self.shares.as_ref()), self.tiles())
     }
 
     /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice. (On a
     /// rank the smaller operator may have more tiles.)
     pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
         let lends = self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles();
-        self.buffers(self.lanes(), if lends { 0 } else { self.tiles() })
+        self.buffers(self.layout.lanes(self.shares.as_ref()), if lends { 0 } else { self.tiles() })
     }
 
     /// Buffers for `lanes` threads, `tiles` values between the passes.
@@ -102,8 +97,4 @@ impl TransformWorkspace {
     }
 }
 
-impl fmt::Debug for TransformWorkspace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
-    }
-}
+debug_by!(self: TransformWorkspace => layout: self.layout);

@@ -8,9 +8,7 @@
 use num_complex::Complex64;
 
 use super::plane::{SIGNS, pair_of, pairs_below_wave, set_pair};
-use super::rectangle::corner;
-use super::waves::Wave;
-use super::{Source, Stress, SubsurfaceStress};
+use super::{Source, Stress, SubsurfaceStress, Wave, corner};
 use crate::error::Result;
 use crate::kernel::HalfSpace;
 use crate::memory;

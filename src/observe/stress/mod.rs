@@ -22,6 +22,8 @@ use crate::observe::profile::line_through;
 use crate::{Grid, InfluenceKernel, memory};
 use line::LineBelow;
 use rectangle::Weights;
+use rectangle::corner;
+use waves::Wave;
 
 /// Greatest pressure \[Pa\]: the squares of stresses do not overflow.
 const GREATEST_PRESSURE: f64 = 1e150;

@@ -2,9 +2,9 @@
 
 use num_complex::Complex64;
 
-use super::rectangle::{Weights, corner, edge, exchanged};
-use super::waves::{Wave, below_wave};
-use super::{Source, Stress, SubsurfaceStress};
+use super::rectangle::{edge, exchanged};
+use super::waves::below_wave;
+use super::{Source, Stress, SubsurfaceStress, Wave, Weights, corner};
 use crate::Grid;
 use crate::fft::{Plane, for_each_line_share};
 use crate::kernel::HalfSpace;

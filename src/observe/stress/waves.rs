@@ -15,8 +15,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use super::Stress;
-use super::rectangle::Weights;
+use super::{Stress, Weights};
 use crate::Grid;
 
 /// A wave along one axis.

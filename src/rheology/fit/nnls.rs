@@ -34,12 +34,8 @@ pub(crate) fn non_negative_least_squares(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64>
         }
         // move towards the unconstrained solution, removing columns that would turn negative
         while solved.iter().any(|&value| value <= 0.0) {
-            let step = passive
-                .iter()
-                .zip(&solved)
-                .filter(|(_, value)| **value <= 0.0)
-                .map(|(&j, &value)| x[j] / (x[j] - value))
-                .fold(1.0, f64::min);
+            let blocked = passive.iter().zip(&solved).filter(|(_, value)| **value <= 0.0);
+            let step = blocked.map(|(&j, &value)| x[j] / (x[j] - value)).fold(1.0, f64::min);
             for (&j, &value) in passive.iter().zip(&solved) {
                 x[j] += step * (value - x[j]);
             }

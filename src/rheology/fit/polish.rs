@@ -2,9 +2,8 @@
 
 use faer::{Col, Mat};
 
-use super::Search;
-use super::basis::{FittedSeries, MaterialFunction, Sample};
 use super::nnls::solve;
+use super::{FittedSeries, MaterialFunction, Sample, Search};
 
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;

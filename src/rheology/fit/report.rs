@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::basis::{FittedSeries, MaterialFunction, Sample};
+use super::{FittedSeries, MaterialFunction, Sample};
 
 /// One given value and the value of the fitted series.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -200,16 +200,9 @@ impl fmt::Display for FitReport {
             MaterialFunction::Creep | MaterialFunction::Relaxation => "s",
             MaterialFunction::Storage | MaterialFunction::Loss => "rad/s",
         };
-        write!(
-            f,
-            "{} terms for {} samples from {first:.3e} to {last:.3e} {unit}: relative misfit {:.1e} rms, {:.1e} at most \
-             (at {:.3e} {unit})",
-            self.terms,
-            self.samples.len(),
-            self.rms_misfit(),
-            self.max_misfit(),
-            worst.x
-        )?;
+        let (rms, most, x, samples) = (self.rms_misfit(), self.max_misfit(), worst.x, self.samples.len());
+        write!(f, "{} terms for {samples} samples from {first:.3e} to {last:.3e} {unit}: ", self.terms)?;
+        write!(f, "relative misfit {rms:.1e} rms, {most:.1e} at most (at {x:.3e} {unit})")?;
         if self.wrong_way > 0.0 {
             write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
         }

@@ -8,9 +8,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::basis::{FittedSeries, MaterialFunction, Sample};
 use super::measured::{FLOOR, Measured};
-use super::{DENSITY, Search};
+use super::{DENSITY, FittedSeries, MaterialFunction, Sample, Search};
 use crate::error::Result;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 

@@ -51,7 +51,6 @@ impl Experiment {
 
 impl Layout {
     /// Names of the abscissa and of the columns.
-    #[cfg(feature = "csv")]
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
         std::iter::once(self.abscissa).chain(self.columns.iter().map(|&(name, _)| name))
     }

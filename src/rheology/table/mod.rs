@@ -1,11 +1,9 @@
 //! Measured data as rheologies.
 
-#[cfg(feature = "csv")]
 mod csv;
 mod data;
 mod master_curve;
 
-#[cfg(feature = "csv")]
 pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
@@ -137,7 +135,7 @@ impl Measurements {
     ///
     /// Outside the data: creep before the first time, or faster than the highest frequency, counts as elastic (the
     /// compliance is between J_g of the fit and its value there). After the last time, or after 1/ω of the lowest frequency,
-    /// J is NaN, and a step of a contact fails with [`Error::BeyondMaterial`](crate::Error::BeyondMaterial), unless you
+    /// J is NaN, and a step of a contact fails with [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial), unless you
     /// choose [`CreepSeries::extrapolated`].
     ///
     /// # Errors

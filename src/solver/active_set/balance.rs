@@ -110,7 +110,7 @@ impl ActiveSet {
             }
             // without a prescribed force, the whole pressure may be rounding: no cell moves more than by this
             let kernel = problem.kernel;
-            let moved = problem.compliance * kernel.self_influence() * kernel.images();
+            let moved = problem.compliance * kernel.whole.self_influence() * kernel.images();
             let [unseen, rounding] = self.unseen(problem, stop.tolerance, solution);
             if moved * carried <= rounding {
                 // the body is held by a touch

@@ -167,13 +167,8 @@ impl Pass<'_> {
         match self.known {
             Known::Members(member) => {
                 let known = |row| read.kept(row).map_or(&read.halo.no_members[..], |cells| &member[cells]);
-                add_open(
-                    sums,
-                    shares,
-                    rows,
-                    |row| (known(row), read.row(row)),
-                    |inside, f| if inside { 0.0 } else { f },
-                );
+                let open = |inside: bool, f: f64| if inside { 0.0 } else { f };
+                add_open(sums, shares, rows, |row| (known(row), read.row(row)), open);
             }
             Known::Factors(factors) => {
                 let known = |row| read.kept(row).map_or(&read.halo.nothing_known[..], |cells| &factors[cells]);

@@ -6,11 +6,9 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use crate::common::bodies::zener;
 use crate::common::sealed::seal;
-use crate::common::spheres::builder_on;
-use crate::common::temporary::Temporary;
 use crate::common::watched_ranks::with_calls_left;
+use crate::common::{Temporary, builder_on, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::contact::CheckpointError;
 use viscocontact::parallel::{RanksError, Threads};

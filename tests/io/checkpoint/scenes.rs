@@ -1,14 +1,13 @@
 //! Checkpoints of random scenes refused by slightly different scenes; files that many threads write.
 
-use crate::common::bodies::three_times;
+use crate::common::{Temporary, three_times, uniform};
 use std::fs;
 
+use viscocontact::FileError;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 
 use super::refused;
-use crate::common::noise::uniform;
-use crate::common::temporary::Temporary;
 
 const OWNERS: &str = "assignment of cells to rigid bodies";
 
@@ -181,5 +180,5 @@ fn many_save_to_one_path() {
     // a folder is not replaced
     fs::create_dir(folder.join("folder")).unwrap();
     let error = build(&grid, &body()).unwrap().save(folder.join("folder")).unwrap_err();
-    assert!(matches!(error, Error::NotAFile { kind: "a folder", .. }), "{error}");
+    assert!(matches!(error, Error::File(FileError::NotAFile { kind: "a folder", .. })), "{error}");
 }

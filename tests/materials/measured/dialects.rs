@@ -4,7 +4,7 @@ use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSeries, Experiment, GeneralizedMaxwell, Measurements, Rheology, TableError, Units};
 use viscocontact::{Delimiter, Result, TextError, TextFormat};
 
-use crate::common::noise::uniform;
+use crate::common::uniform;
 
 pub fn creep(text: &str, units: Units, format: TextFormat) -> Result<CreepSeries> {
     Measurements::from_csv_reader(Experiment::Creep, text.as_bytes(), units, format).and_then(|table| table.fit())

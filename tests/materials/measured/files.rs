@@ -2,7 +2,7 @@
 
 use super::*;
 use viscocontact::rheology::{CreepSeries, Experiment, MaterialFunction, Units};
-use viscocontact::{TextError, TextFormat};
+use viscocontact::{Error, FileError, TextError, TextFormat};
 
 fn read(text: &str) -> Result<CreepSeries> {
     Measurements::from_csv_reader(Experiment::Creep, text.as_bytes(), Units::SI, TextFormat::default())
@@ -100,10 +100,13 @@ fn errors_name_the_line() {
     let missing = Measurements::from_csv(Experiment::Creep, "no/such/file.csv", Units::SI, TextFormat::default())
         .and_then(|table| table.fit())
         .unwrap_err();
-    assert!(matches!(missing, Error::Unreadable { .. }) && missing.to_string().contains("no/such/file.csv"));
+    assert!(
+        matches!(missing, Error::File(FileError::Unreadable { .. }))
+            && missing.to_string().contains("no/such/file.csv")
+    );
     let binary: &[u8] = &[0xff, 0xfe, 0x00, 0x31];
     let binary = Measurements::from_csv_reader(Experiment::Creep, binary, Units::SI, TextFormat::default())
         .and_then(|table| table.fit())
         .unwrap_err();
-    assert!(matches!(binary, Error::Unreadable { .. }), "{binary}");
+    assert!(matches!(binary, Error::File(FileError::Unreadable { .. })), "{binary}");
 }

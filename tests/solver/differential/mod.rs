@@ -4,9 +4,7 @@ mod hereditary_integral;
 mod reference;
 mod scenes;
 
-use crate::common::bodies::elastic;
-use crate::common::environment::from_environment;
-use crate::common::spheres::sphere_on;
+use crate::common::{elastic, from_environment, sphere_on};
 use approx::assert_abs_diff_eq;
 use reference::Reference;
 use scenes::Scene;
@@ -38,7 +36,7 @@ fn eccentric_loads_may_jump() {
                         work += cost;
                     }
                 }
-                Err(Error::LoadOutsideHull { .. }) => refused += 1,
+                Err(Error::Step(StepError::LoadOutsideHull { .. })) => refused += 1,
                 Err(error) => {
                     taken += 1;
                     failed += 1;
@@ -82,7 +80,7 @@ fn more_iterations_help_where_the_error_advises_them() {
         let (mut hasty, mut patient) =
             (scene.contact(settings.with_max_iterations(6)).unwrap(), scene.contact(settings).unwrap());
         for (dt, loads) in &scene.steps {
-            if let Err(Error::NotConverged { convergence, .. }) = hasty.step(*dt, loads) {
+            if let Err(Error::Step(StepError::NotConverged { convergence, .. })) = hasty.step(*dt, loads) {
                 short += 1;
                 assert!(
                     convergence.to_string().contains("raise Settings::max_iterations"),
@@ -131,7 +129,7 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
             match contact.step(*dt, loads) {
                 Ok(_) => {}
-                Err(Error::LoadOutsideHull { .. }) => {
+                Err(Error::Step(StepError::LoadOutsideHull { .. })) => {
                     refused += 1;
                     continue;
                 }

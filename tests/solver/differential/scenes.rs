@@ -3,8 +3,7 @@
 use viscocontact::Result;
 use viscocontact::prelude::*;
 
-use crate::common::draws::Draws;
-use crate::common::noise::uniform;
+use crate::common::{Draws, uniform};
 
 /// The numbers that choose the parts of a scene.
 fn draws(seed: u64) -> Draws {

@@ -3,9 +3,7 @@
 
 use std::io::Read;
 
-use super::header::Header;
-use super::number::{Kind, Number};
-use super::{First, bytes, count};
+use super::{First, Header, Kind, Number, bytes, count};
 use crate::error::{MapError, Result};
 use crate::geometry::{HeightMap, LengthUnit};
 

@@ -25,6 +25,9 @@ use crate::geometry::HeightMap;
 use crate::input;
 use crate::memory;
 
+use header::Header;
+use number::{Kind, Number};
+
 /// Extensions of the formats that include the lengths of the map.
 #[cfg(feature = "x3p")]
 const KNOWN: &str = "gsf, sdf or x3p";

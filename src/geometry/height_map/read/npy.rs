@@ -4,9 +4,7 @@
 
 use std::io::Read;
 
-use super::header::Header;
-use super::number::{Kind, Number};
-use super::{bytes, wrong_size};
+use super::{Header, Kind, Number, bytes, wrong_size};
 use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::file::npy::MAGIC;

@@ -7,9 +7,7 @@
 
 use std::io::Read;
 
-use super::header::Header;
-use super::number::{Kind, Number};
-use super::{First, bytes, count, listed, wrong_size};
+use super::{First, Header, Kind, Number, bytes, count, listed, wrong_size};
 use crate::error::{MapError, Result};
 use crate::geometry::HeightMap;
 

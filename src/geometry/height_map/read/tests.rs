@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::LengthUnit;
-use crate::{Error, TextFormat};
+use crate::{Error, FileError, TextFormat};
 
 /// Reads a file in a known format.
 type Reader = fn(&[u8]) -> Result<HeightMap>;
@@ -147,7 +147,10 @@ fn the_extension_determines_the_format() {
         assert!(matches!(unknown(name), Error::Map(MapError::Extension { .. })), "{name}");
     }
     let absent = unknown("absent.gsf");
-    assert!(matches!(&absent, Error::Unreadable { file, .. } if file.ends_with("absent.gsf")), "{absent}");
+    assert!(
+        matches!(&absent, Error::File(FileError::Unreadable { file, .. }) if file.ends_with("absent.gsf")),
+        "{absent}"
+    );
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(read.len(), if cfg!(feature = "x3p") { 3 } else { 2 });
     for (map, expected) in read {

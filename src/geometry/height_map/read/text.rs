@@ -64,7 +64,7 @@ pub(super) fn height(row: &TextRow, column: usize) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Error, TextError};
+    use crate::{Error, FileError, TextError};
 
     fn read(text: &str) -> Result<HeightMap> {
         HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Millimetre, TextFormat::default())
@@ -109,7 +109,7 @@ mod tests {
         for empty in ["", "\n\n", "# nothing\n"] {
             assert!(matches!(read(empty), Err(Error::CountOutOfRange { value: 0, .. })));
         }
-        assert!(matches!(read("1 2\0\n"), Err(Error::Unreadable { .. })));
+        assert!(matches!(read("1 2\0\n"), Err(Error::File(FileError::Unreadable { .. }))));
         let flat = HeightMap::from_text("1 2\n".as_bytes(), [0.0, 1.0], LengthUnit::Metre, TextFormat::default());
         assert!(matches!(flat, Err(Error::OutOfRange { field: "length along x1", .. })));
     }

@@ -8,10 +8,8 @@ use std::io::{Cursor, Read};
 use roxmltree::{Document, Node, ParsingOptions};
 use zip::ZipArchive;
 
-use super::header::Header;
-use super::number::{Kind, Number};
-use super::{First, bytes, count, listed, wrong_size};
-use crate::error::{Error, MapError, Result};
+use super::{First, Header, Kind, Number, bytes, count, listed, wrong_size};
+use crate::error::{Error, FileError, MapError, Result};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "X3P";
@@ -61,7 +59,7 @@ impl HeightMap {
 type Archive = ZipArchive<Cursor<Vec<u8>>>;
 
 fn unreadable(reason: &str) -> Error {
-    Error::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None }
+    Error::File(FileError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None })
 }
 
 /// The contents of a file of the archive, of at most `most` bytes.
@@ -260,11 +258,11 @@ mod tests {
             assert_eq!(error, size.into());
         }
         for broken in ["", "<a", "<a></a></a>", "<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>"] {
-            assert!(matches!(read(broken, &[]), Err(Error::Unreadable { .. })), "{broken}");
+            assert!(matches!(read(broken, &[]), Err(Error::File(FileError::Unreadable { .. }))), "{broken}");
         }
-        assert!(matches!(with("bindata/data.bin", "nowhere"), Error::Unreadable { .. }));
+        assert!(matches!(with("bindata/data.bin", "nowhere"), Error::File(FileError::Unreadable { .. })));
         let none = HeightMap::from_x3p(&archive(&[("other.xml", b"")])[..]);
-        assert!(matches!(none, Err(Error::Unreadable { .. })));
+        assert!(matches!(none, Err(Error::File(FileError::Unreadable { .. }))));
         assert!(matches!(HeightMap::from_x3p(&b"<xml/>"[..]), Err(Error::Map(MapError::Magic { .. }))));
     }
 
@@ -284,7 +282,7 @@ mod tests {
     #[test]
     fn deep_and_oversized_xml_is_refused() {
         let deep = "<a>".repeat(300_000);
-        assert!(matches!(read(&deep, &[]), Err(Error::Unreadable { .. })));
+        assert!(matches!(read(&deep, &[]), Err(Error::File(FileError::Unreadable { .. }))));
         let oversized = " ".repeat(MAX_XML as usize + 2);
         assert!(matches!(read(&oversized, &[]), Err(Error::Map(MapError::Size { exact: false, .. }))));
     }

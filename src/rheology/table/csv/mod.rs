@@ -32,8 +32,6 @@ impl Units {
 impl Measurements {
     /// Reads a CSV file of an `experiment`: the columns of [`Experiment`].
     ///
-    /// Needs the feature `csv`.
-    ///
     /// Rows may stand in any order. Columns too, if the first line names them by the first word or symbol of each heading,
     /// whatever the case and the unit after it. The first line has headings if none of its fields is a number. Without
     /// headings there are the columns of the experiment, in their order. Headings with a unit (`t [min]`, `J (1/GPa)`,
@@ -42,7 +40,7 @@ impl Measurements {
     /// `format` states the delimiter and the decimal mark.
     ///
     /// # Errors
-    /// As [`Measurements::creep`]; if the file cannot be read ([`Error::Unreadable`](crate::Error::Unreadable)), or, each
+    /// As [`Measurements::creep`]; if the file cannot be read ([`FileError::Unreadable`](crate::FileError::Unreadable)), or, each
     /// reported with its line: too few or too many columns ([`TextError::Columns`](crate::TextError)), an entry that is not
     /// a number ([`TextError::NotNumeric`](crate::TextError)) or has the other decimal mark
     /// ([`TextError::DecimalMark`](crate::TextError)), columns that no heading names
@@ -58,8 +56,6 @@ impl Measurements {
     }
 
     /// [`Measurements::from_csv`] from any reader.
-    ///
-    /// Needs the feature `csv`.
     ///
     /// ```
     /// use viscocontact::TextFormat;

@@ -1,0 +1,56 @@
+//! The elastic contact of unit compliance that states are solved with.
+
+use crate::Grid;
+use crate::contact::{Builder, ViscoelasticContact};
+use crate::error::{Result, StatesError};
+use crate::load::Load;
+use crate::states::curve::{ElasticState, ElasticStates};
+use crate::states::pressed::Pressed;
+
+/// A contact that jumps from state to state, each solved from the last one.
+pub(super) struct ElasticContact(ViscoelasticContact);
+
+/// A state and its pressure.
+pub(super) struct Solved {
+    pub(super) state: ElasticState,
+    pub(super) pressure: Pressed,
+}
+
+impl ElasticContact {
+    pub(super) fn new(scene: &Builder) -> Result<ElasticContact> {
+        scene.clone().build().map(ElasticContact)
+    }
+
+    pub(super) fn grid(&self) -> &Grid {
+        self.0.grid()
+    }
+
+    /// The contact under a load.
+    pub(super) fn under(&mut self, load: Load) -> Result<&ViscoelasticContact> {
+        self.0.step(0.0, load)?;
+        Ok(&self.0)
+    }
+
+    /// The state under a load.
+    pub(super) fn solve(&mut self, load: Load) -> Result<Solved> {
+        let contact = self.under(load)?;
+        let level = if let Load::Force { normal, .. } = load { normal } else { contact.force() };
+        let state = ElasticState {
+            level,
+            approach: contact.approach(),
+            tilt: contact.tilt(),
+            stiffness: contact.stiffness_over_modulus()?,
+            area: contact.contact_area(),
+            cells: contact.contact_cells(),
+            patches: contact.patches()?.all.len(),
+        };
+        Ok(Solved { state, pressure: Pressed::new(contact.pressure()) })
+    }
+}
+
+impl ElasticStates {
+    /// An elastic contact of unit compliance on this surface, undisturbed.
+    pub(super) fn elastic_contact(&self) -> Result<ElasticContact> {
+        ElasticContact::new(self.scene.as_ref().ok_or(StatesError::NoScene)?)
+    }
+}
