@@ -200,9 +200,12 @@ impl StepControl {
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
+        let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
+        let [depth, stiffness] =
+            self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now])),
+            coming_back: [depth, stiffness.max(soon)],
             lasting: self
                 .lasting
                 .as_ref()
