@@ -30,7 +30,7 @@ type Scene = (ViscoelasticContact, fn(usize) -> Load, f64, usize);
 fn held_sphere() -> Scene {
     let contact = ViscoelasticContact::builder(Grid::square(64, 2.0e-3).unwrap())
         .geometry(&Sphere::new(10.0e-3).unwrap())
-        .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
+        .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()))
         .settings(Settings::default().with_window(false));
     (contact.build().unwrap(), |_| Load::force(0.3), 0.02, 20)
 }
@@ -39,7 +39,7 @@ fn held_sphere() -> Scene {
 fn eccentric_punch() -> Scene {
     let contact = ViscoelasticContact::builder(Grid::new([48, 60], [1.0e-3, 1.0e-3]).unwrap())
         .geometry(&FlatPunch::circular(0.4e-3).unwrap())
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()));
+        .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap()));
     let load = |step: usize| Load::eccentric_force(1.0, [0.1e-3 + 0.01e-3 * step as f64, 0.05e-3]);
     (contact.build().unwrap(), load, 0.1, 10)
 }

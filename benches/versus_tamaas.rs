@@ -45,7 +45,7 @@ impl Scene {
     fn named(name: &str) -> Result<Scene, Box<dyn Error>> {
         Ok(if name == "sphere" {
             // long-term modulus 1, retardation time 1; on a square 2.25 radii wide of the contact of the compliance at 2 s
-            let material = Material::incompressible(Zener::new(2.0, 2.0, 2.0)?);
+            let material = Material::incompressible(Zener::with_time(2.0, 2.0, 1.0)?);
             let force = 0.01;
             let radius = (0.75 * force * material.contact_compliance(2.0)).cbrt();
             let grid = Grid::square(256, 2.25 * radius)?;

@@ -209,8 +209,8 @@ fn over_amplitude(args: &Args, body: &Body) -> Result<(), Box<dyn Error>> {
 fn save_loop(args: &Args, [computed, exact]: [Cycle; 2], fixed: Vec<(f64, f64)>) -> Result<(), Box<dyn Error>> {
     let mut chart = Chart::new(
         format!("A cycle of a ball on PMMA at {} Hz, force between 0 and twice its mean", args.frequency),
-        Quantity::of("approach − mean", "m"),
-        Quantity::of("force − mean", "N"),
+        Quantity::new("approach − mean", "m"),
+        Quantity::new("force − mean", "N"),
         Legend::UpperLeft,
     );
     chart.add("if the contact were fixed", COLORS[0], Style::Line, fixed);

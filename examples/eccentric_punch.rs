@@ -173,7 +173,7 @@ fn creeping(args: &Args) -> Result<(), Box<dyn Error>> {
     table.write_record(["eccentricity_over_radius", "time_s", "tilt_rad", "approach_m", "contact_cells"])?;
     println!("\ncreeping, 40 steps to 4 τ");
     for (e, color) in [0.2, 0.5, 0.8].into_iter().zip(COLORS) {
-        let body = Maxwell::new(args.modulus, args.modulus * args.tau)?;
+        let body = Maxwell::with_time(args.modulus, args.tau)?;
         let mut contact = punch(args, Material::incompressible(body))?;
         let load = Load::eccentric_force(args.load, [e * args.radius, 0.0]);
         let history = StepLoad::new(load)?;

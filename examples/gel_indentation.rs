@@ -58,7 +58,7 @@ fn main() {
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     // shear modulus 2 kPa at once, 400 Pa after some seconds
-    let gel = Zener::new(2.0e3, 500.0, 1.0e3)?;
+    let gel = Zener::with_time(2.0e3, 500.0, 2.0)?;
     let material = Material::incompressible(gel);
     let until = 20.0_f64;
     let widest = (0.75 * args.radius * args.load * material.contact_compliance(until)).cbrt();

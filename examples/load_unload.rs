@@ -60,7 +60,7 @@ fn main() {
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
-    let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let body = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
     let material = Material::constant_poisson(body, args.poisson)?;
     let corners = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.5, 0.0), (3.5, 1.0)];
     let history = PiecewiseLinear::new(&corners.map(|(time, load)| (time * args.tau, Load::force(load * args.load))))?;

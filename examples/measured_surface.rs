@@ -109,7 +109,7 @@ fn shipped(data: &Path) -> Result<HeightMap, Box<dyn Error>> {
 fn prepare(raw: &HeightMap, margin: usize) -> Result<HeightMap, Box<dyn Error>> {
     println!("{:28} {:>8} {:>12} {:>10} {:>8} {:>8}", "", "missing", "rms height", "rms slope", "skew", "kurtosis");
     let row = |name: &str, map: &HeightMap| -> Result<()> {
-        let s = SurfaceStatistics::of(map)?;
+        let s = map.statistics()?;
         let (height, slope) = (s.rms_height * 1e6, s.rms_slope);
         println!("{name:28} {:8} {height:9.3} µm {slope:10.4} {:8.3} {:8.3}", map.missing(), s.skewness, s.kurtosis);
         Ok(())
@@ -212,7 +212,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
 /// A map of heights as a picture, from the lowest to the highest.
 fn picture(map: &HeightMap, title: &str) -> Result<Map> {
     let grid = Grid::new(map.cells(), map.lengths())?;
-    let mut picture = Map::new(&grid, map.heights().to_vec(), Quantity::of("height", "m"))?;
+    let mut picture = Map::new(&grid, map.heights().to_vec(), Quantity::new("height", "m"))?;
     picture.title = title.into();
     picture.blank = Color::GREY;
     Ok(picture)

@@ -22,7 +22,7 @@ use scenes::{
 use step_loaded_sphere::StepLoadedSphere;
 use viscocontact::Result;
 use viscocontact::analytic::{GrowingSphere, Hertz};
-use viscocontact::plot::{COLORS, Chart, Color, Legend, Picture, Style, scientific};
+use viscocontact::plot::{COLORS, Chart, Color, Legend, Picture, Style};
 use viscocontact::prelude::*;
 
 /// Draws Figures 2 to 6 of the source paper.
@@ -194,7 +194,7 @@ fn steps_in_time(cells: usize) -> Drawn {
         let runs = study.pressures.iter().zip(STEP_COUNTS).zip(&study.errors).zip(COLORS);
         for (((pressure, steps), [error, _]), color) in runs {
             let half = along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0);
-            chart.add(format!("{steps} steps, error {}", scientific(*error, 1)), color, Style::Line, half.collect());
+            chart.add(format!("{steps} steps, error {error:.1e}"), color, Style::Line, half.collect());
         }
         let time = 2.0 * scene.tau;
         let radii = (0..36).map(|k| 0.04 * f64::from(k)).chain([exact.contact_radius(time) / units[0]]);

@@ -143,7 +143,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
 /// The median of three runs: mean time of a step \[ms\].
 fn cost(cells: usize, steps: usize, settings: Settings, wide: f64) -> Result<Cost, Box<dyn Error>> {
-    let material = || Ok::<_, viscocontact::Error>(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?));
+    let material = || Ok::<_, viscocontact::Error>(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?));
     // to t = 2τ the compliance grows to three times that at first
     let radius = (0.75 * RADIUS * FORCE * material()?.contact_compliance(2.0)).cbrt();
     let mut costs = Vec::new();

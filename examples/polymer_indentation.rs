@@ -10,7 +10,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style, scientific};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -139,7 +139,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let inside: Vec<_> = profile.iter().filter(|(_, p)| *p > 0.0).copied().collect();
         let most = inside.iter().fold(0.0_f64, |most, (_, p)| most.max(*p));
         let radius = 1e3 * run_at(*time)[1];
-        let label = format!("{} s: {radius:.2} mm, {most:.1} MPa", scientific(*time, 0));
+        let label = format!("{time:.0e} s: {radius:.2} mm, {most:.1} MPa");
         let shape = |&(x, p): &(f64, f64)| (x / radius, p / most);
         chart.add(label, COLORS[k], Style::Line, inside.iter().map(shape).collect());
     }

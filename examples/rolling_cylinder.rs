@@ -111,7 +111,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     let (cells, speeds) = if args.quick { (12, 7) } else { (args.cells, args.speeds) };
-    let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let body = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
     let material = Material::incompressible(body);
     let mut scene = RollingCylinder {
         radius: args.radius,

@@ -26,7 +26,7 @@ use std::time::Instant;
 use clap::Parser;
 use viscocontact::Result;
 use viscocontact::output::{CsvHistory, Metadata};
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style, scientific};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -102,7 +102,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .with_roll_off(0.25 * args.length)
         .with_seed(args.seed);
     let surface = Rough::new(&grid, spec)?;
-    let statistics = SurfaceStatistics::of(surface.height_map())?;
+    let statistics = surface.height_map().statistics()?;
     println!(
         "surface: {cells}² cells on ({:.2} mm)², rms height {:.3} µm, rms slope {:.4}, H = {}",
         args.length * 1e3,
@@ -299,7 +299,7 @@ fn observe(contact: &ViscoelasticContact) -> Result<Moment> {
 fn map(contact: &ViscoelasticContact, mean: f64, time: f64, share: f64) -> Result<Map> {
     let values = contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect();
     let mut map = Map::new(contact.grid(), values, "p / mean pressure")?;
-    map.title = format!("{} s: {:.0} % in contact", scientific(time, 0), 100.0 * share);
+    map.title = format!("{time:.0e} s: {:.0} % in contact", 100.0 * share);
     map.range = [0.0, 20.0];
     Ok(map)
 }

@@ -81,7 +81,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     let Args { punch, sphere, distance, cells, .. } = *args;
     let scene = Indenters { punch, sphere, distance, cells };
-    let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let body = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
     let material = Material::incompressible(body);
     held(args, &scene, &material)?;
     in_turn(args, &scene, &material)?;
@@ -156,8 +156,8 @@ fn surface(
     let line = contact.profile(Axis::X1, 0.0)?;
     let mut chart = Chart::new(
         format!("Surface through two punches and the sphere, t = {HELD} τ"),
-        Quantity::of("x1", "m"),
-        Quantity::of("height of the surface", "m"),
+        Quantity::new("x1", "m"),
+        Quantity::new("height of the surface", "m"),
         Legend::LowerMiddle,
     );
     let sum = line.positions.iter().map(|&x| (x, -scene.sum_of_lone([x, line.at], forces, compliance))).collect();

@@ -66,7 +66,7 @@ struct Bodies {
 
 impl Bodies {
     fn new(args: &Args) -> Result<Bodies> {
-        let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+        let body = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
         let material = Material::incompressible(body);
         let radius = |t: f64| (0.75 * args.radius * args.load * material.contact_compliance(t)).cbrt();
         let (glassy, relaxed) = (radius(0.0), radius(1e3 * args.tau));
@@ -158,8 +158,8 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     let part = &contact.pressure()[(middle - reach) * n2..(middle + reach) * n2];
     let around = Grid::new([2 * reach, n2], [2 * reach, n2].map(|cells| cells as f64 * side))?;
     let values = part.iter().map(|&p| if p > 0.0 { p } else { f64::NAN }).collect();
-    let mut map = Map::new(&around, values, Quantity::of("pressure", "Pa"))?;
-    map.axes[0] = Quantity::of("x1 from the axis of the sphere", "m");
+    let mut map = Map::new(&around, values, Quantity::new("pressure", "Pa"))?;
+    map.axes[0] = Quantity::new("x1 from the axis of the sphere", "m");
     map.title = format!("A sphere slides to the right, friction {friction:.3}");
     map.save(output.join("pressure.png"))?;
     {

@@ -114,11 +114,11 @@ impl Args {
         };
         let mut scenes = Vec::new();
         if self.model != Model::Zener {
-            let body = Maxwell::new(self.modulus, self.modulus * self.tau)?;
+            let body = Maxwell::with_time(self.modulus, self.tau)?;
             scenes.push(StepLoadedSphere { name: "Maxwell", material: Material::incompressible(body), ..base.clone() });
         }
         if self.model != Model::Maxwell {
-            let body = Zener::new(self.modulus, self.kelvin_modulus, self.kelvin_modulus * self.tau)?;
+            let body = Zener::with_time(self.modulus, self.kelvin_modulus, self.tau)?;
             scenes.push(StepLoadedSphere { name: "Zener", material: Material::incompressible(body), ..base });
         }
         Ok(scenes)

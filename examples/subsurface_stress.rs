@@ -113,7 +113,7 @@ fn press(args: &Args, material: Material, length: f64, advance: impl Fn()) -> vi
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
-    let shear = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let shear = Zener::with_time(args.modulus, args.kelvin_modulus, args.tau)?;
     let polymer = Material::elastic_bulk(shear.clone(), args.bulk)?;
     // the contact at the end, with some space around it
     let last =
@@ -153,7 +153,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 }
 
 fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
-    let name = || Quantity::of("von Mises stress", "Pa");
+    let name = || Quantity::new("von Mises stress", "Pa");
     let sections = &runs[0].1.sections;
     let mut maps = Vec::new();
     for (contact, section) in sections {
@@ -164,8 +164,8 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     maps.iter_mut().for_each(|map| map.range = [0.0, most]);
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
-    let time = || Quantity::of("time", "s");
-    let mut depth = Chart::new("The point sinks", time(), Quantity::of("depth", "m"), Legend::UpperLeft);
+    let time = || Quantity::new("time", "s");
+    let mut depth = Chart::new("The point sinks", time(), Quantity::new("depth", "m"), Legend::UpperLeft);
     let mut relative = Chart::new("Its depth over the contact radius", time(), "z / a", Legend::LowerRight);
     for chart in [&mut depth, &mut relative] {
         chart.scale = Scale::LogX;

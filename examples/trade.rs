@@ -99,8 +99,8 @@ fn scenes() -> Result<Vec<Scene>> {
         move |t: f64| (0.75 * RADIUS * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS
     };
     let step = || StepLoad::new(Load::force(1.0));
-    let maxwell = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
-    let zener = Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6)?);
+    let maxwell = Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?);
+    let zener = Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0)?);
     let four = [(0.5e-6, 0.05), (0.5e-6, 0.3), (0.5e-6, 2.0), (0.5e-6, 10.0)];
     let four = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &four)?);
     let power = Material::incompressible(FractionalMaxwell::findley(1.0e-6, 1.0e-6, 0.3)?);

@@ -1,6 +1,6 @@
 //! Times in ascending order, and values at them.
 
-use crate::error::{Result, finite, in_order, least_length};
+use crate::error::{Result, count_within, finite, in_order, least_length, positive};
 
 /// Finite times \[s\], ascending: breakpoints, corners, times to stop at.
 #[derive(Debug, Clone, Default)]
@@ -27,6 +27,88 @@ impl Ascending {
     }
 }
 
+/// Times \[s\] at which steps end or states are sampled: single ones, multiples of an interval, and decades.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Schedule {
+    times: Ascending,
+    rules: Vec<(f64, Rule)>,
+}
+
+/// Endless times, counted from an origin.
+#[derive(Debug, Clone, Copy)]
+enum Rule {
+    /// Multiples of an interval, from 1 on.
+    Every(f64),
+    /// The first, and a number for each decade.
+    Decades(f64, f64),
+}
+
+/// Greatest number of times per decade: more are closer than plots resolve.
+const MOST_PER_DECADE: usize = 1000;
+
+impl Schedule {
+    /// Adds `times` in any order; `field` names them in the error of one that is not finite.
+    pub(crate) fn add(&mut self, field: &'static str, times: &[f64]) -> Result<()> {
+        self.times.add(field, times)
+    }
+
+    /// Adds the multiples of an interval after `origin`; `field` names the interval.
+    pub(crate) fn add_every(&mut self, field: &'static str, interval: f64, origin: f64) -> Result<()> {
+        self.rules.push((origin, Rule::Every(positive(field, interval)?)));
+        Ok(())
+    }
+
+    /// Adds the time `first` after `origin`, and `per_decade` times in each decade beyond; the names are those of both in errors.
+    pub(crate) fn add_decades(
+        &mut self,
+        [first_name, count_name]: [&'static str; 2],
+        (first, per_decade): (f64, usize),
+        origin: f64,
+    ) -> Result<()> {
+        positive(first_name, first)?;
+        count_within(count_name, per_decade, (1..=MOST_PER_DECADE).contains(&per_decade), "1 to 1000")?;
+        self.rules.push((origin, Rule::Decades(first, per_decade as f64)));
+        Ok(())
+    }
+
+    /// The first of the times after `time`.
+    pub(crate) fn after(&self, time: f64) -> Option<f64> {
+        let of_rules = self.rules.iter().map(|(origin, rule)| rule.after(*origin, time));
+        of_rules.chain(self.times.after(time)).min_by(f64::total_cmp)
+    }
+}
+
+impl Rule {
+    /// The time of this number, from 0 on.
+    fn time(self, origin: f64, number: f64) -> f64 {
+        match self {
+            Rule::Every(interval) => origin + (number + 1.0) * interval,
+            Rule::Decades(first, per_decade) => {
+                let decade = (number / per_decade).floor();
+                origin + first * 10f64.powi(decade as i32) * 10f64.powf(number / per_decade - decade)
+            }
+        }
+    }
+
+    fn after(self, origin: f64, time: f64) -> f64 {
+        let about = match self {
+            Rule::Every(interval) => (time - origin) / interval - 1.0,
+            Rule::Decades(first, per_decade) => per_decade * ((time - origin) / first).log10(),
+        };
+        // NaN of a time before the origin is the first
+        let mut number = (about.floor() - 1.0).max(0.0);
+        // the number is right but for rounding, unless times lie closer than f64 resolves
+        for _ in 0..4 {
+            let next = self.time(origin, number);
+            if next > time {
+                return next;
+            }
+            number += 1.0;
+        }
+        time.next_up()
+    }
+}
+
 /// Values at finite times \[s\] that do not decrease: interpolated in between, constant before the first and after the
 /// last. Two entries at the same time are a jump.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +121,10 @@ impl<T: Copy> TimeTable<T> {
         entries.iter().try_for_each(|&(time, _)| finite(times, time).map(drop))?;
         in_order(times, entries.iter().map(|entry| entry.0), "not decrease", |previous, value| value >= previous)?;
         Ok(TimeTable(entries.to_vec()))
+    }
+
+    pub(crate) fn as_slice(&self) -> &[(f64, T)] {
+        &self.0
     }
 
     /// The value at `time`, after a jump; `mix` interpolates two values by the share of the second.
@@ -71,5 +157,42 @@ impl<T: Copy> TimeTable<T> {
     {
         let next = self.0.partition_point(|entry| entry.0 <= time);
         self.0.get(next).is_none_or(|entry| entry.1 == self.0[next.saturating_sub(1)].1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schedules_have_every_time_once_and_in_order() {
+        let mut schedule = Schedule::default();
+        schedule.add("times", &[0.35, -1.0, 7.0]).unwrap();
+        schedule.add_every("interval", 0.1, 0.0).unwrap();
+        schedule.add_decades(["first", "number"], (1e-3, 2), 0.0).unwrap();
+        let (mut time, mut found) = (-2.0, Vec::new());
+        while let Some(next) = schedule.after(time).filter(|next| *next < 0.45) {
+            assert!(next > time);
+            found.push(next);
+            time = next;
+        }
+        let root = 10f64.sqrt();
+        // 0.1 is both a multiple and a decade, and 0.3 = 3 × 0.1 is the multiple nearest to it
+        let expected =
+            [-1.0, 1e-3, 1e-3 * root, 1e-2, 1e-2 * root, 0.1, 0.2, 0.30000000000000004, 0.1 * root, 0.35, 0.4];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() <= 1e-15, "{found} {expected}");
+        }
+        // the times do not depend on how one comes to them
+        for k in 0..1000 {
+            let time = 1e-4 * f64::from(k);
+            let next = schedule.after(time).unwrap();
+            assert_eq!(schedule.after(next.next_down()), Some(next));
+        }
+        assert!(schedule.after(1e300).unwrap() > 1e300);
+        assert!(schedule.add_every("interval", 0.0, 0.0).is_err());
+        assert!(schedule.add_decades(["first", "number"], (1.0, 0), 0.0).is_err());
+        assert!(Schedule::default().after(0.0).is_none());
     }
 }

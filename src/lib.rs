@@ -36,7 +36,7 @@
 //! let grid = Grid::square(64, 4.0e-3)?;                          // 64 × 64 cells on 4 mm × 4 mm
 //! let mut contact = ViscoelasticContact::builder(grid)
 //!     .geometry(&Sphere::new(10.0e-3)?)                          // anything that is `Geometry`
-//!     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 //!     .build()?;
 //! contact.step(0.0, Load::force(1.0))?;                          // Δ = 0: the load jumps
 //! for _ in 0..10 {
@@ -123,7 +123,8 @@
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
 //! `serde`: `Serialize` and `Deserialize` for the description of a run, [`load::Load`], [`contact::Settings`],
-//! [`contact::Stepping`], [`geometry::RoughSpec`] and their parts, and for the error estimates of a run. Part of `checkpoint`.
+//! [`contact::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
+//! statistics. Part of `checkpoint`.
 //!
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
 //!
@@ -231,7 +232,7 @@ pub mod prelude {
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
     pub use crate::output::CsvHistory;
-    pub use crate::output::{Field, Metadata};
+    pub use crate::output::{Field, FrameSeries, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,

@@ -1,4 +1,12 @@
-//! Values that users write: fields that are read and changed by methods.
+//! Values that users write: fields that are read and changed by methods. Values that are too many to print.
+
+use std::fmt;
+
+/// Prints the number of values of a field in its place.
+#[expect(clippy::ptr_arg, reason = "derived code passes the field as it is")]
+pub(crate) fn counted<T>(values: &Vec<T>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    write!(f, "{} values", values.len())
+}
 
 /// Declares a struct whose fields are read by methods named as they are, with their documentation, and changed by methods
 /// `with_field(self, field) -> Self` where one is named. Such types may get more fields.

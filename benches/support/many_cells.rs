@@ -41,7 +41,7 @@ pub fn run(cells: usize, quarter: bool, ranks: Option<Arc<dyn Ranks>>) -> viscoc
     };
     let builder = builder
         .geometry(&Sphere::new(10.0e-3)?)
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))
+        .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?))
         .settings(Settings::default().with_symmetry(quarter).with_window(false));
     let told = builder.memory()?;
     let mut contact = builder.build()?;

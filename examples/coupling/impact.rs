@@ -185,10 +185,10 @@ impl Args {
 /// A Maxwell body, or a Zener body that relaxes to a third, with the relaxation time `tau`.
 fn material(args: &Args, maxwell: bool, tau: f64) -> Result<Material> {
     Ok(if maxwell {
-        Material::incompressible(Maxwell::new(args.modulus, args.modulus * tau)?)
+        Material::incompressible(Maxwell::with_time(args.modulus, tau)?)
     } else {
         // relaxed modulus G Gk / (G + Gk), relaxation time η / (G + Gk)
-        Material::incompressible(Zener::new(args.modulus, 0.5 * args.modulus, 1.5 * args.modulus * tau)?)
+        Material::incompressible(Zener::with_time(args.modulus, 0.5 * args.modulus, 3.0 * tau)?)
     })
 }
 
@@ -208,8 +208,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     table.write_record(["body", "duration_over_tau", "restitution", "foundation", "imbalance"])?;
     let mut forces = Chart::new(
         "A ball strikes a half-space: lines one-dimensional foundation, dots computed",
-        Quantity::of("time", "s"),
-        Quantity::of("force", "N"),
+        Quantity::new("time", "s"),
+        Quantity::new("force", "N"),
         Legend::UpperRight,
     );
     let mut dots = [Vec::new(), Vec::new()];
@@ -296,8 +296,8 @@ fn order(args: &Args) -> Result<(), Box<dyn Error>> {
 fn energy(args: &Args, all: &[Moment]) -> Result<(), Box<dyn Error>> {
     let mut chart = Chart::new(
         "Energy of a ball that strikes a Maxwell body, T/τ = 1",
-        Quantity::of("time", "s"),
-        Quantity::of("energy", "J"),
+        Quantity::new("time", "s"),
+        Quantity::new("energy", "J"),
         Legend::MiddleLeft,
     );
     let kinetic = |now: &Moment| 0.5 * args.mass * now.velocity.powi(2);

@@ -56,7 +56,7 @@ impl Case {
         let surface = Travel::new(Rough::new(&grid, spec)?, Straight::new([0.0; 2], [self.speed, 0.0])?);
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(&surface.shape_at(0.0)?)
-            .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6 * 1.0e-3)?)) // retarded by 1 ms
+            .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0e-3)?)) // retarded by 1 ms
             .kernel(InfluenceKernel::periodic(&grid)?)
             .build()?;
         contact.step(0.0, load)?;

@@ -36,7 +36,7 @@ pub fn step_loaded(scene: &StepLoadedSphere, name: &'static str) -> Outcome {
 /// Radok 1960). Under a step of W hence f = C(t) W: the ellipse is Hertz's with the compliance of the time, and ω and the area
 /// follow C^(2/3).
 pub fn step_loaded_ellipsoid() -> Outcome {
-    let material = Material::incompressible(Maxwell::new(G, G)?);
+    let material = Material::incompressible(Maxwell::with_time(G, 1.0)?);
     let radii = [20.0e-3, 5.0e-3];
     let exact = |t: f64| HertzEllipse::new(radii, 1.0 / material.contact_compliance(t), 1.0);
     let [a1, a2] = exact(2.0)?.semi_axes;
@@ -65,7 +65,7 @@ pub fn step_loaded_ellipsoid() -> Outcome {
 /// A flat face half lifted by its force: h = C K p − ω − α x1 on it, so that pressure and contact stay, and ω and α follow C(t)
 /// (E. H. Lee, Q. Appl. Math. 13, 1955, p. 183: stresses that do not change with time).
 pub fn opened_punch() -> Outcome {
-    let material = Material::incompressible(Zener::new(G, 0.5 * G, 0.5 * G)?);
+    let material = Material::incompressible(Zener::with_time(G, 0.5 * G, 1.0)?);
     let mut contact = ViscoelasticContact::builder(Grid::square(96, 2.1e-3)?)
         .geometry(&FlatPunch::circular(1.0e-3)?)
         .material(material.clone())
@@ -152,7 +152,7 @@ pub fn elastic_bulk() -> Outcome {
 
 /// A punch that oscillates: its force has the loss tangent of the body.
 pub fn oscillating() -> Outcome {
-    let (body, omega, steps) = (Zener::new(G, 0.5 * G, 0.5 * G)?, 2.0, 128);
+    let (body, omega, steps) = (Zener::with_time(G, 0.5 * G, 1.0)?, 2.0, 128);
     let spectrum = body.creep_spectrum().ok_or("a Zener body has a spectrum")?;
     let complex = spectrum.complex_modulus(omega);
     let mut contact = ViscoelasticContact::builder(Grid::square(64, 2.1e-3)?)
@@ -188,7 +188,7 @@ pub fn oscillating() -> Outcome {
 }
 
 pub fn loaded_and_unloaded() -> Outcome {
-    let material = Material::constant_poisson(Zener::new(G, 0.5 * G, 0.5 * G)?, 0.3)?;
+    let material = Material::constant_poisson(Zener::with_time(G, 0.5 * G, 1.0)?, 0.3)?;
     let corners = [(0.0, 0.0), (1.0, 1.0), (1.6, 0.4)].map(|(t, force)| (t, Load::force(force)));
     let history = PiecewiseLinear::new(&corners)?;
     let widest = (0.75 * 10.0e-3 * material.contact_compliance(1e3)).cbrt();
@@ -225,7 +225,7 @@ pub fn relaxing() -> Outcome {
     let tau = 1.0;
     let mut contact = ViscoelasticContact::builder(Grid::square(128, 4.0e-3)?)
         .geometry(&Sphere::new(10.0e-3)?)
-        .material(Material::incompressible(Maxwell::new(G, G * tau)?))
+        .material(Material::incompressible(Maxwell::with_time(G, tau)?))
         .build()?;
     contact.step(0.0, Load::approach(1.0e-4))?;
     let start = contact.force();
@@ -246,7 +246,7 @@ pub fn rolling() -> Outcome {
     let cylinder = Shifted::new(Cylinder::new(scene.radius)?, [0.5 * grid.lengths()[0] - 2.0 * relaxed, 0.0])?;
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&cylinder)
-        .material(Material::incompressible(Zener::new(G, 0.5 * G, 0.5 * G)?))
+        .material(Material::incompressible(Zener::with_time(G, 0.5 * G, 1.0)?))
         .kernel(InfluenceKernel::line(&grid, 1.0e3)?)
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;

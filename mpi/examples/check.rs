@@ -107,7 +107,7 @@ fn hold(ranks: Option<Arc<dyn Ranks>>, from: Option<&str>, to: Option<&str>) -> 
 fn sphere(ranks: Option<Arc<dyn Ranks>>) -> Result<ViscoelasticContact, Error> {
     let builder = ViscoelasticContact::builder(Grid::new([203, 178], [4.0e-3, 3.6e-3])?)
         .geometry(&Sphere::new(10.0e-3)?)
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))
+        .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?))
         .settings(Settings::default().with_symmetry(false).with_window(false));
     match ranks {
         Some(ranks) => builder.ranks(ranks).build(),
@@ -127,7 +127,7 @@ fn hash_of_scenes(ranks: Option<Arc<dyn Ranks>>) -> Result<u64, Error> {
     let settings = Settings::default().with_symmetry(false).with_window(false);
     let punch = ViscoelasticContact::builder(Grid::new([170, 160], [1.2e-3, 1.0e-3])?)
         .geometry(&FlatPunch::rectangular([0.8e-3, 0.6e-3])?)
-        .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+        .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
         .settings(settings);
     let mut contact = match ranks {
         Some(ranks) => punch.ranks(ranks).build()?,

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut contact = ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
         .ranks(ranks.clone())
         .geometry(&Sphere::new(10.0e-3)?)
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?)) // retarded by 1 s
+        .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?)) // retarded by 1 s
         .settings(Settings::default().with_symmetry(false))
         .build()?;
     for step in 0..4 {

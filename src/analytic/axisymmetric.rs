@@ -179,10 +179,7 @@ impl AxisymmetricContact {
         self.displacement.predict_non_negative(&mut self.rule, self.width, &rows, || true);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
-            return Err(Error::Step(StepError::NoElasticResponse {
-                time,
-                what: "a jump of the foundation (ramp the load instead)",
-            }));
+            return Err(Error::Step(StepError::NoElasticResponse { time, what: "a jump of the foundation" }));
         }
         for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(self.displacement.trial()) {
             *touch = g + u_old;

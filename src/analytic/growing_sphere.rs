@@ -24,7 +24,7 @@ use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
 /// use viscocontact::analytic::GrowingSphere;
 /// use viscocontact::rheology::{Material, Maxwell};
 ///
-/// let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+/// let body = Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?);
 /// let sphere = GrowingSphere::step(10.0e-3, &body, 1.0)?;
 /// let growth = (sphere.contact_radius(2.0) / sphere.contact_radius(0.0)).powi(3);
 /// assert!((growth - 3.0).abs() < 1e-12); // J(2τ) = 3 J(0)

@@ -15,7 +15,7 @@ use crate::contact::{Computation, Progress, Scene};
 /// let grid = Grid::square(64, 4.0e-3)?;
 /// let mut contact = ViscoelasticContact::builder(grid)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// contact.step(0.0, Load::force(1.0))?; // Δ = 0: the load jumps
 /// let before = contact.contact_area();
@@ -31,7 +31,7 @@ use crate::contact::{Computation, Progress, Scene};
 /// # use viscocontact::prelude::*;
 /// # let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
 /// #     .geometry(&Sphere::new(10.0e-3)?)
-/// #     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+/// #     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 /// #     .build()?;
 /// contact.step(0.0, Load::force(1.0))?;
 /// let depth = contact.approach();

@@ -63,7 +63,9 @@ pub enum CheckpointError {
     },
 
     /// The checkpoint is of another scene than the contact that is to resume it.
-    #[error("the checkpoint is of another scene: its {what} is {saved}, that of this contact is {built}")]
+    #[error(
+        "the checkpoint is of another scene: its {what} is {saved}, but the contact has {built}: build the contact as it was saved"
+    )]
     OtherScene {
         /// What differs.
         what: &'static str,

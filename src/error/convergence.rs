@@ -22,7 +22,7 @@ const FEWEST: usize = 4;
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(48, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .settings(Settings::default().with_max_iterations(5).with_tolerance(1.0e-13))
 ///     .build()?;
 /// let Err(Error::Step(StepError::NotConverged { convergence, .. })) = contact.step(0.0, Load::force(0.5)) else { panic!() };
@@ -31,6 +31,7 @@ const FEWEST: usize = 4;
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Convergence {
     samples: Vec<(usize, f64)>,
     tolerance: f64,
@@ -42,6 +43,7 @@ pub struct Convergence {
 
 /// How the residual changes over the iterations of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Trend {
     /// Too few iterations to show a trend.

@@ -3,7 +3,7 @@
 #[non_exhaustive]
 pub enum FileError {
     /// A file cannot be read, or does not have its format.
-    #[error("{file}: {reason}")]
+    #[error("{file} cannot be read: {reason}")]
     Unreadable {
         /// Its name, or its format if it has none.
         file: String,

@@ -1,11 +1,13 @@
+use crate::rounded::rounded;
+
 /// Errors of an influence kernel.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KernelError {
     /// The [`InfluenceKernel`](crate::InfluenceKernel) was made for another grid than the contact's.
-    #[error("the kernel was made for {} × {} cells of {:e} m × {:e} m, the contact has {} × {} of {:e} m × {:e} m",
-        .kernel.0[0], .kernel.0[1], .kernel.1[0], .kernel.1[1],
-        .contact.0[0], .contact.0[1], .contact.1[0], .contact.1[1])]
+    #[error("the kernel was made for {} × {} cells of {:e} m × {:e} m, the contact has {} × {} of {:e} m × {:e} m: make it for the grid of the contact",
+        .kernel.0[0], .kernel.0[1], rounded(.kernel.1[0], 5), rounded(.kernel.1[1], 5),
+        .contact.0[0], .contact.0[1], rounded(.contact.1[0], 5), rounded(.contact.1[1], 5))]
     WrongGrid {
         /// Cells of the kernel's grid along x1 and x2, and the sides of a cell \[m\].
         kernel: ([usize; 2], [f64; 2]),

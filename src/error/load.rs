@@ -5,7 +5,9 @@ use crate::rounded::{TIME, rounded};
 #[non_exhaustive]
 pub enum LoadError {
     /// Two loads of a history cannot be interpolated because they control different quantities.
-    #[error("the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated")]
+    #[error(
+        "the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated: take loads of one kind, and a run for each kind"
+    )]
     MixedKinds {
         /// Which history or table.
         field: &'static str,

@@ -1,3 +1,5 @@
+use crate::rounded::rounded;
+
 /// What is wrong with a rheology or a material.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -20,7 +22,7 @@ pub enum MaterialError {
     /// A creep compliance returned a value that no body can have: negative, not finite, or less than at an earlier
     /// time; or, where a series is fitted, 0 after t = 0.
     #[error(
-        "creep compliance J({time:?} s) = {value:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous:?} before)"
+        "creep compliance J({:?} s) = {:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {:?} before)", rounded(*.time, 5), rounded(*.value, 5), rounded(*.previous, 5)
     )]
     InvalidCompliance {
         /// Time at which it was evaluated \[s\].

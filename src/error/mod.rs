@@ -37,6 +37,8 @@ pub use table::{Place, TableError};
 pub use text::TextError;
 pub use violation::{Location, Verdict, Violation};
 
+use crate::rounded::rounded;
+
 /// Everything that can go wrong, with the numbers needed to correct it.
 ///
 /// Every constructor validates its arguments, so an invalid model cannot be built; a
@@ -90,7 +92,7 @@ pub enum Error {
 
     /// A slice or table has the wrong length: a field needs one value per cell, a table enough to define a function, a step
     /// one load for each rigid body.
-    #[error("{field} holds {len} values, but needs {}{expected}", if *.exact { "" } else { "at least " })]
+    #[error("{field}: {len} given, {}{expected} needed", if *.exact { "" } else { "at least " })]
     WrongLength {
         /// Which slice or table.
         field: &'static str,
@@ -122,7 +124,7 @@ pub enum Error {
     Load(#[from] LoadError),
 
     /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
-    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is no body", .cell[0], .cell[1], .position[0], .position[1])]
+    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is no body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
     InvalidGap {
         /// Indices of the cell.
         cell: [usize; 2],
@@ -135,7 +137,7 @@ pub enum Error {
     /// A body can touch nothing: its gap is +∞ on every cell of the grid, or it is above another body everywhere.
     /// Compare its position and size with [`Grid::lengths`](crate::Grid::lengths).
     #[error(
-        "body {body} is the lowest body with a finite gap on none of the {cells} cells of the grid: it can touch nothing"
+        "body {body} is the lowest body with a finite gap on none of the {cells} cells of the grid: it can touch nothing; compare its position and size with Grid::lengths"
     )]
     NothingToTouch {
         /// Index of the body.
@@ -157,7 +159,9 @@ pub enum Error {
 
     /// A call needs the grid in the other [`Frame`](crate::contact::Frame): fixed to the indenter for a step over the
     /// bodies, fixed to the bodies for a path or a direct sum.
-    #[error("{what} is not possible in the frame that Settings::frame chooses: choose the other Frame")]
+    #[error(
+        "{what} is not possible in the frame that Settings::frame chooses: choose the other Frame with Settings::with_frame"
+    )]
     WrongFrame {
         /// The call.
         what: &'static str,
@@ -215,15 +219,16 @@ pub enum Error {
 
     /// A [`Plan`](crate::plan::Plan) found no domain that holds the contact: none is large enough.
     #[error(
-        "no domain was found that holds the contact (the last one tried was {length:e} m wide): check geometry and load"
+        "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry and load"
     )]
     NoDomain {
         /// Side of the last domain tried \[m\].
         length: f64,
     },
 
-    /// The caller's report of progress ended the call.
-    #[error("{what} was cancelled by its report of progress")]
+    /// The caller ended the call: by its report of progress, or the flag of
+    /// [`Run::cancelled_by`](crate::contact::Run::cancelled_by).
+    #[error("{what} was cancelled by its caller")]
     Cancelled {
         /// The call.
         what: &'static str,

@@ -16,7 +16,7 @@ pub enum StepError {
     },
 
     /// A force acts outside the convex hull of the cells that the body may touch, so that no pressure balances it.
-    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would tip over", .at[0], .at[1], time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load acts at ({}, {}) m, outside the convex hull of the cells that body {body} may touch: it would tip over; move it inside, or prescribe the tilt", rounded(.at[0], 4), rounded(.at[1], 4), time = rounded(*.time, TIME))]
     LoadOutsideHull {
         /// End of the step \[s\].
         time: f64,
@@ -30,18 +30,22 @@ pub enum StepError {
     /// Enlarge the grid, or choose [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends at the edge of
     /// the grid.
     #[error(
-        "at t = {time} s the contact touches the edge of the grid on {cells} cells: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", time = rounded(*.time, TIME))]
+        "at t = {time} s the contact touches the edge of the grid on {cells} cells; {}: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", widths(*.lengths, *.needed), time = rounded(*.time, TIME))]
     ContactAtEdge {
         /// End of the step \[s\].
         time: f64,
         /// Number of cells in contact along the edge.
         cells: usize,
+        /// Lengths of the grid \[m\].
+        lengths: [f64; 2],
+        /// Estimated lengths of a grid that holds the contact \[m\]; `None` without an estimate, as of rough bodies.
+        needed: Option<[f64; 2]>,
     },
 
     /// An approach exceeds the approach of full contact on a surface whose mean displacement is fixed
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
-        "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", time = rounded(*.time, TIME))]
+        "at t = {time} s the approach {:e} m is not below {:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", rounded(*.approach, 5), rounded(*.greatest, 5), time = rounded(*.time, TIME))]
     BeyondFullContact {
         /// End of the step \[s\].
         time: f64,
@@ -55,7 +59,7 @@ pub enum StepError {
     /// series was fitted over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or extrapolate
     /// the table.
     #[error(
-        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
+        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table (CreepSeries::extrapolated)", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
     BeyondMaterial {
         /// End of the step \[s\].
         time: f64,
@@ -95,7 +99,7 @@ pub enum StepError {
     /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations); the
     /// residual history suggests a remedy.
     #[error(
-        "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}", time = rounded(*.time, TIME), dt = rounded(*.dt, TIME))]
+        "at t = {time} s (step of {dt} s): residual {residual:.2e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}", time = rounded(*.time, TIME), dt = rounded(*.dt, TIME))]
     NotConverged {
         /// End of the step \[s\].
         time: f64,
@@ -114,7 +118,7 @@ pub enum StepError {
     /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
     /// the tolerance is too small.
     #[error(
-        "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}: it is shorter than f64 resolves at this time", time = rounded(*.time, TIME))]
+        "at t = {time} s no step that f64 resolves keeps the error in time below {tolerance:e}: name the time of a jump inside a closure with FnHistory::with_breakpoints, ramp the load, or allow a greater error", time = rounded(*.time, TIME))]
     StepTooShort {
         /// Time of the contact \[s\].
         time: f64,
@@ -134,7 +138,7 @@ pub enum StepError {
     },
 
     /// The load of a steady motion brings no cell into contact.
-    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact, a force or a greater approach", time = rounded(*.time, TIME))]
     NoContact {
         /// Time of the contact \[s\].
         time: f64,
@@ -143,7 +147,7 @@ pub enum StepError {
     /// The motion did not become steady. Contact that comes and goes, as on a rough surface that moves with the bodies,
     /// has no steady state; otherwise allow a greater change.
     #[error(
-        "after {distance:e} m the pressure still changes by {change:e} over a contact length, more than {tolerance:e}"
+        "after {:e} m the pressure still changes by {change:.1e} over a contact length, more than {tolerance:e}: allow a greater change with SteadyMotion::with_tolerance; contact that comes and goes has no steady state", rounded(*.distance, 4)
     )]
     NotSteady {
         /// Distance travelled \[m\].
@@ -156,11 +160,21 @@ pub enum StepError {
 
     /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its
     /// foundation: make it longer.
-    #[error("at t = {time} s the contact reaches the end of the foundation, {reach:e} m from the axis: make it longer", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the contact reaches the end of the foundation, {:e} m from the axis: make it longer", rounded(*.reach, 5), time = rounded(*.time, TIME))]
     BeyondReach {
         /// End of the step \[s\].
         time: f64,
         /// Length of the foundation \[m\].
         reach: f64,
     },
+}
+
+/// How wide the grid is, and how wide it should be.
+fn widths(lengths: [f64; 2], needed: Option<[f64; 2]>) -> String {
+    let area = |lengths: [f64; 2], digits: usize| {
+        let [a, b] = lengths.map(|length| rounded(length, digits));
+        format!("{a:e} m × {b:e} m")
+    };
+    let grid = format!("the grid is {}", area(lengths, 3));
+    needed.map_or(grid.clone(), |needed| format!("{grid}, the load needs about {}", area(needed, 1)))
 }

@@ -1,5 +1,7 @@
 use std::fmt;
 
+use crate::rounded::rounded;
+
 /// A place in a table: the entry of a slice, or the line of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -58,8 +60,8 @@ pub enum TableError {
     /// than the scatter of the data explains. No passive body responds so. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table}, {place}: {column} = {value:?} deviates by {:.2} % from the nearest monotone curve; the scatter of the data explains {:.2} %",
-        100.0 * .change, 100.0 * .noise
+        "{table}, {place}: {column} = {:?} deviates by {:.2} % from the nearest monotone curve, where the scatter of the data explains {:.2} %: compliances rise, moduli of relaxation fall (Experiment)",
+        rounded(*.value, 5), 100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
         /// Which table.
@@ -127,6 +129,20 @@ pub enum TableError {
         column: &'static str,
         /// The headings found.
         found: String,
+    },
+
+    /// The headings of a file name moduli in tension (D, E, E′, E″), and it was to be fitted in shear, or the reverse. Moduli in
+    /// tension are up to three times those in shear.
+    #[error(
+        "the headings of the table name {}", if *.in_tension {
+            "moduli in tension: use Measurements::fit_tension and Material::from_tension"
+        } else {
+            "moduli in shear: use Measurements::fit and a material made from shear"
+        }
+    )]
+    Deformation {
+        /// Whether the headings name moduli in tension.
+        in_tension: bool,
     },
 
     /// Isotherms of a master curve measure different quantities.

@@ -16,6 +16,13 @@ pub(crate) use part::{Part, replace};
 
 /// The error of writing a file.
 pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+    let cause = match folder {
+        Some(folder) if cause.kind() == io::ErrorKind::NotFound => {
+            io::Error::new(cause.kind(), format!("the folder {} does not exist: create it first", folder.display()))
+        }
+        _ => cause,
+    };
     OutputError::new(path, cause).into()
 }
 

@@ -13,15 +13,16 @@ use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 /// waves a few cells long.
 ///
 /// ```
-/// use viscocontact::geometry::{HeightMap, SurfaceStatistics};
+/// use viscocontact::geometry::HeightMap;
 ///
 /// let wave = (0..32).map(|i| 1e-6 * (i as f64 * std::f64::consts::TAU / 32.0).sin()).collect();
-/// let statistics = SurfaceStatistics::of(&HeightMap::new([32, 1], [1e-3, 1e-3], wave)?.periodic())?;
+/// let statistics = HeightMap::new([32, 1], [1e-3, 1e-3], wave)?.periodic().statistics()?;
 /// assert!((statistics.rms_height / (1e-6 / 2_f64.sqrt()) - 1.0).abs() < 1e-12);
 /// assert!((statistics.kurtosis - 1.5).abs() < 1e-12);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SurfaceStatistics {
     /// Mean height \[m\].
@@ -46,22 +47,25 @@ pub(super) const FLAT: f64 = 1e-14;
 /// Mean squares of the derivatives ∂z/∂x1 and ∂z/∂x2 and of the mean curvature.
 type MeanSquares = [f64; 3];
 
-impl SurfaceStatistics {
-    /// The statistics of a map.
+impl HeightMap {
+    /// Statistics of the known points.
     ///
     /// # Errors
     /// If no height is known, all heights are equal, so that there is no distribution, or a statistic overflows `f64`.
-    pub fn of(map: &HeightMap) -> Result<SurfaceStatistics> {
-        map.require_known()?;
-        let count = map.known().count() as f64;
-        let mean = map.known().map(|z| z / count).sum::<f64>();
-        let rms_height = map.known().map(|z| (z - mean).powi(2) / count).sum::<f64>().sqrt();
+    pub fn statistics(&self) -> Result<SurfaceStatistics> {
+        self.require_known()?;
+        let count = self.known().count() as f64;
+        let mean = self.known().map(|z| z / count).sum::<f64>();
+        let rms_height = self.known().map(|z| (z - mean).powi(2) / count).sum::<f64>().sqrt();
         // the rms height of equal heights is rounding
         let rms_height = positive("rms height", if rms_height <= FLAT * mean.abs() { 0.0 } else { rms_height })?;
         // In units of the rms height, whose fourth power may underflow.
-        let scaled = |power: i32| map.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
-        let [slope1, slope2, curvature] =
-            if map.is_periodic() && map.missing() == 0 { spectral_derivatives(map) } else { central_differences(map) };
+        let scaled = |power: i32| self.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
+        let [slope1, slope2, curvature] = if self.is_periodic() && self.missing() == 0 {
+            spectral_derivatives(self)
+        } else {
+            central_differences(self)
+        };
         let rms_slopes = [finite("rms slope along x1", slope1.sqrt())?, finite("rms slope along x2", slope2.sqrt())?];
         Ok(SurfaceStatistics {
             mean,
@@ -241,7 +245,7 @@ mod tests {
             5.0 + 0.1 * (q1 * x1 + q2 * x2).sin()
         });
         let map = HeightMap::new([32, 24], [1.0, 2.0], heights.collect()).unwrap();
-        let exact = SurfaceStatistics::of(&map.clone().periodic()).unwrap();
+        let exact = map.clone().periodic().statistics().unwrap();
         let rms = 0.1 / 2_f64.sqrt();
         assert_abs_diff_eq!(exact.mean, 5.0, epsilon = 1e-14);
         assert_abs_diff_eq!(exact.rms_height, rms, epsilon = 1e-14);
@@ -252,7 +256,7 @@ mod tests {
         assert_abs_diff_eq!(exact.rms_slope, rms * q1.hypot(q2), epsilon = 1e-12);
         assert_abs_diff_eq!(exact.rms_curvature, rms * 0.5 * (q1 * q1 + q2 * q2), epsilon = 1e-11);
         // Differences over two cells reduce slopes by sin(qs)/(qs), except at the ends, where they are missing.
-        let seen = SurfaceStatistics::of(&map).unwrap();
+        let seen = map.statistics().unwrap();
         assert_abs_diff_eq!(seen.rms_slopes[0], rms * (q1 / 32.0).sin() * 32.0, epsilon = 2e-2 * rms * q1);
         let curvature = 0.5 * (2.0 * (1.0 - (q1 / 32.0).cos()) * 1024.0 + 2.0 * (1.0 - (q2 / 12.0).cos()) * 144.0);
         assert_abs_diff_eq!(seen.rms_curvature, rms * curvature, epsilon = 2e-2 * rms * curvature);
@@ -260,11 +264,7 @@ mod tests {
         let mut holed = map.heights().to_vec();
         holed[100] = f64::NAN;
         let holed = HeightMap::new([32, 24], [1.0, 2.0], holed).unwrap().periodic();
-        assert_abs_diff_eq!(
-            SurfaceStatistics::of(&holed).unwrap().rms_slopes[0],
-            seen.rms_slopes[0],
-            epsilon = 2e-2 * rms * q1
-        );
+        assert_abs_diff_eq!(holed.statistics().unwrap().rms_slopes[0], seen.rms_slopes[0], epsilon = 2e-2 * rms * q1);
     }
 
     #[test]
@@ -302,7 +302,7 @@ mod tests {
     #[test]
     fn random_heights_are_gaussian() {
         // Many short waves: the fourth moment of their sum is the moment of a normal distribution.
-        let statistics = SurfaceStatistics::of(&rough(512, 0.3, 5)).unwrap();
+        let statistics = rough(512, 0.3, 5).statistics().unwrap();
         assert!(statistics.skewness.abs() < 0.2 && (statistics.kurtosis - 3.0).abs() < 0.3, "{statistics:?}");
         let distribution = rough(512, 0.3, 5).height_distribution(41).unwrap();
         let width = distribution[1].0 - distribution[0].0;
@@ -322,7 +322,7 @@ mod tests {
                 HeightMap::new([3, 3], lengths, heights()).unwrap(),
                 HeightMap::new([3, 3], lengths, heights()).unwrap().periodic(),
             ] {
-                let refused = SurfaceStatistics::of(&map).unwrap_err();
+                let refused = map.statistics().unwrap_err();
                 assert!(matches!(refused, Error::OutOfRange { field, .. } if field.starts_with("rms ")), "{refused}");
             }
         }
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn maps_without_statistics_are_refused() {
         let flat = HeightMap::new([3, 3], [1.0, 1.0], vec![0.1; 9]).unwrap();
-        assert!(matches!(SurfaceStatistics::of(&flat), Err(Error::OutOfRange { field: "rms height", .. })));
+        assert!(matches!(flat.statistics(), Err(Error::OutOfRange { field: "rms height", .. })));
         assert!(matches!(flat.height_distribution(3), Err(Error::OutOfRange { field: "range of the heights", .. })));
         assert!(matches!(flat.height_distribution(0), Err(Error::CountOutOfRange { .. })));
         let empty = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN, 1.0]).unwrap();

@@ -30,13 +30,13 @@ impl LastingError {
     }
 
     /// Takes account of the step predicted last, with such a `defect` of v. Where a motion is given, u has no error.
-    pub(crate) fn include(&mut self, rule: &ExponentialRule, defect: f64, is_given: bool) {
+    pub(crate) fn include(&mut self, rule: &ExponentialRule, defect: f64, motion_is_given: bool) {
         let (mut answer, mut left) = (rule.viscous(), 0.0);
         for (q, [decay, of_u, share]) in self.q.iter_mut().zip(rule.responses()) {
             *q = decay * *q + share * defect;
             (answer, left) = (answer + of_u, left + *q);
         }
-        let u = if is_given { 0.0 } else { (answer * self.u - left) / (answer + rule.equilibrium()) };
+        let u = if motion_is_given { 0.0 } else { (answer * self.u - left) / (answer + rule.equilibrium()) };
         let change = u - self.u;
         self.q.iter_mut().zip(rule.responses()).for_each(|(q, [_, of_u, _])| *q += of_u * change);
         self.u = u;

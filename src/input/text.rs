@@ -22,6 +22,7 @@ value! {
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextFormat {
     /// What separates the fields of a line.
     delimiter: Delimiter, with_delimiter;
@@ -32,6 +33,7 @@ pub struct TextFormat {
 
 /// What separates the fields of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Delimiter {
     /// The first of semicolon, tab and comma that the first line contains outside quotes, else blanks. With

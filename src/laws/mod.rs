@@ -38,4 +38,6 @@ pub mod strategies;
 pub use crate::geometry::laws as geometry;
 pub use crate::load::laws as load;
 pub use crate::rheology::laws as rheology;
+/// The crate of the strategies, in the version of this crate.
+pub use proptest;
 pub use strategies::Scenario;

@@ -148,7 +148,7 @@ impl Load {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?))
     ///     .build()?;
     /// let report = contact.step(0.0, Load::spring(1.0e4, 100.0e-6))?;
     /// assert!((report.force - 1.0e4 * (100.0e-6 - report.approach)).abs() < 1.0e-5 * report.force);

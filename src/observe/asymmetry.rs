@@ -6,6 +6,7 @@ use crate::sum::greatest;
 /// Position of a contact relative to a point, see
 /// [`ViscoelasticContact::asymmetry`](crate::ViscoelasticContact::asymmetry).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Asymmetry {
     /// Centre of pressure, ∬ p x / ∬ p along x1 and x2 \[m\], from the origin of the grid.

@@ -1,13 +1,18 @@
 //! Distributions of gap and pressure over the surface.
 
+use educe::Educe;
+
 use crate::error::{Result, count_within, finite, positive};
+use crate::values::counted;
 
 const MAX_BINS: usize = 1_000_000;
 
 /// The distribution of a quantity over the surface: the share of the surface where the quantity is zero, and the
 /// probability density of its positive values in bins of equal width. Together they integrate to 1, as P does in
 /// Persson's theory of contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Distribution {
     /// Share of the surface where the quantity is zero.
@@ -16,6 +21,7 @@ pub struct Distribution {
     pub width: f64,
     /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere. Its sum times the
     /// width is 1 − `share_at_zero`.
+    #[educe(Debug(method(counted)))]
     pub density: Vec<f64>,
 }
 

@@ -1,10 +1,14 @@
 //! Connected patches of a contact.
 
+use educe::Educe;
+
 use crate::error::{Result, count_within, exact_length, finite, non_negative};
+use crate::values::counted;
 use crate::{Grid, memory};
 
 /// One patch of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Patch {
     /// Number of cells.
@@ -40,12 +44,15 @@ pub struct Patch {
 /// assert_eq!(Patches::new(&grid, &pressure, [false, true])?.all.len(), 2);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 #[non_exhaustive]
 pub struct Patches {
     /// The label of each cell: 0 out of contact, k + 1 in the patch `all[k]`.
+    #[educe(Debug(method(counted)))]
     pub labels: Vec<u32>,
     /// The patches, in the order of their first cells on the grid.
+    #[educe(Debug(method(counted)))]
     pub all: Vec<Patch>,
 }
 

@@ -54,7 +54,7 @@ fn number(value: f64) -> String {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-csv-{}", std::process::id()));
 /// # std::fs::create_dir_all(&folder).unwrap();
@@ -119,7 +119,7 @@ impl CsvHistory {
             } else {
                 File::create_new(path)
             };
-            let mut file = Appending::new(file.map_err(unusable)?);
+            let mut file = Appending::new(file.map_err(|error| unusable(or_replace(error)))?);
             if let Err(error) = file.append(head.as_bytes()) {
                 let _ = fs::remove_file(path); // report the error of the write instead
                 return Err(unusable(error));
@@ -142,6 +142,16 @@ impl CsvHistory {
         let CsvHistory { path, file, .. } = self;
         let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
         contact.agreed(appended.map_err(|error| failed(path, error)))
+    }
+}
+
+/// The error of a file that exists names the way to replace it.
+fn or_replace(error: io::Error) -> io::Error {
+    match error.kind() {
+        kind @ io::ErrorKind::AlreadyExists => {
+            io::Error::new(kind, "it exists: CsvHistory::create_or_replace replaces it")
+        }
+        _ => error,
     }
 }
 

@@ -1,7 +1,9 @@
 //! The description of a run in its files.
 
 use crate::ViscoelasticContact;
+use crate::contact::Settings;
 use crate::output::Field;
+use crate::rheology::{Material, TemperatureHistory};
 
 /// Units of the values written besides the fields.
 const UNITS: [(&str, &str); 7] = [
@@ -25,7 +27,7 @@ const CONVENTIONS: &str = "pressure is positive in compression, displacement pos
 ///
 /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let metadata = Metadata::new("Ball on rubber").note("radius", "10 mm").note("batch", "B-12");
 /// let json = metadata.json(&contact);
@@ -68,8 +70,13 @@ impl Metadata {
     }
 
     /// The whole description as JSON on a single line: `title`, `notes`, `crate` and `version`, `grid` (`cells`,
-    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings`, `material` and, if it changes, `temperature` (as
-    /// Rust prints them), `units` of all values written, and `conventions`.
+    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` (their fields), `material`, `temperature` if it changes,
+    /// `units` of all values written, and `conventions`.
+    ///
+    /// `material` has an entry for each body: `poisson` or `bulk_modulus` \[Pa\], and `contact_creep`, the series of C(t) with
+    /// `glassy` \[1/Pa\], `fluidity` \[1/(Pa s)\] and `terms` of \[compliance, retardation time\]; a body without a series has
+    /// `rheology`, as Rust prints it. `temperature` has the `reference`, the constants of the law, and the `table` of \[time,
+    /// temperature\], or the `corners` of a function.
     pub fn json(&self, contact: &ViscoelasticContact) -> String {
         let grid = contact.grid();
         let grid = object([
@@ -78,13 +85,13 @@ impl Metadata {
             ("lengths", format!("{:?}", grid.lengths())),
         ]);
         let units = Field::ALL.map(|field| (field.name(), field.unit())).into_iter().chain(UNITS);
-        let temperature = contact.temperature().map(|temperature| ("temperature", text(&format!("{temperature:?}"))));
+        let temperature = contact.temperature().map(|history| ("temperature", temperature(history)));
         let scene = [
             ("grid", grid),
             ("bodies", contact.bodies().to_string()),
             ("kernel", text(&contact.kernel().to_string())),
-            ("settings", text(&format!("{:?}", contact.settings()))),
-            ("material", text(&format!("{:?}", contact.material()))),
+            ("settings", settings(contact.settings())),
+            ("material", material(contact.material())),
         ];
         let units = ("units", object(units.map(|(name, unit)| (name, text(unit)))));
         let conventions = ("conventions", text(CONVENTIONS));
@@ -105,6 +112,79 @@ impl Metadata {
             ("version", text(env!("CARGO_PKG_VERSION"))),
         ]
     }
+}
+
+/// The fields of settings.
+fn settings(settings: &Settings) -> String {
+    let Settings {
+        tolerance,
+        max_iterations,
+        solver,
+        time_rule,
+        edge,
+        series_tolerance,
+        history_limit,
+        symmetry,
+        window,
+        frame,
+        repeats_past,
+    } = *settings;
+    object([
+        ("tolerance", number(tolerance)),
+        ("max_iterations", max_iterations.to_string()),
+        ("solver", text(&format!("{solver:?}"))),
+        ("time_rule", text(&format!("{time_rule:?}"))),
+        ("edge", text(&format!("{edge:?}"))),
+        ("series_tolerance", number(series_tolerance)),
+        ("history_limit", history_limit.to_string()),
+        ("symmetry", symmetry.to_string()),
+        ("window", window.to_string()),
+        ("frame", text(&format!("{frame:?}"))),
+        ("repeats_past", repeats_past.to_string()),
+    ])
+}
+
+fn material(material: &Material) -> String {
+    let bodies = material.descriptions().map(|body| {
+        let volume = match body.volume {
+            Ok(poisson) => ("poisson", number(poisson)),
+            Err(bulk_modulus) => ("bulk_modulus", number(bulk_modulus)),
+        };
+        let creep = match body.contact_creep() {
+            Some(creep) => {
+                let ends = [("glassy", number(creep.glassy())), ("fluidity", number(creep.fluidity()))];
+                ("contact_creep", object(ends.into_iter().chain([("terms", pairs(creep.terms()))])))
+            }
+            None => ("rheology", text(&body.rheology())),
+        };
+        object([volume, creep])
+    });
+    array(bodies)
+}
+
+fn temperature(history: &TemperatureHistory) -> String {
+    let law = history.law();
+    let constants = law.wlf_constants().map(|[c1, c2]| [("c1", number(c1)), ("c2", number(c2))]);
+    let energy = law.activation_energy().map(|energy| ("activation_energy", number(energy)));
+    let course = match history.course() {
+        Ok(table) => ("table", pairs(table)),
+        Err(corners) => ("corners", array(corners.iter().copied().map(number))),
+    };
+    let reference = ("reference", number(law.reference()));
+    object([reference].into_iter().chain(constants.into_iter().flatten()).chain(energy).chain([course]))
+}
+
+fn pairs(pairs: &[(f64, f64)]) -> String {
+    array(pairs.iter().map(|&(one, other)| array([one, other].map(number))))
+}
+
+fn array(values: impl IntoIterator<Item = String>) -> String {
+    format!("[{}]", values.into_iter().collect::<Vec<_>>().join(", "))
+}
+
+/// A JSON number; JSON has none for NaN and infinity.
+fn number(value: f64) -> String {
+    if value.is_finite() { format!("{value:?}") } else { "null".into() }
 }
 
 /// A JSON object of keys and values in JSON.

@@ -49,7 +49,16 @@ pub enum Format {
 
 impl Format {
     fn extension(self) -> &'static str {
-        if self.is_by_rows() { "npz" } else { "vti" }
+        match self {
+            #[cfg(feature = "npy")]
+            Format::Npz => "npz",
+            Format::Vtk => "vti",
+        }
+    }
+
+    /// Whether a collection lists the frames.
+    fn has_collection(self) -> bool {
+        self.extension() == "vti"
     }
 
     /// Whether the index along x2 varies fastest; in VTK it is the index along x1.
@@ -70,7 +79,7 @@ impl Format {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-series-{}", std::process::id()));
 /// let metadata = Metadata::new("Ball on rubber");
@@ -145,9 +154,11 @@ impl FrameSeries {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let is_frame = name.starts_with("frame_") && name.ends_with(&format!(".{}", format.extension()));
             if is_frame && !replaced {
-                return refused(io::ErrorKind::AlreadyExists, format!("the folder contains {name} of another run"));
+                let reason =
+                    format!("the folder contains {name} of another run: FrameSeries::create_or_replace removes it");
+                return refused(io::ErrorKind::AlreadyExists, reason);
             }
-            if is_frame || replaced && !format.is_by_rows() && name == COLLECTION {
+            if is_frame || replaced && format.has_collection() && name == COLLECTION {
                 check_regular(&path)?;
                 match fs::remove_file(&path) {
                     // another rank may have removed it
@@ -175,7 +186,7 @@ impl FrameSeries {
             Format::Npz => npz::write_frame(out, (contact, area), metadata, values),
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
-        if !format.is_by_rows() {
+        if format.has_collection() {
             let time = contact.time();
             let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
             let entries = format!("{}{entry}", self.entries);

@@ -11,7 +11,7 @@
 //!     let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
 //!         .ranks(ranks)
 //!         .geometry(&Sphere::new(10.0e-3)?)
-//!         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 //!         .build()?;
 //!     contact.step(0.0, Load::force(1.0))?;
 //!     contact.step(0.5, Load::force(1.0))?; // every rank gets the same report

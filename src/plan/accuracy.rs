@@ -13,6 +13,7 @@ use crate::error::{Result, within};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "f64", into = "f64"))]
 pub struct Accuracy {
     target: f64,
 }
@@ -22,6 +23,22 @@ const TIME_SHARE: f64 = 0.36;
 const SPACE_SHARE: f64 = 0.8;
 /// Share of the target for the residual of the solver, relative to the displacement: far below the other shares.
 const SOLVER_SHARE: f64 = 0.01;
+
+#[cfg(feature = "serde")]
+impl TryFrom<f64> for Accuracy {
+    type Error = crate::Error;
+
+    fn try_from(target: f64) -> Result<Accuracy> {
+        Accuracy::new(target)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Accuracy> for f64 {
+    fn from(accuracy: Accuracy) -> f64 {
+        accuracy.target
+    }
+}
 
 impl Default for Accuracy {
     fn default() -> Accuracy {

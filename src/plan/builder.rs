@@ -15,7 +15,7 @@ use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
 
 /// Most cells along a side of a plan: more exceed the memory of a workstation.
-const MOST_CELLS: usize = 1 << 13;
+const MOST_PLANNED_CELLS: usize = 1 << 13;
 /// Fewest cells across the widest contact: fewer do not resolve it.
 const FEWEST_ACROSS: f64 = 14.0;
 
@@ -26,7 +26,7 @@ const FEWEST_ACROSS: f64 = 14.0;
 /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 ///
 /// let (sphere, load) = (Sphere::new(10.0e-3)?, StepLoad::new(Load::force(1.0))?);
-/// let body = Material::incompressible(Zener::new(1.0e7, 1.0e6, 1.0e7)?);
+/// let body = Material::incompressible(Zener::with_time(1.0e7, 1.0e6, 10.0)?);
 /// let law = TimeTemperature::wlf(17.44, 51.6, 263.15)?;
 /// let warming = TemperatureHistory::table(law, &[(0.0, 263.15), (100.0, 273.15)])?;
 /// let plan = Plan::builder(&sphere, &body, &load, 100.0).accuracy(Accuracy::COARSE).temperature(&warming).build()?;
@@ -51,6 +51,7 @@ pub struct PlanBuilder<'a> {
 
 /// How far planning has come: the state of a coarse run.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PlanProgress {
     /// Number of steps of all coarse runs so far.
@@ -130,12 +131,12 @@ impl<'a> PlanBuilder<'a> {
             (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * size.reach[axis] / size.width[axis]))
         };
         let (mut across, mut sides) = needed(pressure);
-        if sides[0].max(sides[1]) > MOST_CELLS as f64 {
+        if sides[0].max(sides[1]) > MOST_PLANNED_CELLS as f64 {
             pressure = ErrorLaw::NONE;
             (across, sides) = needed(pressure);
         }
         let wanted = sides[0].max(sides[1]);
-        if wanted.is_nan() || wanted > MOST_CELLS as f64 {
+        if wanted.is_nan() || wanted > MOST_PLANNED_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }

@@ -14,7 +14,7 @@ const MOST_ACROSS: f64 = 128.0;
 /// Cells across the widest contact where the steps are found.
 const STEPS_ACROSS: f64 = 32.0;
 /// Most cells along a side of a domain in which the contact is small, for example far off the centre.
-const MOST_CELLS: usize = 2048;
+const MOST_TRIAL_CELLS: usize = 2048;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Most domains for ever smaller contacts.
@@ -102,7 +102,7 @@ impl Meshes {
             meshes.work_order = growth.max(1.0).log2().min(MAX_WORK_ORDER);
             meshes.finest = finer;
             let reach = if meshes.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
-            let last = meshes.across >= MOST_ACROSS || 2 * n1.max(n2) > MOST_CELLS;
+            let last = meshes.across >= MOST_ACROSS || 2 * n1.max(n2) > MOST_TRIAL_CELLS;
             if last || needed(&meshes) <= reach * meshes.across {
                 return Ok(meshes);
             }
@@ -215,7 +215,7 @@ pub(super) struct ConvergedRun {
 /// Finds the steps and the meshes; `area` states whether the contact radius has to be resolved.
 pub(super) fn converge(scene: &TrialScene<'_>, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
     let mut first = grid_with(size, STEPS_ACROSS)?;
-    if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
+    if first.cells().into_iter().any(|cells| cells > MOST_TRIAL_CELLS) {
         first = grid_with(size, LEAST_ACROSS)?;
     }
     let punch = scene.has_edge(&first);

@@ -43,7 +43,7 @@ use crate::observe::mesh_error::MeshError;
 /// use viscocontact::prelude::*;
 ///
 /// let sphere = Sphere::new(10.0e-3)?;
-/// let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+/// let body = Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?);
 /// let load = StepLoad::new(Load::force(1.0))?;
 /// let plan = Plan::builder(&sphere, &body, &load, 2.0).accuracy(Accuracy::STANDARD).build()?;
 /// println!("{plan}");

@@ -25,7 +25,7 @@ use crate::plot::{Map, Picture, color_scale};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-animation-{}.gif", std::process::id()));
 /// let mut animation = Animation::create(&path, Field::Pressure, [0.0, 0.3e6], 0.1)?;

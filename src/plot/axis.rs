@@ -136,15 +136,8 @@ pub(super) fn shortened(text: &str) -> String {
     if short == "-0" { "0".into() } else { short.replace('-', "−") }
 }
 
-/// A number as digits and a power of ten, for labels and titles: `4.5×10⁻²` with one decimal, `10⁻²` for 1e-2 with none.
-///
-/// ```
-/// use viscocontact::plot::scientific;
-///
-/// assert_eq!(scientific(0.0452, 1), "4.5×10⁻²");
-/// assert_eq!(scientific(1e6, 0), "10⁶");
-/// ```
-pub fn scientific(value: f64, decimals: usize) -> String {
+/// A number as digits and a power of ten, for labels: `4.5×10⁻²` with one decimal, `10⁻²` for 1e-2 with none.
+fn scientific(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$e}");
     let Some((digits, exponent)) = text.split_once('e') else { return text };
     let power = format!("10{}", superscript(exponent.parse().unwrap_or(0)));
@@ -166,7 +159,7 @@ mod tests {
     const UP: Room = Room { length: 650.0, horizontal: false };
 
     fn linear(name: &str, unit: &str, ends: [f64; 2]) -> (String, String) {
-        let quantity = if unit.is_empty() { Quantity::from(name) } else { Quantity::of(name, unit) };
+        let quantity = if unit.is_empty() { Quantity::from(name) } else { Quantity::new(name, unit) };
         let axis = Axis::linear(&quantity, ends[0].abs().max(ends[1].abs()), ends, UP);
         let texts: Vec<&str> = axis.ticks.iter().map(|tick| tick.1.as_str()).collect();
         (axis.label.clone(), texts.join(" "))

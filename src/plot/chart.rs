@@ -87,7 +87,7 @@ pub(super) struct Curve {
 /// use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Style};
 ///
 /// let mut chart =
-///     Chart::new("Creep", Quantity::of("time", "s"), Quantity::of("approach", "m"), Legend::LowerRight);
+///     Chart::new("Creep", Quantity::new("time", "s"), Quantity::new("approach", "m"), Legend::LowerRight);
 /// chart.add("ball", COLORS[0], Style::Line, (0..50).map(|k| (f64::from(k), 1e-5 * f64::from(k).sqrt())).collect());
 /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-chart-{}.png", std::process::id()));
 /// chart.save(&path)?; // the vertical axis is in µm

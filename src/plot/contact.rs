@@ -50,7 +50,7 @@ impl Map {
             // cells out of contact stay blank
             values.iter_mut().filter(|p| **p <= 0.0).for_each(|p| *p = f64::NAN);
         }
-        let mut map = Map::new(contact.grid(), values, Quantity::of(field.name(), field.unit()))?;
+        let mut map = Map::new(contact.grid(), values, Quantity::new(field.name(), field.unit()))?;
         if field != Field::Displacement && map.range[1] > 0.0 {
             map.range[0] = 0.0;
         }
@@ -73,7 +73,7 @@ impl Chart {
             Axis::X1 => ["x1", "x2"],
             Axis::X2 => ["x2", "x1"],
         };
-        let (x, y) = (Quantity::of(name, "m"), Quantity::of("pressure", "Pa"));
+        let (x, y) = (Quantity::new(name, "m"), Quantity::new("pressure", "Pa"));
         let title = format!("{}, {across} = {}", time_title(contact), measure(at, "m"));
         let mut chart = Chart::new(title, x, y, Legend::UpperRight);
         let points = profile.positions.into_iter().zip(profile.pressure).collect();

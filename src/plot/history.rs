@@ -33,7 +33,7 @@ impl HistoryColumn {
     /// Name and SI unit.
     pub fn quantity(self) -> Quantity {
         let (name, unit, _) = self.definition();
-        Quantity::of(name, unit)
+        Quantity::new(name, unit)
     }
 
     /// Name, SI unit and the method that returns the value.
@@ -56,7 +56,7 @@ impl HistoryColumn {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let mut history = History::new();
 /// for dt in [0.0, 0.1, 0.2] {
@@ -122,7 +122,7 @@ impl Chart {
         quantity: impl Into<Quantity>,
         columns: &[(&str, &[f64])],
     ) -> Result<Chart> {
-        let mut chart = Chart::new(title, Quantity::of("time", "s"), quantity, Legend::LowerRight);
+        let mut chart = Chart::new(title, Quantity::new("time", "s"), quantity, Legend::LowerRight);
         for (k, (label, values)) in columns.iter().enumerate() {
             exact_length("column of a history", values.len(), times.len())?;
             let points = times.iter().copied().zip(values.iter().copied()).collect();

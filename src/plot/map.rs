@@ -1,5 +1,8 @@
 //! Colour maps of fields.
 
+use educe::Educe;
+
+use crate::values::counted;
 use std::path::Path;
 
 use crate::Grid;
@@ -28,14 +31,15 @@ const MIN_BAR: u32 = 200;
 /// use viscocontact::{Grid, plot::{Map, Quantity}};
 ///
 /// let grid = Grid::new([2, 3], [2.0e-3, 3.0e-3])?;
-/// let mut map = Map::new(&grid, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0], Quantity::of("height", "m"))?;
+/// let mut map = Map::new(&grid, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0], Quantity::new("height", "m"))?;
 /// map.title = "Stairs".into();
 /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-map-{}.png", std::process::id()));
 /// map.save(&path)?;
 /// # std::fs::remove_file(&path).unwrap();
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 #[non_exhaustive]
 pub struct Map {
     /// The title above the map.
@@ -54,9 +58,12 @@ pub struct Map {
     /// The point in the middle.
     pub(super) middle: [f64; 2],
     /// Lines from point to point, drawn over the frame.
+    #[educe(Debug(method(counted)))]
     pub(super) lines: Vec<[(f64, f64); 2]>,
+    #[educe(Debug(method(counted)))]
     values: Vec<f64>,
     /// Whether each cell lies inside the outline; empty without an outline.
+    #[educe(Debug(method(counted)))]
     inside_outline: Vec<bool>,
 }
 
@@ -80,7 +87,7 @@ impl Map {
         Ok(Map {
             title: String::new(),
             quantity: quantity.into(),
-            axes: [Quantity::of("x1", "m"), Quantity::of("x2", "m")],
+            axes: [Quantity::new("x1", "m"), Quantity::new("x2", "m")],
             range,
             blank: Color::WHITE,
             cells: grid.cells(),

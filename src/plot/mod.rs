@@ -19,7 +19,7 @@
 //!
 //! let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
 //!     .geometry(&Sphere::new(10.0e-3)?)
-//!     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 //!     .build()?;
 //! # let folder = std::env::temp_dir().join(format!("viscocontact-doc-plot-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder).unwrap();
@@ -59,7 +59,6 @@ mod quantity;
 mod section;
 
 pub use animation::Animation;
-pub use axis::scientific;
 pub use chart::{Chart, Legend, Scale, Style};
 pub use color::{COLORS, Color};
 pub use history::{History, HistoryColumn};

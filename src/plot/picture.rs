@@ -181,7 +181,7 @@ mod tests {
         use crate::plot::{COLORS, Chart, Legend, Map, Quantity, Style};
         use base64::Engine as _;
         use base64::prelude::BASE64_STANDARD;
-        let mut chart = Chart::new("A < B & \u{1} > \"τ\"", Quantity::of("time", "s"), "q", Legend::UpperLeft);
+        let mut chart = Chart::new("A < B & \u{1} > \"τ\"", Quantity::new("time", "s"), "q", Legend::UpperLeft);
         chart.add("measured <τ>", COLORS[0], Style::LineAndDots, vec![(0.0, 0.0), (f64::NAN, 1.0), (2.0e-3, 5.0e-6)]);
         let grid = crate::Grid::new([2, 3], [1.0, 1.5]).unwrap();
         let map = Map::new(&grid, vec![0.0, 1.0, 2.0, 3.0, f64::NAN, 5.0], "height").unwrap();

@@ -13,8 +13,8 @@ use crate::plot::axis::shortened;
 /// ```
 /// use viscocontact::plot::Quantity;
 ///
-/// assert_eq!(Quantity::of("pressure", "Pa").shown(2.5e4), ("pressure [kPa]".to_string(), 1e-3));
-/// assert_eq!(Quantity::of("contact area", "m²").shown(3.0e-6), ("contact area [mm²]".to_string(), 1e6));
+/// assert_eq!(Quantity::new("pressure", "Pa").shown(2.5e4), ("pressure [kPa]".to_string(), 1e-3));
+/// assert_eq!(Quantity::new("contact area", "m²").shown(3.0e-6), ("contact area [mm²]".to_string(), 1e6));
 /// assert_eq!(Quantity::from("t / τ").shown(1e4), ("t / τ".to_string(), 1.0));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,7 +35,7 @@ const ALL_PREFIXES: [&str; 7] = ["Pa", "N", "J", "W", "Hz", "V", "A"];
 
 impl Quantity {
     /// The quantity `name`, whose values are in the SI unit `unit`.
-    pub fn of(name: impl Into<String>, unit: impl Into<String>) -> Quantity {
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Quantity {
         Quantity { name: name.into(), unit: Some(unit.into()) }
     }
 
@@ -131,7 +131,7 @@ mod tests {
             ("J", f64::INFINITY, "q [J]", 1.0),
             ("J", 1e-90, "q [J]", 1.0),
         ] {
-            let (text, by) = Quantity::of("q", unit).shown(greatest);
+            let (text, by) = Quantity::new("q", unit).shown(greatest);
             assert_eq!(text, label, "{greatest} {unit}");
             assert!((by / factor - 1.0).abs() < 1e-12, "{greatest} {unit}");
         }

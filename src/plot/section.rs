@@ -27,7 +27,7 @@ impl Map {
     /// contact.step(0.0, Load::force(0.5))?;
     /// let depths: Vec<f64> = (0..16).map(|k| (f64::from(k) + 0.5) * 0.1e-3).collect();
     /// let section = contact.stress()?.on_section(Axis::X1, 0.0, &depths)?;
-    /// let map = Map::section(&contact, &section, Stress::von_mises, Quantity::of("von Mises stress", "Pa"))?;
+    /// let map = Map::section(&contact, &section, Stress::von_mises, Quantity::new("von Mises stress", "Pa"))?;
     /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-section-{}.png", std::process::id()));
     /// map.save(&path)?;
     /// # std::fs::remove_file(&path).unwrap();
@@ -59,7 +59,7 @@ impl Map {
         let surface = 0.5 * step - depths[0];
         map.middle = [0.5 * (positions[0] + positions[positions.len() - 1]), surface - 0.5 * grid.lengths()[1]];
         let label = if section.along == Axis::X1 { "x1" } else { "x2" };
-        map.axes = [Quantity::of(label, "m"), Quantity::of("−x3", "m")];
+        map.axes = [Quantity::new(label, "m"), Quantity::new("−x3", "m")];
         map.title = time_title(contact);
         let profile = contact.profile(section.along, section.at)?;
         let pressed = runs(positions.len(), |k| profile.pressure[k] > 0.0).into_iter();

@@ -13,7 +13,7 @@ impl RelaxationSpectrum {
     /// ```
     /// use viscocontact::rheology::{Maxwell, Rheology};
     ///
-    /// let fluid = Maxwell::new(2.0e6, 2.0e6)?.creep_spectrum().unwrap().relaxation();
+    /// let fluid = Maxwell::with_time(2.0e6, 1.0)?.creep_spectrum().unwrap().relaxation();
     /// let modulus = fluid.complex_modulus(1.0); // at ωτ = 1 half is stored, half is lost
     /// assert!((modulus.re - 1.0e6).abs() < 1e-6 && (modulus.im - 1.0e6).abs() < 1e-6);
     /// # Ok::<(), viscocontact::Error>(())

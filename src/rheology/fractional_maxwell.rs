@@ -36,6 +36,18 @@ impl FractionalMaxwell {
         Ok(FractionalMaxwell { glassy: 1.0 / modulus, rate, exponent })
     }
 
+    /// A spring of shear `modulus` G \[Pa\] in series with a springpot that creeps as much as the spring, but for a factor
+    /// 1/Γ(1 + α), in the `time` τ \[s\]: J = (1 + (t/τ)^α/Γ(1 + α))/G, V = G τ^α.
+    ///
+    /// # Errors
+    /// If the modulus or the time is not finite and positive, or the exponent is outside (0, 1).
+    pub fn with_time(modulus: f64, time: f64, exponent: f64) -> Result<FractionalMaxwell> {
+        positive("shear modulus", modulus)?;
+        positive("time", time)?;
+        fractional_order(exponent)?;
+        FractionalMaxwell::new(modulus, modulus * time.powf(exponent), exponent)
+    }
+
     /// Findley's form J = J₀ + m tⁿ: `glassy` compliance J₀ \[1/Pa\], `coefficient` m \[1/(Pa·sⁿ)\], `exponent` n.
     ///
     /// # Errors

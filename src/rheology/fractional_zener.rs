@@ -2,6 +2,7 @@ use crate::error::{Result, positive};
 use crate::rheology::Rheology;
 use crate::rheology::mittag_leffler::mittag_leffler_rise;
 use crate::rheology::power_law::fractional_order;
+use crate::rheology::zener::relaxed_element;
 
 /// The standard linear solid with a springpot in place of the dashpot:
 /// J(t) = 1/G + (1/G_K) [1 − E_α(−(t/λ)^α)], E_α the Mittag-Leffler function.
@@ -40,6 +41,19 @@ impl FractionalZener {
         positive("retardation time", time)?;
         fractional_order(exponent)?;
         Ok(FractionalZener { glassy: 1.0 / g, retarded: 1.0 / g_k, time, exponent })
+    }
+
+    /// A body whose shear modulus relaxes from `glassy` to `rubbery` \[Pa\] with the relaxation `time` τ \[s\] and order
+    /// `exponent` α: G(t) = rubbery + (glassy − rubbery) E_α(−(t/τ)^α). It creeps slower, λ = τ (glassy/rubbery)^(1/α).
+    ///
+    /// # Errors
+    /// If the moduli or the time are not finite and positive, the glassy modulus is not the greater one, the exponent is
+    /// outside (0, 1), or the retardation time exceeds the range of `f64`.
+    pub fn relaxing(glassy: f64, rubbery: f64, time: f64, exponent: f64) -> Result<FractionalZener> {
+        let [ratio, g_k] = relaxed_element(glassy, rubbery)?;
+        positive("relaxation time", time)?;
+        fractional_order(exponent)?;
+        FractionalZener::new(glassy, g_k, time * ratio.powf(1.0 / exponent), exponent)
     }
 }
 

@@ -1,4 +1,4 @@
-use crate::error::{Result, least_length};
+use crate::error::{Result, least_length, positive, within};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum, forward_rheology};
 
 /// A spring and any number of Maxwell elements in parallel (a Prony series):
@@ -15,6 +15,9 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum, forward_rheology};
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneralizedMaxwell(CreepSpectrum);
 
+/// A sum of shares this close to 1 is 1.
+const SHARES_ROUNDING: f64 = 1e-12;
+
 impl GeneralizedMaxwell {
     /// A body of `equilibrium` modulus \[Pa\] (0 for a fluid) and `terms` of (modulus \[Pa\], relaxation
     /// time \[s\]).
@@ -24,6 +27,34 @@ impl GeneralizedMaxwell {
     pub fn new(equilibrium: f64, terms: &[(f64, f64)]) -> Result<GeneralizedMaxwell> {
         least_length("Maxwell elements", terms.len(), 1)?;
         Ok(GeneralizedMaxwell(RelaxationSpectrum::new(equilibrium, 0.0, terms)?.creep()))
+    }
+
+    /// A body of `glassy` modulus G(0) \[Pa\] and `terms` of (share of G(0), relaxation time \[s\]), as finite-element
+    /// programs write Prony series: G(t) = G(0) (1 − Σ g_k (1 − e^(−t/τ_k))). The rest of the shares does not relax.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{GeneralizedMaxwell, Rheology};
+    ///
+    /// let body = GeneralizedMaxwell::prony(4.0e6, &[(0.5, 0.1), (0.25, 10.0)])?;
+    /// assert!((body.creep_compliance(1.0e6) * 1.0e6 - 1.0).abs() < 1e-14); // a quarter is left
+    /// assert!(GeneralizedMaxwell::prony(4.0e6, &[(0.75, 0.1), (0.5, 10.0)]).is_err());
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the modulus is not finite and positive, a share is not in \[0, 1\], or their sum exceeds 1 by more than
+    /// rounding; as [`GeneralizedMaxwell::new`].
+    pub fn prony(glassy: f64, terms: &[(f64, f64)]) -> Result<GeneralizedMaxwell> {
+        positive("glassy modulus", glassy)?;
+        let mut rest = 1.0;
+        for &(share, _) in terms {
+            rest -= within("share of the glassy modulus", share, (0.0..=1.0).contains(&share), "in [0, 1]")?;
+        }
+        within("sum of the shares", 1.0 - rest, rest >= -SHARES_ROUNDING, "at most 1")?;
+        // shares printed with few digits may add up to 1 but for rounding: a fluid
+        let rest = if rest > SHARES_ROUNDING { rest } else { 0.0 };
+        let terms: Vec<_> = terms.iter().map(|&(share, time)| (share * glassy, time)).collect();
+        GeneralizedMaxwell::new(rest * glassy, &terms)
     }
 }
 

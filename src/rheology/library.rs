@@ -1,4 +1,4 @@
-//! PublishedMaterial materials, by name.
+//! Published materials, by name.
 //!
 //! Prony series as printed, each with its reference and the source of the digits. Other specimens differ by
 //! temperature, compound and ageing: take these as examples of real bodies, and measure your own.
@@ -15,7 +15,8 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
-use crate::error::{MaterialError, Result, within};
+use crate::error::{MaterialError, Result};
+use crate::rheology::material::poisson_ratio;
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
 /// The modulus of a published series.
@@ -76,7 +77,7 @@ impl PublishedMaterial {
     /// # Errors
     /// If `nu` is outside (−1, ½].
     pub fn rheology(&self, nu: f64) -> Result<GeneralizedMaxwell> {
-        within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")?;
+        poisson_ratio(nu)?;
         let to_shear = if self.measured == Measured::Tension { 0.5 / (1.0 + nu) } else { 1.0 };
         let terms: Vec<_> = self.terms().into_iter().map(|(modulus, time)| (to_shear * modulus, time)).collect();
         GeneralizedMaxwell::new(to_shear * self.equilibrium(), &terms)

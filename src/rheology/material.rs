@@ -12,6 +12,8 @@ use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is
 /// | [`Material::incompressible`] | J(t)/4 |
 /// | [`Material::constant_poisson`] | (1 − ν) J(t)/2 |
 /// | [`Material::elastic_bulk`] | J(t)/4 + (3/4) K(t), K the creep compliance to the relaxation modulus 3B + G(t) |
+/// | [`Material::from_tension`] | (1 − ν²) D(t), D the creep compliance in tension |
+/// | [`Material::from_tension_elastic_bulk`] | as of an elastic bulk, J(t) = 3 D(t) − 1/(3B) |
 /// | [`Material::against`], two bodies | the sum of both |
 ///
 /// ```
@@ -25,21 +27,21 @@ use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is
 #[derive(Debug, Clone)]
 pub struct Material {
     /// One body, or the two of a contact.
-    bodies: Vec<Body>,
+    pub(super) bodies: Vec<Body>,
 }
 
 #[derive(Debug, Clone)]
-struct Body {
-    rheology: Arc<dyn Rheology>,
-    volume: Volume,
+pub(super) struct Body {
+    pub(super) rheology: Arc<dyn Rheology>,
+    pub(super) volume: Volume,
 }
 
 #[derive(Debug, Clone)]
-enum Volume {
-    /// C(t)/J(t), the same at all times.
-    Proportional(f64),
-    /// An elastic bulk: the exact series of C(t), and 1 − 2ν.
-    Elastic(CreepSpectrum, Compressibility),
+pub(super) enum Volume {
+    /// C(t) over the creep compliance of the rheology, the same at all times, and Poisson's ratio.
+    Proportional { factor: f64, poisson: f64 },
+    /// An elastic bulk of this modulus: the exact series of C(t), and 1 − 2ν.
+    Elastic(f64, CreepSpectrum, Compressibility),
 }
 
 /// 1 − 2ν as a function of time after a step of load, `last` + Σ share e^(−t/time).
@@ -54,7 +56,7 @@ pub(crate) struct Compressibility {
 impl Material {
     /// An incompressible body (ν = ½): C = J/4.
     pub fn incompressible(rheology: impl Rheology + 'static) -> Material {
-        Material::with_volume(rheology, Volume::Proportional(0.25))
+        Material::with_volume(rheology, Volume::Proportional { factor: 0.25, poisson: 0.5 })
     }
 
     /// A body with constant Poisson's ratio `nu`: C = (1 − ν) J/2.
@@ -62,8 +64,37 @@ impl Material {
     /// # Errors
     /// If `nu` is outside (−1, ½].
     pub fn constant_poisson(rheology: impl Rheology + 'static, nu: f64) -> Result<Material> {
-        let nu = within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")?;
-        Ok(Material::with_volume(rheology, Volume::Proportional(0.5 * (1.0 - nu))))
+        let poisson = poisson_ratio(nu)?;
+        Ok(Material::with_volume(rheology, Volume::Proportional { factor: 0.5 * (1.0 - nu), poisson }))
+    }
+
+    /// A body whose creep was measured in tension: the rheology's J(t) is here the strain D(t) of a rod under unit tension,
+    /// 1/E for an elastic one, and every modulus that a model takes is a Young's modulus. With a constant Poisson's ratio `nu`
+    /// C = (1 − ν²) D, since J = 2 (1 + ν) D.
+    ///
+    /// This is exact if ν does not change with time; polymers that pass from glass to rubber rise from about 0.35 to
+    /// 0.5, which changes C by (1 − 0.35²)/(1 − 0.5²), 17 %. [`Material::from_tension_elastic_bulk`] follows the rise.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Material, Measurements, Zener};
+    ///
+    /// let silicone = Material::from_tension(Zener::relaxing(3.0e6, 1.5e6, 0.1)?, 0.49)?; // E(t) from 3 MPa to 1.5 MPa
+    /// assert!((silicone.contact_compliance(0.0) * 3.0e6 / (1.0 - 0.49 * 0.49) - 1.0).abs() < 1e-14);
+    ///
+    /// // storage and loss modulus in tension at five frequencies (DMA)
+    /// let omega = [0.1, 1.0, 10.0, 100.0, 1000.0];
+    /// let (storage, loss) = ([1.50e6, 1.52e6, 2.25e6, 2.98e6, 3.0e6], [0.02e6, 0.15e6, 0.75e6, 0.15e6, 0.02e6]);
+    /// let measured = Measurements::dynamic(&omega, &storage, &loss)?.fit_tension()?;
+    /// let silicone = Material::from_tension(measured, 0.49)?;
+    /// # let _ = silicone;
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `nu` is outside (−1, ½].
+    pub fn from_tension(tensile: impl Rheology + 'static, nu: f64) -> Result<Material> {
+        let poisson = poisson_ratio(nu)?;
+        Ok(Material::with_volume(tensile, Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson }))
     }
 
     /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers approximately
@@ -87,11 +118,49 @@ impl Material {
     pub fn elastic_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
         positive("bulk modulus", bulk_modulus)?;
         let creep = rheology.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &rheology))?;
+        Material::of_shear_and_bulk(rheology, &creep, bulk_modulus)
+    }
+
+    /// A body whose creep was measured in tension ([`Material::from_tension`]) and that is elastic in bulk, with
+    /// `bulk_modulus` B \[Pa\]: D(t) = J(t)/3 + 1/(9B), so that J(t) = 3 D(t) − 1/(3B), and the rest is
+    /// [`Material::elastic_bulk`]. This is exact for an elastic bulk; Poisson's ratio follows from it.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Elastic, Material};
+    ///
+    /// let (e, nu) = (2.0e9, 0.35);
+    /// let bulk = e / (3.0 * (1.0 - 2.0 * nu));
+    /// let glass = Material::from_tension_elastic_bulk(Elastic::new(e)?, bulk)?;
+    /// assert!((glass.contact_compliance(0.0) * e / (1.0 - nu * nu) - 1.0).abs() < 1e-14);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Material::elastic_bulk`]; if Young's modulus at t = 0 is 9B or more, which no elastic body of that bulk has.
+    pub fn from_tension_elastic_bulk(tensile: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
+        positive("bulk modulus", bulk_modulus)?;
+        let tension = tensile.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &tensile))?;
+        let (glassy, of_bulk) = (3.0 * tension.glassy(), 1.0 / (3.0 * bulk_modulus));
+        let allowed = "more than 1/9 of Young's modulus at t = 0: give moduli in tension, in Pa";
+        within("bulk modulus", bulk_modulus, glassy > of_bulk, allowed)?;
+        let terms: Vec<_> = tension.terms().iter().map(|&(compliance, time)| (3.0 * compliance, time)).collect();
+        let shear = CreepSpectrum::new(glassy - of_bulk, 3.0 * tension.fluidity(), &terms)?;
+        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus)
+    }
+
+    fn of_shear_and_bulk(
+        rheology: impl Rheology + 'static,
+        creep: &CreepSpectrum,
+        bulk_modulus: f64,
+    ) -> Result<Material> {
         let shear = creep.relaxation();
         let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
         let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
-        Ok(Material::with_volume(rheology, Volume::Elastic(contact, Compressibility::new(bulk_modulus, &stiffened))))
+        Ok(Material::with_volume(
+            rheology,
+            Volume::Elastic(bulk_modulus, contact, Compressibility::new(bulk_modulus, &stiffened)),
+        ))
     }
 
     fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
@@ -134,16 +203,16 @@ impl Material {
     /// ```
     pub fn poisson_ratios(&self) -> impl Iterator<Item = Option<f64>> {
         self.bodies.iter().map(|body| match &body.volume {
-            Volume::Proportional(factor) => Some(1.0 - 2.0 * factor),
-            Volume::Elastic(_, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
+            Volume::Proportional { poisson, .. } => Some(*poisson),
+            Volume::Elastic(_, _, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
         })
     }
 
     /// 1 − 2ν of a body, `None` if that body is absent.
     pub(crate) fn compressibility(&self, body: usize) -> Option<Compressibility> {
         self.bodies.get(body).map(|body| match &body.volume {
-            Volume::Proportional(factor) => Compressibility { last: 4.0 * factor - 1.0, terms: Vec::new() },
-            Volume::Elastic(_, compressibility) => compressibility.clone(),
+            Volume::Proportional { poisson, .. } => Compressibility { last: 1.0 - 2.0 * poisson, terms: Vec::new() },
+            Volume::Elastic(_, _, compressibility) => compressibility.clone(),
         })
     }
 
@@ -233,6 +302,11 @@ impl Material {
     }
 }
 
+/// Accepts Poisson's ratios of stable bodies.
+pub(crate) fn poisson_ratio(nu: f64) -> Result<f64> {
+    within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")
+}
+
 fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
     MaterialError::NoExponentialSeries { what, rheology: format!("{rheology:?}") }.into()
 }
@@ -249,20 +323,20 @@ impl Compressibility {
 }
 
 impl Body {
-    fn contact_compliance(&self, t: f64) -> f64 {
+    pub(super) fn contact_compliance(&self, t: f64) -> f64 {
         match &self.volume {
-            Volume::Proportional(factor) => factor * self.rheology.creep_compliance(t),
-            Volume::Elastic(contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
+            Volume::Proportional { factor, .. } => factor * self.rheology.creep_compliance(t),
+            Volume::Elastic(_, contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
             Volume::Elastic(..) => f64::NAN,
         }
     }
 
-    fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
+    pub(super) fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
         match &self.volume {
-            Volume::Proportional(factor) => {
+            Volume::Proportional { factor, .. } => {
                 self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(*factor)).transpose()
             }
-            Volume::Elastic(contact, _) => Ok(Some(contact.clone())),
+            Volume::Elastic(_, contact, _) => Ok(Some(contact.clone())),
         }
     }
 }

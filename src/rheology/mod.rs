@@ -19,8 +19,26 @@
 //! | [`CreepSeries`] | fitted to [`Measurements`], or to another model |
 //! | [`ShiftedRheology`] | J of another model, at a constant temperature; [`TemperatureHistory`]: at a changing one |
 //!
+//! # Arguments
+//!
+//! One order everywhere: a strength first (modulus \[Pa\] or compliance \[1/Pa\]), then its time \[s\], an exponent last.
+//! A term of a series is the pair (strength, time): (modulus, relaxation time) where it relaxes, (compliance, retardation time) where
+//! it creeps. Constructors of one name take the same of every model:
+//!
+//! | constructor | takes |
+//! |---|---|
+//! | `new` | the elements: moduli, and the viscosity \[Pa·s\] of each dashpot; the numbers of the formula above |
+//! | `with_time`, `with_times` | the same, with a time in place of each viscosity |
+//! | `relaxing` | glassy modulus, rubbery modulus, relaxation time |
+//! | [`GeneralizedMaxwell::prony`] | glassy modulus, (share of it, relaxation time) of each term |
+//!
+//! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, become materials by [`Material::from_tension`],
+//! elastic constants by [`Elastic::young`].
+//!
+//! # Materials
+//!
 //! A [`Rheology`] describes shear; a [`Material`] adds the bulk response and gives the contact
-//! compliance C(t) of the surface. PublishedMaterial materials are in [`library`], the laws that every
+//! compliance C(t) of the surface. Published materials are in [`library`], the laws that every
 //! rheology obeys in [`laws`].
 //!
 //! # Exponential series
@@ -39,6 +57,7 @@
 //! | logarithmic | 1.3 … 2.7 |
 
 mod burgers;
+mod description;
 mod dynamic;
 mod elastic;
 mod fit;

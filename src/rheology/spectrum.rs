@@ -23,6 +23,7 @@ use crate::rheology::interconversion::reciprocal;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "CreepSpectrumParts"))]
 pub struct CreepSpectrum {
     glassy: f64,
     fluidity: f64,
@@ -38,6 +39,11 @@ pub struct CreepSpectrum {
 /// viscosity η of an immediate dashpot. Every coefficient is ≥ 0.
 #[derive(Debug, PartialEq, Educe)]
 #[educe(Clone)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "RelaxationSpectrumParts")
+)]
 pub struct RelaxationSpectrum {
     equilibrium: f64,
     viscosity: f64,
@@ -53,6 +59,44 @@ pub(crate) struct SavedRelaxation {
     equilibrium: f64,
     viscosity: f64,
     terms: Vec<(f64, f64)>,
+}
+
+/// What a series is made of, before it is checked.
+#[cfg(feature = "serde")]
+mod parts {
+    #[derive(serde::Deserialize)]
+    pub(super) struct CreepSpectrumParts {
+        pub(super) glassy: f64,
+        pub(super) fluidity: f64,
+        pub(super) terms: Vec<(f64, f64)>,
+    }
+
+    #[derive(serde::Deserialize)]
+    pub(super) struct RelaxationSpectrumParts {
+        pub(super) equilibrium: f64,
+        pub(super) viscosity: f64,
+        pub(super) terms: Vec<(f64, f64)>,
+    }
+}
+#[cfg(feature = "serde")]
+use parts::{CreepSpectrumParts, RelaxationSpectrumParts};
+
+#[cfg(feature = "serde")]
+impl TryFrom<CreepSpectrumParts> for CreepSpectrum {
+    type Error = crate::Error;
+
+    fn try_from(parts: CreepSpectrumParts) -> Result<CreepSpectrum> {
+        CreepSpectrum::new(parts.glassy, parts.fluidity, &parts.terms)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RelaxationSpectrumParts> for RelaxationSpectrum {
+    type Error = crate::Error;
+
+    fn try_from(parts: RelaxationSpectrumParts) -> Result<RelaxationSpectrum> {
+        RelaxationSpectrum::new(parts.equilibrium, parts.viscosity, &parts.terms)
+    }
 }
 
 impl CreepSpectrum {

@@ -29,7 +29,7 @@ use crate::rheology::TimeTemperature;
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Zener::new(1.0e8, 1.0e6, 1.0e9)?))
+///     .material(Material::incompressible(Zener::with_time(1.0e8, 1.0e6, 1.0e3)?))
 ///     .temperature(warming)
 ///     .build()?;
 /// contact.step(0.0, Load::force(0.5))?;
@@ -239,6 +239,16 @@ impl TemperatureHistory {
             }
         });
         invalid.map_or(Ok(sum), Err)
+    }
+}
+
+impl TemperatureHistory {
+    /// The times and temperatures of a table, or the corners of a function.
+    pub(crate) fn course(&self) -> std::result::Result<&[(f64, f64)], &[f64]> {
+        match &self.course {
+            Course::Table(table) => Ok(table.as_slice()),
+            Course::Function { corners, .. } => Err(corners.as_slice()),
+        }
     }
 }
 

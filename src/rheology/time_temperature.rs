@@ -16,7 +16,7 @@ pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 /// assert!((wlf.shift_factor(393.15)?.log10() + 17.44 * 20.0 / 71.6).abs() < 1e-12);
 ///
 /// // a body measured at 373.15 K, at 20 K more
-/// let warm = wlf.at(Maxwell::new(1.0e6, 1.0e9)?, 393.15)?;
+/// let warm = wlf.at(Maxwell::with_time(1.0e6, 1.0e3)?, 393.15)?;
 /// assert!(warm.creep_compliance(1.0) > 5.0 * warm.creep_compliance(0.0));
 /// # Ok::<(), viscocontact::Error>(())
 /// ```

@@ -1,12 +1,16 @@
 //! The residual of a state, and the outcome of a solve.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::{ContactSet, Problem, Solution};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stop {
+pub(crate) struct Stop<'a> {
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
+    /// Set by another thread to end the solve.
+    pub(crate) cancelled: Option<&'a AtomicBool>,
 }
 
 /// How a solve ended.
@@ -23,9 +27,11 @@ pub(crate) enum Outcome {
     Unbalanced(usize),
     /// The residual is NaN.
     NotANumber,
+    /// Another thread ended the solve.
+    Cancelled,
 }
 
-impl Stop {
+impl Stop<'_> {
     /// The outcome if the solve ends here. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
     /// loads.
     pub(crate) fn outcome(&self, solution: &Solution, admissible: impl FnOnce() -> bool) -> Option<Outcome> {
@@ -35,6 +41,8 @@ impl Stop {
             Some(Outcome::NotANumber)
         } else if solution.counts.iterations >= self.max_iterations {
             Some(Outcome::OutOfIterations)
+        } else if self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            Some(Outcome::Cancelled)
         } else {
             None
         }
@@ -76,16 +84,16 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Finds the rounding of the gap from that of the guess, `rounding`, and writes the relative residual and its own rounding to `solution`,
+    /// Finds the rounding of the gap from `guess_rounding`, the rounding of the guess, and writes the relative residual and its rounding to `solution`,
     /// the residual to its trace, too. The step judges convergence and warns of rounding by them.
-    pub(crate) fn note(&mut self, problem: &Problem<'_>, rounding: f64, solution: &mut Solution) {
-        self.cancellation = problem.rounding(&solution.pressure) + rounding;
+    pub(crate) fn note(&mut self, problem: &Problem<'_>, guess_rounding: f64, solution: &mut Solution) {
+        self.cancellation = problem.displacement_rounding(&solution.pressure) + guess_rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations
         let lost = problem.rows().intact().is_err();
         solution.residual = if lost { f64::NAN } else { self.relative_residual() };
         // a smaller residual cannot be detected; where squares of displacements vanish, none can
-        solution.rounding = if self.displacement > 0.0 {
-            (self.rounding() + UNDERFLOW) / self.yielding()
+        solution.relative_rounding = if self.displacement > 0.0 {
+            (self.gap_rounding() + UNDERFLOW) / self.yielding()
         } else if problem.rows().any(solution.pressure.iter().any(|&p| p > 0.0)) {
             f64::INFINITY
         } else {
@@ -98,7 +106,7 @@ impl ResidualSums {
     /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
     fn relative_residual(&self) -> f64 {
         let error =
-            self.rms().max(self.deepest.max(self.penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
+            self.rms().max(self.deepest.max(self.penetration) / PENETRATION_SLACK) - self.gap_rounding() - UNDERFLOW;
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
     }
 
@@ -108,7 +116,7 @@ impl ResidualSums {
     }
 
     /// Rounding of the gap.
-    pub(crate) fn rounding(&self) -> f64 {
+    pub(crate) fn gap_rounding(&self) -> f64 {
         4.0 * f64::EPSILON * self.greatest_gap + self.cancellation
     }
 

@@ -43,7 +43,7 @@ pub(crate) struct Solution {
     /// The residual on return, relative to rms (c v) in contact.
     pub(crate) residual: f64,
     /// Rounding of the gap, in the same measure: a smaller residual cannot be detected.
-    pub(crate) rounding: f64,
+    pub(crate) relative_rounding: f64,
     /// The residual over the iterations.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) trace: Trace,
@@ -84,7 +84,7 @@ impl<'a> Problem<'a> {
 
     /// Rounding of the gap where a prescribed motion closes it, and of c K p on bodies whose mean displacement is held: a
     /// nearly uniform pressure displaces them hardly at all.
-    pub(crate) fn rounding(&self, pressure: &[f64]) -> f64 {
+    pub(crate) fn displacement_rounding(&self, pressure: &[f64]) -> f64 {
         let displaced = match self.kernel.whole.softest_wave_if_mean_is_held() {
             Some(softest) => self.compliance * softest * self.rows().greatest(greatest(pressure)),
             None => 0.0,
@@ -134,7 +134,7 @@ impl Solution {
     pub(crate) fn release(&mut self) {
         self.pressure.fill(0.0);
         self.potential.fill(0.0);
-        (self.residual, self.rounding) = (0.0, 0.0);
+        (self.residual, self.relative_rounding) = (0.0, 0.0);
     }
 
     /// Moves every released body until it just touches the surface, without tilt.
@@ -151,7 +151,7 @@ impl Solution {
 /// A problem, its solution so far, when to stop, and the buffers of the convolutions.
 pub(crate) struct Solve<'a> {
     pub(crate) problem: &'a Problem<'a>,
-    pub(crate) stop: Stop,
+    pub(crate) stop: Stop<'a>,
     pub(crate) solution: &'a mut Solution,
     pub(crate) work: &'a mut Workspace,
 }

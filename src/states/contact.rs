@@ -38,6 +38,7 @@ struct Scene {
 
 /// The state after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StatesReport {
     /// Time \[s\].

@@ -17,6 +17,7 @@ const MAX_STEPS: usize = 100;
 
 /// An elastic contact of unit compliance at one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ElasticState {
     /// Level l: force times compliance \[m²\].
@@ -119,7 +120,7 @@ impl ElasticStates {
     ///     (4.0 / 3.0 * radius * depth, depth, 2.0 * radius, std::f64::consts::PI * radius * radius)
     /// };
     /// let states = ElasticStates::from_table(&[hertz(1.0e-9), hertz(1.0e-3)])?;
-    /// let mut contact = StatesContact::new(&states, &Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))?;
+    /// let mut contact = StatesContact::new(&states, &Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))?;
     /// let report = contact.step(0.0, Load::force(1.0))?;
     /// assert!((report.approach / (9.0 / (16.0 * 10.0e-3 * 4.0e6_f64.powi(2))).cbrt() - 1.0).abs() < 1e-12);
     /// # Ok::<(), Error>(())

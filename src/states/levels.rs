@@ -119,10 +119,7 @@ impl Levels {
         self.history.predict(dt, interpolant, &mut self.trial);
         let compliance = self.history.rule().compliance();
         if compliance == 0.0 {
-            return Err(Error::Step(StepError::NoElasticResponse {
-                time,
-                what: "a jump of the load (ramp it instead)",
-            }));
+            return Err(Error::Step(StepError::NoElasticResponse { time, what: "a jump of the load" }));
         }
         if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {
             return Err(StatesError::OutOfOrder { time, displacement }.into());

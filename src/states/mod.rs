@@ -29,7 +29,7 @@
 //! let states = Sweep::new(grid, &Sphere::new(10.0e-3)?).run(Reach::Level(1.0e-6))?;
 //! // a hundred materials on one surface: no contact problem is solved any more
 //! for time in 1..=100 {
-//!     let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6 * f64::from(time))?);
+//!     let body = Material::incompressible(Maxwell::with_time(1.0e6, f64::from(time))?);
 //!     let mut contact = StatesContact::new(&states, &body)?;
 //!     contact.step(0.0, Load::force(1.0))?;
 //!     let report = contact.step(1.0, Load::force(1.0))?;

@@ -1,5 +1,6 @@
 //! A contact on elastic states along a load history.
 
+use crate::ascending::Schedule;
 use crate::contact::Stepping;
 use crate::error::{Error, LoadError, Result, StepError, within};
 use crate::load::{Load, LoadHistory};
@@ -27,7 +28,7 @@ const ORDER: f64 = 3.0;
 /// use viscocontact::states::{Reach, StatesContact, Sweep};
 ///
 /// let states = Sweep::new(Grid::square(32, 4.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(6.0e-7))?;
-/// let mut contact = StatesContact::new(&states, &Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))?;
+/// let mut contact = StatesContact::new(&states, &Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?))?;
 /// let load = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
 /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-4), 10.0);
 /// while let Some(report) = run.next_step()? {
@@ -54,6 +55,11 @@ pub struct StatesRun<'a> {
     /// Greatest depth and force of the run, for errors relative to them.
     greatest: [f64; 2],
     rejected: u64,
+    /// Times at which steps end, and at which states within steps are sampled.
+    stops: Schedule,
+    sampled: Schedule,
+    /// Whether the last call took a step.
+    stepped: bool,
 }
 
 impl StatesContact {
@@ -75,11 +81,108 @@ impl StatesContact {
             whole,
             greatest,
             rejected,
+            stops: Schedule::default(),
+            sampled: Schedule::default(),
+            stepped: false,
         }
     }
 }
 
-impl StatesRun<'_> {
+impl<'a> StatesRun<'a> {
+    /// Makes steps end exactly at these `times` \[s\] too, as [`Run::stop_at`](crate::contact::Run::stop_at).
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn stop_at(mut self, times: &[f64]) -> Result<StatesRun<'a>> {
+        self.stops.add("time to stop at", times)?;
+        Ok(self)
+    }
+
+    /// Makes steps end exactly at every multiple of `interval` \[s\] from the start of the run too.
+    ///
+    /// # Errors
+    /// If the interval is not finite and positive.
+    pub fn stop_every(mut self, interval: f64) -> Result<StatesRun<'a>> {
+        self.stops.add_every("interval of the stops", interval, self.start)?;
+        Ok(self)
+    }
+
+    /// Makes steps end exactly `first` \[s\] after the start of the run too, and at `per_decade` times in each decade beyond.
+    ///
+    /// # Errors
+    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
+    pub fn stop_at_decades(mut self, first: f64, per_decade: usize) -> Result<StatesRun<'a>> {
+        self.stops.add_decades(["first time to stop at", "stops per decade"], (first, per_decade), self.start)?;
+        Ok(self)
+    }
+
+    /// Samples the states at these `times` \[s\] ([`StatesRun::samples`]).
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn sample_at(mut self, times: &[f64]) -> Result<StatesRun<'a>> {
+        self.sampled.add("time to sample", times)?;
+        Ok(self)
+    }
+
+    /// Samples the states at every multiple of `interval` \[s\] from the start of the run ([`StatesRun::samples`]).
+    ///
+    /// # Errors
+    /// If the interval is not finite and positive.
+    pub fn sample_every(mut self, interval: f64) -> Result<StatesRun<'a>> {
+        self.sampled.add_every("interval of the samples", interval, self.start)?;
+        Ok(self)
+    }
+
+    /// Samples the states `first` \[s\] after the start of the run, and at `per_decade` times in each decade beyond
+    /// ([`StatesRun::samples`]).
+    ///
+    /// # Errors
+    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
+    pub fn sample_at_decades(mut self, first: f64, per_decade: usize) -> Result<StatesRun<'a>> {
+        self.sampled.add_decades(["first time to sample", "samples per decade"], (first, per_decade), self.start)?;
+        Ok(self)
+    }
+
+    /// The states of the last step, in the order of time: at each time to sample within it, and at its end, as
+    /// [`Run::samples`](crate::contact::Run::samples). The steps stay as they are.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let states = Sweep::new(Grid::square(32, 4.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(6.0e-7))?;
+    /// let rubber = Material::incompressible(Zener::relaxing(1.0e6, 0.5e6, 1.0)?);
+    /// let mut contact = StatesContact::new(&states, &rubber)?;
+    /// let load = StepLoad::new(Load::force(0.3))?;
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 100.0).sample_at_decades(1.0e-2, 20)?;
+    /// let mut curve = Vec::new();
+    /// while run.next_step()?.is_some() {
+    ///     for sample in run.samples() {
+    ///         let sample = sample?;
+    ///         curve.push((sample.time(), sample.contact_area()));
+    ///     }
+    /// }
+    /// assert!(curve.len() > 80 && curve.is_sorted_by_key(|point| point.0));
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Each sample as [`StatesRun::within_step`].
+    pub fn samples(&self) -> impl Iterator<Item = Result<StatesContact>> {
+        let (start, end) = (self.before.time(), self.contact.time());
+        let same = SAME_TIME * (end - start);
+        let (mut time, mut left) = (start + same, self.stepped);
+        std::iter::from_fn(move || {
+            if !left {
+                return None;
+            }
+            let next = self.sampled.after(time).filter(|next| *next < end - same);
+            left = next.is_some();
+            time = next.unwrap_or(end) + same;
+            Some(self.within_step(next.unwrap_or(end)))
+        })
+    }
+
     /// Takes the next step and returns its report, or `None` at the end of the run. At the start, and where the history jumps, a step of length
     /// zero applies the new load; steps end at corners and jumps.
     ///
@@ -87,6 +190,13 @@ impl StatesRun<'_> {
     /// If the end of the run, the fixed step or the tolerance is not allowed, the history returns an invalid load, or a step fails
     /// ([`StatesContact::step`]).
     pub fn next_step(&mut self) -> Result<Option<StatesReport>> {
+        self.stepped = false;
+        let report = self.take_step()?;
+        self.stepped = report.is_some();
+        Ok(report)
+    }
+
+    fn take_step(&mut self) -> Result<Option<StatesReport>> {
         self.stepping.validate_run(self.start, self.until)?;
         let now = self.contact.time();
         let load = self.history.at(now).validated_at(now)?;
@@ -103,12 +213,13 @@ impl StatesRun<'_> {
         if corner <= now || corner.is_nan() {
             return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: corner }.into());
         }
-        let stop = corner.min(self.contact.next_temperature_corner(now)).min(self.until);
+        let kink = corner.min(self.contact.next_temperature_corner(now)).min(self.until);
+        let stop = kink.min(self.stops.after(now).unwrap_or(f64::INFINITY));
         let report = match self.stepping {
             Stepping::Fixed { dt } => self.fixed_step(now, dt, stop)?,
             Stepping::Adaptive { tolerance } => self.adaptive_step(now, tolerance, stop)?,
         };
-        if report.time >= stop {
+        if report.time >= kink {
             self.contact.reset_differences();
             self.next = 0.0;
         }

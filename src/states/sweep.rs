@@ -16,6 +16,7 @@ use crate::states::pressed::Pressed;
 
 /// How far a sweep goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Reach {
     /// To a level \[m²\]: force times compliance. A force F held on a body of the contact creep compliance C(t) reaches F C(t).

@@ -118,7 +118,7 @@ pub fn all() -> Vec<AnyScene> {
     let grid = Grid::square(192, 4.0e-3).unwrap();
     let layer = Layer::bonded_to_rigid(1.0e-3, 0.4).unwrap();
     let kernel = Arc::new(InfluenceKernel::layer(&grid, layer).unwrap());
-    let material = Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap(), 0.4).unwrap();
+    let material = Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap(), 0.4).unwrap();
     let scene = AnyScene::plain("layer", grid, sphere(), two(1.0));
     scenes.push(AnyScene { kernel, material, settings: scene.settings.with_symmetry(false), ..scene });
 

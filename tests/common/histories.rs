@@ -52,9 +52,9 @@ pub fn scenes() -> Vec<Scene> {
     let ten: Vec<_> = (0..10).map(|k| (1.0e-6, 10f64.powi(k - 4))).collect();
     let power = FractionalMaxwell::findley(1.0e-6, 1.0e-6, 0.3).unwrap().series(1e-6..=1e6, 1e-5).unwrap();
     vec![
-        Scene::new("Maxwell, held", Maxwell::new(1.0e6, 1.0e6).unwrap(), hold(), 2.0),
-        Scene::new("Zener, held", Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap(), hold(), 5.0),
-        Scene::new("Zener, load-unload-load", Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), triangle(), 3.5),
+        Scene::new("Maxwell, held", Maxwell::with_time(1.0e6, 1.0).unwrap(), hold(), 2.0),
+        Scene::new("Zener, held", Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap(), hold(), 5.0),
+        Scene::new("Zener, load-unload-load", Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap(), triangle(), 3.5),
         Scene::new(
             "four times, sine",
             four_terms(),
@@ -65,7 +65,7 @@ pub fn scenes() -> Vec<Scene> {
         Scene::new("power law, twelve decades", power, hold(), 1e6),
         Scene::new(
             "Maxwell, approach |sin|",
-            Maxwell::new(1.0e6, 1.0e6).unwrap(),
+            Maxwell::with_time(1.0e6, 1.0).unwrap(),
             FnHistory::new(|t: f64| Load::approach(1.0e-4 * (3.0 * t).sin().abs())),
             2.0,
         ),

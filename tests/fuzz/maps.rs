@@ -230,7 +230,7 @@ fn operations(source: &mut Source) -> Verdict {
     let at = [source.between(-1e-3, 1e-3), source.between(-1e-3, 1e-3)];
     known("height", map.height_at(at[0], at[1]))?;
     known("slope", map.slope_at(at[0], at[1]).into_iter().flatten())?;
-    if let Ok(statistics) = SurfaceStatistics::of(&map) {
+    if let Ok(statistics) = map.statistics() {
         let SurfaceStatistics { mean, rms_height, skewness, kurtosis, rms_slope, rms_curvature, .. } = statistics;
         let all = [mean, rms_height, skewness, kurtosis, rms_slope, rms_curvature];
         known("statistics", all.into_iter().chain(statistics.rms_slopes))?;

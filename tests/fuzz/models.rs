@@ -19,18 +19,25 @@ pub fn rheology(source: &mut Source, fitted: bool) -> viscocontact::Result<Box<d
     let [a, b] = [source.scale(1e4, 1e9), source.scale(1e4, 1e9)];
     Ok(match source.below(if fitted { 15 } else { 7 }) {
         0 => Box::new(Elastic::new(g)?),
+        1 if source.chance(0.5) => Box::new(Maxwell::with_time(g, t)?),
         1 => Box::new(Maxwell::new(g, a)?),
+        2 if source.chance(0.5) => Box::new(KelvinVoigt::with_time(g, t)?),
         2 => Box::new(KelvinVoigt::new(g, a)?),
+        3 if source.chance(0.5) => Box::new(Zener::relaxing(g.max(a), g.min(a), t)?),
         3 => Box::new(Zener::new(g, a, b)?),
+        4 if source.chance(0.5) => Box::new(Burgers::with_times((g, t), (a, source.scale(1e-3, 1e3)))?),
         4 => Box::new(Burgers::new(g, a, b, source.scale(1e4, 1e9))?),
         5 => {
             let fluidity = if source.chance(0.5) { 0.0 } else { source.scale(1e-12, 1e-6) };
             Box::new(GeneralizedKelvin::new(j, fluidity, &terms(source, [1e-9, 1e-5]))?)
         }
+        6 if source.chance(0.3) => Box::new(GeneralizedMaxwell::prony(g, &terms(source, [1e-3, 1.0]))?),
         6 => Box::new(GeneralizedMaxwell::new(source.choose(&[g, g, 0.0]), &terms(source, [1e4, 1e8]))?),
         7 => Box::new(PowerLaw::new(j, t, n)?),
         8 if source.chance(0.5) => Box::new(FractionalMaxwell::findley(j, source.scale(1e-9, 1e-5), n)?),
+        8 if source.chance(0.5) => Box::new(FractionalMaxwell::with_time(g, t, n)?),
         8 => Box::new(FractionalMaxwell::new(g, a, n)?),
+        9 if source.chance(0.5) => Box::new(FractionalZener::relaxing(g.max(a), g.min(a), t, n)?),
         9 => Box::new(FractionalZener::new(g, a, t, n)?),
         10 => Box::new(Kww::new(j, source.scale(1e-9, 1e-5), t, n)?),
         11 => Box::new(LogCreep::new(j, source.scale(1e-9, 1e-6), t)?),
@@ -85,7 +92,9 @@ pub fn is_long_fit(times: &std::ops::RangeInclusive<f64>) -> bool {
 /// A body of the contact.
 pub fn material(source: &mut Source, fitted: bool) -> viscocontact::Result<Material> {
     let body = rheology(source, fitted)?;
-    Ok(match source.below(5) {
+    Ok(match source.below(7) {
+        5 => Material::from_tension(body, source.between(-0.5, 0.5))?,
+        6 => Material::from_tension_elastic_bulk(body, source.scale(1e6, 1e10))?,
         0 => Material::constant_poisson(body, source.between(-0.5, 0.5))?,
         1 => Material::elastic_bulk(body, source.scale(1e6, 1e10))?,
         2 => Material::incompressible(body).against(Material::incompressible(Elastic::new(source.scale(1e6, 1e12))?)),

@@ -29,7 +29,7 @@ fn numbers(source: &mut Source, count: usize) -> Vec<f64> {
 
 fn quantity(source: &mut Source) -> Quantity {
     let unit = source.choose(&["m", "Pa", "m²", "m³", "1/Pa", "", "²", "µm", "N m", "rad/s"]);
-    if source.chance(0.3) { Quantity::from(text(source)) } else { Quantity::of(text(source), unit) }
+    if source.chance(0.3) { Quantity::from(text(source)) } else { Quantity::new(text(source), unit) }
 }
 
 /// A picture has as many pixels as its size.

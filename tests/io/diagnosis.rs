@@ -150,3 +150,76 @@ fn rounding_is_warned_of() {
         assert!(dt > 10.0 || error < 1e-4, "{report}");
     }
 }
+
+/// The error of a contact at the edge estimates the width that holds the contact.
+#[test]
+fn contact_at_the_edge_estimates_the_width_that_it_needs() {
+    let (length, modulus) = (4.0e-3, 4.0e6);
+    let refused = |shape: &dyn Geometry, load: Load| {
+        let mut contact = builder_of(shape, Grid::square(48, length).unwrap(), elastic()).build().unwrap();
+        let Err(Error::Step(StepError::ContactAtEdge { lengths, needed, .. })) = contact.step(0.0, load) else {
+            panic!("no contact at the edge")
+        };
+        assert_eq!(lengths, [length; 2]);
+        needed
+    };
+    for wider in [1.2, 2.0, 4.0] {
+        let radius = 0.5 * length * wider;
+        let sphere = Sphere::new(10.0e-3).unwrap();
+        let cone = Cone::new(0.1).unwrap();
+        let force = [
+            4.0 / 3.0 * modulus * radius.powi(3) / 10.0e-3,
+            std::f64::consts::FRAC_PI_2 * 0.1 * modulus * radius.powi(2),
+        ];
+        let depth = [radius.powi(2) / 10.0e-3, std::f64::consts::FRAC_PI_2 * 0.1 * radius];
+        for (shape, which) in [(&sphere as &dyn Geometry, 0), (&cone, 1)] {
+            for load in [Load::force(force[which]), Load::approach(depth[which])] {
+                for needed in refused(shape, load).expect("an estimate") {
+                    assert!((needed / (2.0 * radius) - 1.0).abs() < 0.12, "{needed} {radius} {load:?}");
+                }
+            }
+        }
+    }
+    let flat = Wavy::in_two_directions([1.0e-9; 2], [length / 8.0; 2]).unwrap();
+    assert_eq!(refused(&flat, Load::force(1.0e3)), None);
+}
+
+/// Heights that are read in another unit than metres are steep; moduli in MPa are no moduli of solids.
+#[test]
+fn wrong_units_are_warned_of() {
+    let (grid, force) = (Grid::square(64, 1.0e-3).unwrap(), 1.0e-3);
+    let (steep, modulus) = (Warnings::STEEP, Warnings::MODULUS);
+    for seed in 0..20 {
+        let spec = RoughSpec::new(0.5e-3, 0.06e-3, Roughness::RmsSlope(0.01 + 0.003 * seed as f64)).with_seed(seed);
+        let map = Rough::new(&grid, spec).unwrap().height_map().clone();
+        for (scale, unit) in [(1.0, 1.0), (1.0e6, 1.0), (1.0, 1.0e-6), (1.0, 1.0e9)] {
+            let body = Material::incompressible(Maxwell::new(1.0e6 * unit, 1.0e6 * unit).unwrap());
+            let map = map.clone().scaled(scale).unwrap();
+            let settings = Settings::default().with_edge(Edge::Allow);
+            let mut contact = builder_of(&map, grid.clone(), body).settings(settings).build().unwrap();
+            let report = contact.step(0.0, Load::force(force * unit)).unwrap();
+            assert_eq!(report.warnings.contains(steep), scale > 1.0, "{seed}: {report}");
+            assert_eq!(report.warnings.contains(modulus), unit != 1.0, "{seed}: {report}");
+            assert_eq!(report.max_slope.is_some(), scale > 1.0);
+            if let Some(slope) = report.max_slope {
+                assert!(report.to_string().contains(&format!("the greatest slope is {slope:.3}")), "{report}");
+            }
+        }
+    }
+}
+
+/// The greatest slope in contact is the slope of the body there, whatever part of the grid is computed.
+#[test]
+fn the_slope_of_a_cone_is_reported() {
+    for tan_beta in [0.3, 0.45, 0.55, 0.9] {
+        for (symmetry, window) in [(true, true), (false, false)] {
+            let settings = Settings::default().with_symmetry(symmetry).with_window(window);
+            let cone = Cone::new(tan_beta).unwrap();
+            let grid = Grid::square(64, 4.0e-3).unwrap();
+            let mut contact = builder_of(&cone, grid, elastic()).settings(settings).build().unwrap();
+            let slope = contact.step(0.0, Load::approach(1.0e-3 * tan_beta)).unwrap().max_slope;
+            assert_eq!(slope.is_some(), tan_beta > 0.5);
+            assert!(slope.is_none_or(|slope| (slope / tan_beta - 1.0).abs() < 0.02), "{slope:?} {tan_beta}");
+        }
+    }
+}

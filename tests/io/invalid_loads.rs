@@ -82,7 +82,7 @@ fn recorded() -> impl Strategy<Value = Recorded> {
 fn contact(material: usize) -> ViscoelasticContact {
     let material = match material {
         0 => elastic(),
-        1 => Material::incompressible(Zener::new(1.0e6, 1.0e6, 0.5e6).unwrap()),
+        1 => Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 0.5).unwrap()),
         _ => maxwell(),
     };
     sphere_on(Grid::square(16, 5.0e-3).unwrap(), material, Settings::default())
@@ -154,7 +154,7 @@ fn no_step_skips_an_invalid_interval() {
 fn nan_is_named_or_returned_elsewhere() {
     let nan = FnHistory::new(|t: f64| Load::force(if (0.9..1.1).contains(&t) { f64::NAN } else { 0.2 }));
     let (sphere, body) =
-        (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Zener::new(1.0e6, 1.0e6, 0.5e6).unwrap()));
+        (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 0.5).unwrap()));
     let plan = Plan::builder(&sphere, &body, &nan, UNTIL).accuracy(Accuracy::COARSE).build();
     assert!(matches!(plan, Err(Error::Load(LoadError::OutOfRange { field: "normal force", .. }))));
     let broken = viscocontact::load::laws::all(&nan, &[0.0, 2.0]).unwrap_err();

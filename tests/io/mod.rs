@@ -9,6 +9,8 @@ mod errors;
 mod house;
 mod interface;
 mod invalid_loads;
+#[cfg(all(feature = "checkpoint", feature = "npy", feature = "plot"))]
+mod mistakes;
 mod output;
 #[cfg(feature = "npy")]
 mod output_of_ranks;

@@ -57,10 +57,10 @@ fn a_file_that_one_rank_cannot_write_is_an_error_on_all() {
         for ((_, message), expected) in failed.iter().zip([
             "exists",
             "column name",
-            "No such file",
+            "does not exist",
             "additional columns",
-            "No such file",
-            "No such file",
+            "does not exist",
+            "does not exist",
         ]) {
             assert!(message.contains(expected), "{message}");
         }

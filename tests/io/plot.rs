@@ -250,7 +250,7 @@ proptest! {
         scale in prop_oneof![Just(Scale::Linear), Just(Scale::LogX), Just(Scale::LogY), Just(Scale::LogLog)],
         label in ".{0,12}",
     ) {
-        let mut chart = Chart::new(label.clone(), Quantity::of(label.clone(), "m"), "y", Legend::LowerLeft);
+        let mut chart = Chart::new(label.clone(), Quantity::new(label.clone(), "m"), "y", Legend::LowerLeft);
         chart.scale = scale;
         chart.add(label, COLORS[2], Style::LineAndDots, points);
         let _ = chart.draw();
@@ -263,7 +263,7 @@ proptest! {
         range in prop::option::of((number(), number())),
     ) {
         let grid = Grid::new([2, 3], [lengths.0, lengths.1]).unwrap();
-        if let Ok(mut map) = Map::new(&grid, values, Quantity::of("q", "Pa")) {
+        if let Ok(mut map) = Map::new(&grid, values, Quantity::new("q", "Pa")) {
             if let Some((low, high)) = range {
                 map.range = [low, high];
             }

@@ -55,7 +55,7 @@ fn steps_regions_and_series_are_events() {
         contact.step(0.1, Load::force(500.0)).unwrap_err();
         let mut contact = sphere_on(
             Grid::square(32, 4.0e-3).unwrap(),
-            Material::incompressible(Zener::new(1.0e6, 1.0e5, 1.0e3).unwrap()),
+            Material::incompressible(Zener::with_time(1.0e6, 1.0e5, 0.01).unwrap()),
             Settings::default(),
         );
         let wave = Sinusoid::new(Load::force(0.02), Load::force(0.1), 10.0).unwrap();

@@ -303,7 +303,7 @@ fn contacts_refuse_materials_that_are_not_the_layers() {
         let builder = builder_of(&Sphere::new(1.0e-2).unwrap(), grid.clone(), material).kernel(Arc::clone(&kernel));
         if let Some(other) = counter { builder.counter_body(other).build() } else { builder.build() }
     };
-    let creeping = || Maxwell::new(1.0e6, 1.0e6).unwrap();
+    let creeping = || Maxwell::with_time(1.0e6, 1.0).unwrap();
     let right = || Material::constant_poisson(creeping(), 0.3).unwrap();
     assert!(build(right(), None).is_ok());
     let steel = Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();

@@ -53,9 +53,9 @@ fn elastic_bulk_obeys_the_correspondence_principle() {
         spectrum.glassy() + spectrum.fluidity() / s + terms.sum::<f64>()
     };
     let bodies: Vec<Box<dyn Fn() -> Box<dyn Rheology>>> = vec![
-        Box::new(|| Box::new(Maxwell::new(1.0e6, 1.0e6).unwrap())),
-        Box::new(|| Box::new(Zener::new(1.0e9, 1.0e6, 1.0e6).unwrap())),
-        Box::new(|| Box::new(KelvinVoigt::new(1.0e6, 1.0e6).unwrap())),
+        Box::new(|| Box::new(Maxwell::with_time(1.0e6, 1.0).unwrap())),
+        Box::new(|| Box::new(Zener::with_time(1.0e9, 1.0e6, 1.0).unwrap())),
+        Box::new(|| Box::new(KelvinVoigt::with_time(1.0e6, 1.0).unwrap())),
         Box::new(|| Box::new(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-5..=1e5, 1e-4).unwrap())),
     ];
     for body in bodies {
@@ -75,7 +75,7 @@ fn elastic_bulk_obeys_the_correspondence_principle() {
 
 #[test]
 fn elastic_bulk_tends_to_its_neighbours() {
-    let zener = || Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap();
+    let zener = || Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap();
     // nearly incompressible: J/4
     let stiff = Material::elastic_bulk(zener(), 1.0e16).unwrap();
     let incompressible = Material::incompressible(zener());
@@ -102,7 +102,7 @@ fn elastic_bulk_tends_to_its_neighbours() {
 
 #[test]
 fn two_bodies_share_the_approach() {
-    let tyre = || Material::constant_poisson(Zener::new(2.0e6, 1.0e6, 3.0e6).unwrap(), 0.4).unwrap();
+    let tyre = || Material::constant_poisson(Zener::with_time(2.0e6, 1.0e6, 3.0).unwrap(), 0.4).unwrap();
     let steel = || Material::constant_poisson(Elastic::new(2.0e6).unwrap(), 0.3).unwrap();
     for (name, counter) in [("creeping", tyre as fn() -> Material), ("elastic", steel)] {
         let reference = GrowingSphere::step(RADIUS, &maxwell().against(counter()), FORCE).unwrap();
@@ -350,6 +350,6 @@ fn series_over_too_many_decades_are_refused() {
     }
     assert!(body.series(1e-10..=1e30, 0.1).unwrap().report().max_misfit() <= 0.1);
     // what has an exact series needs no fit
-    let exact = Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap();
+    let exact = Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap();
     assert!(exact.series(1e-90..=1e90, 1e-4).unwrap().report().is_exact());
 }

@@ -5,3 +5,4 @@ mod intervals;
 mod measured;
 mod sparse_tables;
 mod spectra;
+mod tension;

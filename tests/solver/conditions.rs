@@ -153,7 +153,7 @@ impl Scene {
             .with_solver(solver)
             .with_edge(Edge::Allow)
             .with_max_iterations(5000);
-        let body = Material::incompressible(Zener::new(0.25, 0.25, 0.25).unwrap());
+        let body = Material::incompressible(Zener::with_time(0.25, 0.25, 1.0).unwrap());
         let built = ViscoelasticContact::builder(self.grid()).geometry(self).material(body).settings(settings).build();
         match built {
             Err(Error::NothingToTouch { .. }) => None,

@@ -27,7 +27,7 @@ fn every_length_of_step_errs_by_no_more_than_its_rule() {
         let dt = 10f64.powi(exponent);
         let mut row = format!("| 1e{exponent} |");
         for time_rule in [TimeRule::Exponential, TimeRule::Backward, TimeRule::Rectangle] {
-            let maxwell = Material::incompressible(Zener::new(1.0e6, 2.0e5, 2.0e5).unwrap());
+            let maxwell = Material::incompressible(Zener::with_time(1.0e6, 2.0e5, 1.0).unwrap());
             let settings = Settings::default().with_time_rule(time_rule).with_tolerance(1e-9).with_edge(Edge::Allow);
             let width = 2.4 * (0.75 * RADIUS * 6.0 * 0.25e-6_f64).cbrt();
             let mut contact = builder(32, width, maxwell.clone()).settings(settings).build().unwrap();
@@ -104,7 +104,7 @@ fn thirty_decades_in_one_body_are_followed() {
 #[test]
 fn every_poissons_ratio_and_shape_of_cell_gives_hertz() {
     for nu in [0.0, 0.5, -0.9] {
-        let material = Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap(), nu).unwrap();
+        let material = Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap(), nu).unwrap();
         let width = 2.5 * (0.75 * RADIUS * material.contact_compliance(1e3)).cbrt();
         let mut contact = builder(48, width, material.clone()).build().unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();

@@ -8,7 +8,7 @@ use viscocontact::prelude::*;
 fn bodies(draws: &mut Draws) -> Material {
     match draws.below(2) {
         0 => Material::incompressible(Elastic::new(1.0e6).unwrap()),
-        _ => Material::incompressible(Zener::new(1.0e6, 1.0e5, 1.0e5).unwrap()),
+        _ => Material::incompressible(Zener::with_time(1.0e6, 1.0e5, 1.0).unwrap()),
     }
 }
 

@@ -9,7 +9,7 @@ use viscocontact::prelude::*;
 const RADIUS: f64 = 1.0e-3;
 
 fn zener(nu: f64) -> Material {
-    Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), nu).unwrap()
+    Material::constant_poisson(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap(), nu).unwrap()
 }
 
 fn contact(grid: Grid, shape: &dyn Geometry, material: Material, tolerance: f64) -> ViscoelasticContact {
@@ -179,7 +179,7 @@ fn force_and_approach_may_take_turns() {
 #[test]
 fn tilt_creeps() {
     let grid = Grid::square(64, 2.1 * RADIUS).unwrap();
-    let body = Maxwell::new(1.0e6, 1.0e6).unwrap();
+    let body = Maxwell::with_time(1.0e6, 1.0).unwrap();
     let mut contact = contact(grid, &FlatPunch::circular(RADIUS).unwrap(), Material::incompressible(body), 1e-9);
     let load = Load::eccentric_force(1.0, [0.1 * RADIUS, 0.2 * RADIUS]);
     contact.step(0.0, load).unwrap();

@@ -37,9 +37,9 @@ fn shape(draws: &mut Draws, part: f64) -> (&'static str, Box<dyn Geometry>) {
 
 fn body(draws: &mut Draws) -> Material {
     match draws.below(4) {
-        0 => Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()),
+        0 => Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()),
         1 => Material::incompressible(Zener::new(1.0e6, 1.0e6 / draws.between(0.5, 8.0), 1.0e6).unwrap()),
-        2 => Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap()),
+        2 => Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0).unwrap()),
         _ => {
             let terms: Vec<(f64, f64)> = (0..5).map(|k| (1.0e-6, 10f64.powi(k - 3))).collect();
             Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap())
@@ -70,7 +70,9 @@ fn run(seed: u64, costs: &mut Ratios) {
     for _ in 0..12 {
         let force = (low * high).sqrt();
         let mut elastic = build(Material::incompressible(Elastic::new(1.0e6).unwrap()));
-        let wide = elastic.step(0.0, Load::force(force)).unwrap().area > part * part * 0.8 * LENGTH * LENGTH;
+        elastic.step(0.0, Load::force(force)).unwrap();
+        let cells = elastic.contact_cells() as f64;
+        let wide = cells * elastic.grid().cell_area() > part * part * 0.8 * LENGTH * LENGTH;
         if wide { high = force } else { low = force }
     }
     let force = low;

@@ -225,7 +225,7 @@ fn a_grid_of_65536_by_65536_cells_is_accepted() {
     let cells = 1 << 16;
     let memory = |ranks: usize| {
         let grid = Grid::square(cells, 1.0e-3).unwrap();
-        let body = Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap());
+        let body = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
         let settings = Settings::default().with_symmetry(false);
         let builder = ViscoelasticContact::builder(grid).settings(settings).ranks(Arc::new(OneOf(ranks)));
         builder.geometry(&FnGeometry::new(|x1, x2| x1 + x2)).material(body).memory().unwrap()

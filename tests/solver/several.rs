@@ -37,7 +37,7 @@ fn steps_of_several_bodies_converge() {
                 }
             })
             .collect();
-        let softening = || Material::incompressible(Zener::new(1.0e6, 1.0e5, 1.0e5).unwrap());
+        let softening = || Material::incompressible(Zener::with_time(1.0e6, 1.0e5, 1.0).unwrap());
         let material = if draws.chance(0.5) { elastic() } else { softening() };
         let build = || {
             let settings = Settings::default().with_edge(Edge::Allow);

@@ -10,7 +10,7 @@ use viscocontact::prelude::*;
 use viscocontact::rheology::MaterialError;
 
 fn zener() -> Material {
-    Material::incompressible(Zener::new(1.0e6, 0.4e6, 0.02e6).unwrap())
+    Material::incompressible(Zener::with_time(1.0e6, 0.4e6, 0.05).unwrap())
 }
 
 fn builder(grid: &Grid, shape: &dyn Geometry, frame: Frame) -> viscocontact::contact::Builder {

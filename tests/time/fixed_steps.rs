@@ -44,9 +44,9 @@ fn the_error_of_given_steps_is_estimated() {
         ("Burgers, 1 s", burgers(1.0e6, 2.0e6, 0.5e6, 0.5e6)),
         ("Burgers, 0.5 s", burgers(1.0e6, 10.0e6, 1.0e6, 0.5e6)),
         ("Burgers, 0.2 s", burgers(1.0e6, 5.0e6, 0.5e6, 0.1e6)),
-        ("Zener", Material::incompressible(Zener::new(1.0e6, 0.25e6, 0.25e6).unwrap())),
-        ("Maxwell", Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap())),
-        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap())),
+        ("Zener", Material::incompressible(Zener::with_time(1.0e6, 0.25e6, 1.0).unwrap())),
+        ("Maxwell", Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap())),
+        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0).unwrap())),
     ];
     let mut failures = Vec::new();
     // of bodies with elastic response, by load and length of the steps

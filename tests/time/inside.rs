@@ -196,7 +196,7 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
 /// happens in it. The ends are the states themselves, and other times are refused.
 #[test]
 fn a_state_within_a_long_step_follows_the_relaxation() {
-    let zener = Material::incompressible(Zener::new(1.0e6, 0.1e6, 0.1e6).unwrap());
+    let zener = Material::incompressible(Zener::with_time(1.0e6, 0.1e6, 1.0).unwrap());
     let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener).build().unwrap();
     contact.step(0.0, Load::approach(2.0e-5)).unwrap();
     let (start, instant) = (contact.clone(), contact.force());
@@ -223,7 +223,7 @@ fn a_state_within_a_long_step_follows_the_relaxation() {
 /// whole relaxation.
 #[test]
 fn states_within_steps_of_a_held_ball_are_exact() {
-    let zener = || Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.3e6).unwrap());
+    let zener = || Material::incompressible(Zener::with_time(1.0e6, 0.3e6, 1.0).unwrap());
     let four = [(0.4e6, 3.0e-3), (0.3e6, 3.0e-2), (0.2e6, 0.3), (0.1e6, 3.0)];
     let four_times = || Material::incompressible(GeneralizedMaxwell::new(0.1e6, &four).unwrap());
     let (depth, force) = (Load::approach(3.0e-5), Load::force(0.5));

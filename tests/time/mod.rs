@@ -8,6 +8,7 @@ mod inside;
 mod protocols;
 mod protocols_run;
 mod returns;
+mod samples;
 mod springs;
 mod states;
 mod states_kept;

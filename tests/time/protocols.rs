@@ -373,7 +373,7 @@ proptest! {
 /// Indenters that move in no time are free to, as long as they touch nothing.
 #[test]
 fn lifted_indenters_move_at_once() {
-    let voigt = || Material::incompressible(KelvinVoigt::new(1.0e6, 0.5e6).unwrap());
+    let voigt = || Material::incompressible(KelvinVoigt::with_time(1.0e6, 0.5).unwrap());
     let (grid, sphere) = (Grid::square(24, LENGTH).unwrap(), Sphere::new(10.0e-3).unwrap());
     let lifted = Load::approach(-DEPTH);
     let build = |frame| {

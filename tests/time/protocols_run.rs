@@ -13,8 +13,8 @@ const MOST_PROBLEMS: u64 = 20_000;
 fn bodies() -> [(&'static str, Material); 4] {
     [
         ("elastic", Material::incompressible(Elastic::new(1.0e6).unwrap())),
-        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
-        ("Maxwell", Material::incompressible(Maxwell::new(1.0e6, 0.3e6).unwrap())),
+        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::with_time(1.0e6, 0.3).unwrap())),
+        ("Maxwell", Material::incompressible(Maxwell::with_time(1.0e6, 0.3).unwrap())),
         ("fractional Zener", Material::incompressible(FractionalZener::new(3.0e6, 1.0e6, 0.3, 0.5).unwrap())),
     ]
 }

@@ -167,7 +167,7 @@ fn springs_are_loads_like_others() {
     let build = || {
         ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap())
             .geometry(&Sphere::new(10.0e-3).unwrap())
-            .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap()))
+            .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap()))
             .build()
             .unwrap()
     };

@@ -58,7 +58,7 @@ fn contacts_on_states_come_back_to_the_last_bit() {
     advanced(&mut again, 8..20);
     assert_eq!(again.report(), end);
     // of another material, other states, a damaged file, a file of a contact
-    let stiffer = Material::incompressible(Maxwell::new(1.0, 1.0).unwrap());
+    let stiffer = Material::incompressible(Maxwell::with_time(1.0, 1.0).unwrap());
     let mut wrong = StatesContact::new(&states, &stiffer).unwrap();
     assert!(matches!(wrong.resume(&path), Err(Error::Checkpoint { .. })));
     let table = ElasticStates::from_table(&[(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)]).unwrap();

@@ -45,10 +45,10 @@ fn the_order_is_that_of_the_rule_on_every_body() {
     let bodies = [
         ("Maxwell", maxwell()),
         ("Zener", zener()),
-        ("Kelvin–Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
+        ("Kelvin–Voigt", Material::incompressible(KelvinVoigt::with_time(1.0e6, 0.3).unwrap())),
         ("Burgers", Material::incompressible(Burgers::new(1.0e6, 3.0e6, 1.0e6, 0.5e6).unwrap())),
         ("power law", Material::incompressible(power)),
-        ("elastic bulk", Material::elastic_bulk(Zener::new(2.0e6, 1.0e6, 1.0e6).unwrap(), 3.0e6).unwrap()),
+        ("elastic bulk", Material::elastic_bulk(Zener::with_time(2.0e6, 1.0e6, 1.0).unwrap(), 3.0e6).unwrap()),
     ];
     let punch = FlatPunch::circular(0.8e-3).unwrap();
     let force = |t: f64| (0.5 * std::f64::consts::PI * t).sin().powi(2);
@@ -165,7 +165,7 @@ fn a_closure_matches_its_series() {
 /// Late times: the ages of the direct sum are differences of large numbers.
 #[test]
 fn direct_sums_work_at_late_times() {
-    let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e4).unwrap());
+    let body = Material::incompressible(Maxwell::with_time(1.0e6, 0.01).unwrap());
     let mut contact =
         sphere_on(Grid::square(16, 4.0e-3).unwrap(), body, Settings::default().with_time_rule(TimeRule::Backward));
     contact.step(1.0e3, Load::force(1.0e-6)).unwrap();

@@ -97,7 +97,7 @@ fn convolutions_grow_with_the_square_of_the_steps_in_the_paper_only() {
 fn uncached_sums_are_refused_where_cached_ones_are() {
     let build = |material, settings: Settings| sphere(material, settings).build();
     let uncached = Settings::paper_literal().with_tolerance(TIGHT);
-    let voigt = Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
+    let voigt = Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0).unwrap());
     assert!(matches!(build(voigt, uncached), Err(Error::Step(StepError::NoElasticResponse { .. }))));
     let moving = uncached.with_frame(Frame::Indenter);
     assert!(matches!(build(maxwell(), moving), Err(Error::WrongFrame { .. })));

@@ -153,7 +153,7 @@ fn foundation_retracts_a_cone_as_ting() {
 /// Unloading: force- and approach-driven runs of the same history are the same run.
 #[test]
 fn foundation_driven_by_its_own_approach() {
-    let zener = Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), 0.3).unwrap();
+    let zener = Material::constant_poisson(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap(), 0.3).unwrap();
     let new = || AxisymmetricContact::new(&Profile::sphere(RADIUS).unwrap(), &zener, 2000, 3.0e-3).unwrap();
     let (mut pressed, mut indented) = (new(), new());
     for step in 1..=200 {

@@ -188,7 +188,7 @@ fn thin_layers_are_springs_or_squeezed() {
 #[test]
 fn a_ball_sinks_into_a_creeping_layer() {
     let (radius, a, nu) = (10.0e-3, 0.2e-3, 0.3);
-    let rheology = || Zener::new(1.0e6, 1.0e6, 2.0e6).unwrap();
+    let rheology = || Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap();
     let material = Material::constant_poisson(rheology(), nu).unwrap();
     for ratio in [1.0, 20.0] {
         let layer = Layer::bonded_to_rigid(a / ratio, nu).unwrap();
@@ -237,7 +237,7 @@ fn layers_take_at_most_half_as_many_convolutions_again_as_a_half_space() {
         let shape: &dyn Geometry = if wavy { &ripples } else { &ball };
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(shape)
-            .material(Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 2.0e6).unwrap(), nu).unwrap())
+            .material(Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap(), nu).unwrap())
             .kernel(Arc::new(kernel(&grid, h).unwrap()))
             .build()
             .unwrap();
@@ -286,7 +286,7 @@ fn a_wave_in_full_contact_with_a_creeping_layer_is_the_closed_form() {
     let grid = Grid::new([64, 4], [length, length / 16.0]).unwrap();
     let q = 2.0 * PI / length;
     for layer in [Layer::bonded_to_rigid(0.3e-3, 0.3).unwrap(), Layer::frictionless_on_rigid(0.3e-3, 0.3).unwrap()] {
-        let material = Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), 0.3).unwrap();
+        let material = Material::constant_poisson(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap(), 0.3).unwrap();
         let mut contact = builder_of(&Wavy::new(amplitude, length).unwrap(), grid.clone(), material.clone())
             .kernel(Arc::new(InfluenceKernel::layer_periodic(&grid, layer).unwrap()))
             .settings(Settings::default().with_tolerance(1e-10))
@@ -340,7 +340,7 @@ fn cylinders_and_chains_of_balls_on_periodic_layers() {
     let press = |kernel: InfluenceKernel, shape: &dyn Geometry| {
         let mut contact = ViscoelasticContact::builder(kernel.grid().clone())
             .geometry(shape)
-            .material(Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 2.0e6).unwrap(), 0.3).unwrap())
+            .material(Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap(), 0.3).unwrap())
             .kernel(Arc::new(kernel))
             .settings(Settings::default().with_tolerance(1e-10))
             .build()

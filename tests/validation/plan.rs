@@ -109,7 +109,7 @@ fn held_spheres_are_as_accurate_as_planned() {
     let sphere = Sphere::new(RADIUS).unwrap();
     let load = StepLoad::new(Load::force(1.0)).unwrap();
     let maxwell = maxwell();
-    let zener = Material::constant_poisson(Zener::new(1.0e9, 1.0e8, 1.0e8).unwrap(), 0.3).unwrap();
+    let zener = Material::constant_poisson(Zener::with_time(1.0e9, 1.0e8, 1.0).unwrap(), 0.3).unwrap();
     let four = Material::incompressible(four_terms());
     for (name, material, until) in [("Maxwell", maxwell, 2.0), ("Zener", zener, 5.0), ("four times", four, 20.0)] {
         let exact = GrowingSphere::step(RADIUS, &material, 1.0).unwrap();
@@ -156,7 +156,7 @@ fn a_planned_run_is_a_thousand_times_less_work_than_the_papers() {
 #[test]
 fn loads_that_come_and_go_are_as_accurate_as_planned() {
     let sphere = Sphere::new(RADIUS).unwrap();
-    let zener = Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap());
+    let zener = Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap());
     let four = Material::incompressible(four_terms());
     let sine = Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0).unwrap();
     let cases: [(&str, Material, Box<dyn LoadHistory>, f64); 2] =

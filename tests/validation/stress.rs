@@ -152,7 +152,7 @@ fn stress_does_not_depend_on_the_window() {
     let scene = |window: bool| {
         ViscoelasticContact::builder(Grid::square(96, 6.0e-3).unwrap())
             .geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.6e-3, -0.3e-3]).unwrap())
-            .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+            .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
             .settings(Settings::default().with_tolerance(1e-10).with_window(window))
             .build()
             .unwrap()
@@ -181,7 +181,7 @@ fn stress_does_not_depend_on_the_window() {
 fn sections_and_volumes_are_cut_from_planes() {
     let mut contact = ViscoelasticContact::builder(Grid::new([24, 20], [3.0e-3, 2.0e-3]).unwrap())
         .geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.2e-3, -0.1e-3]).unwrap())
-        .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+        .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
         .build()
         .unwrap();
     for dt in [0.0, 0.5] {
@@ -245,14 +245,14 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
 fn the_counter_body_has_its_own_poisson_ratio() {
     let mut contact = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap())
         .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+        .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
         .build()
         .unwrap();
     assert_eq!(contact.stress_in_counter_body().unwrap_err(), Error::Missing { part: "counter_body" });
     let other = Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
     contact = ViscoelasticContact::builder(contact.grid().clone())
         .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+        .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
         .counter_body(other)
         .build()
         .unwrap();
@@ -274,7 +274,7 @@ fn the_counter_body_has_its_own_poisson_ratio() {
 #[test]
 fn a_changing_poisson_ratio_is_the_closed_form() {
     let (bulk, tau) = (3.0 * G, 2.0);
-    let material = Material::elastic_bulk(Maxwell::new(G, G * tau).unwrap(), bulk).unwrap();
+    let material = Material::elastic_bulk(Maxwell::with_time(G, tau).unwrap(), bulk).unwrap();
     let (first, late) = (3.0 * G / (3.0 * bulk + G), tau * (3.0 * bulk + G) / (3.0 * bulk));
     let new = || {
         builder_of(&FlatPunch::circular(1.0e-3).unwrap(), Grid::square(24, 3.0e-3).unwrap(), material.clone())

@@ -166,7 +166,7 @@ impl Scene {
         ];
 
         let kelvin = args.modulus / CREEP;
-        let body = Zener::new(args.modulus, kelvin, kelvin * args.tau)?;
+        let body = Zener::with_time(args.modulus, kelvin, args.tau)?;
         let cells = GRID.map(|sides| (sides * args.cells as f64).round() as usize);
         let grid = Grid::new(cells, [0, 1].map(|axis| cells[axis] as f64 * BOX[axis] / args.cells as f64))?;
         let face = Shifted::new(FlatPunch::rectangular([BOX[0], BOX[1]])?, [START[1], 0.0])?;
@@ -353,10 +353,10 @@ fn costs(args: &Args, scene: &Scene) {
 }
 
 fn pictures(args: &Args, all: &[Moment], weights: [f64; 2]) -> Result<()> {
-    let time = || Quantity::of("time", "s");
+    let time = || Quantity::new("time", "s");
     let mut approaches =
-        Chart::new("A ball and a box on a creeping floor", time(), Quantity::of("approach", "m"), Legend::LowerRight);
-    let mut forces = Chart::new("Force of the floor", time(), Quantity::of("force", "N"), Legend::UpperRight);
+        Chart::new("A ball and a box on a creeping floor", time(), Quantity::new("approach", "m"), Legend::LowerRight);
+    let mut forces = Chart::new("Force of the floor", time(), Quantity::new("force", "N"), Legend::UpperRight);
     let end = all[all.len() - 1].time;
     for (label, weight) in ["weights", ""].into_iter().zip(weights) {
         forces.add(label, COLORS[6], Style::Line, vec![(0.0, weight), (end, weight)]);

@@ -24,7 +24,7 @@ pub struct StepLoadedSphere {
 impl StepLoadedSphere {
     /// G = 1 MPa, τ = 1 s, to t = 2τ.
     pub fn maxwell() -> StepLoadedSphere {
-        let material = Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap());
+        let material = Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap());
         StepLoadedSphere {
             name: "Maxwell",
             radius: 10.0e-3,
@@ -43,7 +43,7 @@ impl StepLoadedSphere {
 
     /// G = 1 MPa, `g_k`, retardation time 1 s, to t = 2τ.
     pub fn zener_with(g_k: f64) -> StepLoadedSphere {
-        let material = Material::incompressible(Zener::new(1.0e6, g_k, g_k).unwrap());
+        let material = Material::incompressible(Zener::with_time(1.0e6, g_k, 1.0).unwrap());
         StepLoadedSphere { name: "Zener", material, ..StepLoadedSphere::maxwell() }
     }
 

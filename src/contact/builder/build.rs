@@ -134,7 +134,7 @@ impl Builder {
     /// let scene = |cells: usize| {
     ///     Ok::<_, Error>(ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
     ///         .geometry(&Sphere::new(10.0e-3)?)
-    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?)))
+    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?)))
     /// };
     /// let memory = scene(256)?.memory()?;
     /// assert_eq!(memory.computed_cells, 128 * 128);

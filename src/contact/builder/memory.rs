@@ -39,6 +39,7 @@ use crate::solver::{Bands, Extension};
 /// or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to a larger
 /// window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Memory {
     /// Cells that are computed: with [`Settings::symmetry`] perhaps half or a quarter of the grid, with

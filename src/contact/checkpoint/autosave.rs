@@ -22,7 +22,7 @@ impl Run<'_> {
     /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-autosave-{}", std::process::id()));
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// if path.exists() {
     ///     contact.resume(&path)?; // where the run was when it was cut off

@@ -36,7 +36,7 @@ impl ViscoelasticContact {
     /// let build = || {
     ///     ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///         .geometry(&Sphere::new(10.0e-3)?)
-    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///         .build()
     /// };
     /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-checkpoint-{}", std::process::id()));

@@ -28,7 +28,7 @@ impl ViscoelasticContact {
     ///     let mut contact = ViscoelasticContact::builder(Grid::square(256, 4.0e-3)?)
     ///         .ranks(ranks)
     ///         .geometry(&Sphere::new(10.0e-3)?)
-    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///         .build()?;
     ///     contact.step(0.0, Load::force(1.0))?;
     ///     let whole = contact.gathered(contact.pressure(), 0)?;

@@ -2,6 +2,7 @@
 
 pub(in crate::contact) mod hull;
 pub(in crate::contact) mod replacement;
+mod slope;
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -24,6 +25,8 @@ pub(crate) struct Indenter {
     even: OnceLock<[bool; 2]>,
     /// Where loads may act on each body; computed when a body is first free to tilt.
     hulls: Vec<OnceLock<Hull>>,
+    /// Whether any cell of the whole grid is steep; computed when a step is first accepted.
+    is_steep: OnceLock<bool>,
     /// Whether the gap covers only the local rows of a rank.
     is_local: bool,
 }
@@ -31,7 +34,7 @@ pub(crate) struct Indenter {
 impl Indenter {
     pub(crate) fn new(gap: Gap, bodies: usize) -> Indenter {
         let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
-        Indenter { gap, id: next_id(), even: OnceLock::new(), hulls, is_local: false }
+        Indenter { gap, id: next_id(), even: OnceLock::new(), hulls, is_steep: OnceLock::new(), is_local: false }
     }
 
     /// The indenter of a rank: the gap of a single body on the computed cells of the local rows; symmetry and hull of all rows.
@@ -102,6 +105,7 @@ impl Indenter {
         self.gap.exchange(heights, grid)?;
         self.id = next_id();
         self.even.take();
+        self.is_steep.take();
         self.hulls.iter_mut().for_each(|hull| _ = hull.take());
         Ok(())
     }

@@ -11,6 +11,7 @@ use crate::{Grid, memory};
 
 /// A step along a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct TravelReport {
     /// Report of the step.

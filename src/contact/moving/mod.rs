@@ -30,7 +30,7 @@ impl ViscoelasticContact {
     /// let sphere = Sphere::new(10.0e-3)?;
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 2.0e-3)?)
     ///     .geometry(&sphere)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.1))?;
     /// assert!(contact.lateral_force(&sphere).iter().all(|force| force.abs() < 1.0e-12));

@@ -18,6 +18,7 @@ value! {
 /// A steady motion of the indenter over the bodies, and the tolerance of the steady state; made by
 /// [`SteadyMotion::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyMotion {
     /// Axis of the motion.
     axis: Axis;
@@ -74,7 +75,7 @@ impl ViscoelasticContact {
     /// let cylinder = Shifted::new(Cylinder::new(10.0e-3)?, [2.0e-3, 0.0])?;
     /// let mut contact = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&cylinder)
-    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.005e6)?))
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 0.01)?))
     ///     .kernel(InfluenceKernel::line(&grid, 1.0)?)
     ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;

@@ -139,7 +139,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let gaps = contact.gap_distribution(20)?;
@@ -169,7 +169,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(33, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let profile = contact.profile(Axis::X1, 0.0)?;
@@ -213,7 +213,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// assert_eq!(contact.asymmetry([0.0; 2])?, None);
     /// contact.step(0.0, Load::force(0.5))?;

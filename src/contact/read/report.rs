@@ -4,10 +4,12 @@ use std::fmt;
 
 use bitflags::bitflags;
 
+use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 
 /// The outcome and the cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StepReport {
     /// Time at the end of the step \[s\].
@@ -16,10 +18,7 @@ pub struct StepReport {
     pub force: f64,
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
-    /// Total area of the cells in contact \[m²\];
-    /// [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
-    pub area: f64,
-    /// Cells in contact.
+    /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
     pub contact_cells: usize,
     /// Tilt (α1, α2) of the first body \[rad\].
     pub tilt: [f64; 2],
@@ -30,8 +29,12 @@ pub struct StepReport {
     /// the bodies ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows.
     /// [`ErrorBudget::time`](crate::contact::ErrorBudget::time) compares it with true errors.
     pub time_error: Option<f64>,
+    /// The quantity of which [`StepReport::time_error`] is the relative error.
+    pub estimated: Estimated,
     /// Reasons why the result may be less accurate than expected.
     pub warnings: Warnings,
+    /// Greatest slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
+    pub max_slope: Option<f64>,
     /// Iterations of the solver.
     pub iterations: usize,
     /// Iterations by the fall-back solver, which is slower and always descends.
@@ -42,6 +45,42 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
+}
+
+/// The quantity of which an error is estimated: the one that the load leaves free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Estimated {
+    /// The approach, under a given force.
+    Approach,
+    /// The force, under a given approach.
+    Force,
+    /// The approach or the force, whichever errs more: under springs, and where some bodies have a given force and others a given
+    /// approach.
+    ApproachOrForce,
+}
+
+impl Estimated {
+    /// What these loads leave free.
+    pub(in crate::contact) fn under(loads: &[Load]) -> Estimated {
+        let any = |is: fn(&Load) -> bool| loads.iter().any(is);
+        match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !matches!(load, Load::Force { .. }))) {
+            (false, true) => Estimated::Force,
+            (_, false) => Estimated::Approach,
+            (true, true) => Estimated::ApproachOrForce,
+        }
+    }
+}
+
+impl fmt::Display for Estimated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Estimated::Approach => "approach",
+            Estimated::Force => "force",
+            Estimated::ApproachOrForce => "approach or force",
+        })
+    }
 }
 
 impl StepReport {
@@ -68,7 +107,7 @@ impl StepReport {
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let report = contact.step(0.0, Load::force(1.0))?;
 /// assert!(report.to_string().starts_with("t = 0 s: force 1 N, approach 1.52"), "{report}");
@@ -83,15 +122,17 @@ impl fmt::Display for StepReport {
         write!(f, "{} convolutions, residual {residual:.1e}", self.convolution_equivalents())?;
         match self.time_error {
             Some(0.0) => {}
-            Some(error) => write!(f, ", error in time {error:.1e}")?,
+            Some(error) => write!(f, ", error in time {error:.1e} of the {}", self.estimated)?,
             None => write!(f, ", error in time not estimated")?,
         }
-        self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))
+        self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))?;
+        self.max_slope.map_or(Ok(()), |slope| write!(f, " (the greatest slope is {slope:.3})"))
     }
 }
 
 /// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct BodyState {
     /// Approach ω at the origin of the grid \[m\]: the body lowers the surface by ω + α1 x1 + α2 x2.
@@ -115,16 +156,17 @@ bitflags! {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// let report = contact.step(0.0, Load::force(0.1))?;
     /// assert!(report.warnings.contains(Warnings::FEW_CELLS));
-    /// for warning in report.warnings {
+    /// for warning in &report.warnings {
     ///     println!("{warning}");
     /// }
     /// # Ok::<(), Error>(())
     /// ```
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
     pub struct Warnings: u16 {
         /// Contact is within two cells of an edge of the grid beyond which the bodies extend. Under a slightly greater load
         /// a step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge). Enlarge the grid. Only with
@@ -157,11 +199,28 @@ bitflags! {
         /// times the displacement due to the pressure, as where little pressure is left on bodies that were pressed much
         /// harder before: the error of pressure and force exceeds the residual.
         const ROUNDING = 1 << 8;
+        /// The contact modulus at once, 1/C(0), is below 10 Pa or above 1e13 Pa, which no solid has: moduli are given in another
+        /// unit than Pa, or compliances in another one than 1/Pa.
+        const MODULUS = 1 << 9;
+        /// The undeformed bodies are steeper than 0.5 somewhere in contact ([`StepReport::max_slope`](crate::contact::StepReport::max_slope)):
+        /// slopes and strains are not small, and half-spaces are no model of the bodies. Heights in µm that are read as metres are that steep.
+        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count. Not where
+        /// [ranks](crate::parallel) share out the rows.
+        const STEEP = 1 << 10;
+    }
+}
+
+impl IntoIterator for &Warnings {
+    type Item = Warnings;
+    type IntoIter = bitflags::iter::Iter<Warnings>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
     }
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 9] = [
+const MESSAGES: [(Warnings, &str); 11] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -171,6 +230,11 @@ const MESSAGES: [(Warnings, &str); 9] = [
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
     (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain"),
+    (Warnings::MODULUS, "no solid has such a modulus: moduli are in Pa, compliances in 1/Pa"),
+    (
+        Warnings::STEEP,
+        "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
+    ),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.
@@ -194,5 +258,41 @@ mod tests {
         assert!(Warnings::empty().to_string().is_empty());
         assert!(Warnings::all().iter().all(|warning| !warning.to_string().is_empty()));
         assert_eq!(Warnings::all().to_string().split("; ").count(), MESSAGES.len());
+    }
+
+    /// Results, statistics and specifications come back from a file; values out of range do not.
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn serialised_results_come_back() {
+        use std::fmt::Debug;
+
+        use crate::prelude::*;
+        use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
+
+        fn there_and_back<T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + Debug>(value: &T) {
+            assert_eq!(postcard::from_bytes::<T>(&postcard::to_stdvec(value).unwrap()).unwrap(), *value);
+        }
+        let rubber = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-3..=1e3, 1e-3).unwrap();
+        let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(rubber.clone()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        let report = contact.step(0.1, Load::force(0.1)).unwrap();
+        assert!(report.warnings.contains(Warnings::FEW_CELLS));
+        there_and_back(&report);
+        there_and_back(&contact.body(0).unwrap());
+        there_and_back(&contact.pressure_distribution(7).unwrap());
+        there_and_back(&contact.patches().unwrap().all);
+        there_and_back(rubber.report());
+        there_and_back(&Accuracy::FINE);
+        let creep = CreepSpectrum::new(1.0, 0.5, &[(2.0, 3.0)]).unwrap();
+        there_and_back(&creep);
+        there_and_back(&creep.relaxation());
+        let bytes = postcard::to_stdvec(&(-1.0, 0.0, [(1.0, 1.0)].to_vec())).unwrap();
+        assert!(postcard::from_bytes::<CreepSpectrum>(&bytes).is_err());
+        assert!(postcard::from_bytes::<RelaxationSpectrum>(&bytes).is_err());
+        assert!(postcard::from_bytes::<Accuracy>(&postcard::to_stdvec(&0.9).unwrap()).is_err());
     }
 }

@@ -23,7 +23,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// ```
 /// use viscocontact::{contact::StressHistory, observe::Stress, prelude::*};
 ///
-/// let polymer = Material::elastic_bulk(Zener::new(1.0e9, 2.0e8, 5.0e7)?, 3.0e9)?;
+/// let polymer = Material::elastic_bulk(Zener::with_time(1.0e9, 2.0e8, 0.25)?, 3.0e9)?;
 /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 2.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(polymer)

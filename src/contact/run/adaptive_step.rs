@@ -1,5 +1,7 @@
 //! Steps as long as their error allows.
 
+use std::sync::atomic::AtomicBool;
+
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::progress::StepErrors;
@@ -38,6 +40,8 @@ pub(super) struct Course<'a> {
     /// The next time at which a step has to end, and the next at which the displacement may have a kink.
     pub(super) stop: f64,
     pub(super) kink: f64,
+    /// Set by another thread to end the step.
+    pub(super) cancelled: Option<&'a AtomicBool>,
 }
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
@@ -68,6 +72,7 @@ pub(super) fn adaptive_step(
         tried = time;
         let loads = [history.before(time).validated_at(time)?];
         let mut step = contact.request(time, dt, &loads, tolerance)?;
+        step.cancelled = course.cancelled;
         let straying = control.watch(history, [now, time], |time| scene.reduced_time(clock, time))?;
         let parted = state.current.contact_cells == 0 && control.stays_away(history, now, time);
         if straying > control.tolerance && !parted {
@@ -105,8 +110,8 @@ pub(super) fn adaptive_step(
             add_work(&mut wasted, computed);
             continue;
         }
-        let is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
-        control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, is_given);
+        let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
+        control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, motion_is_given);
         let is_kink = time == kink && !is_held(history, [now, time]);
         control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], is_kink, order);
         let mut report = contact.accept(attempt, step, error)?;

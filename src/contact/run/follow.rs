@@ -1,20 +1,24 @@
 //! Drives a contact along a load history.
 
-use crate::ascending::Ascending;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::ascending::Schedule;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::adaptive_step::{Course, adaptive_step};
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
-use crate::contact::run::progress::{ErrorBudget, Progress, StepErrors, Stepping};
+use crate::contact::run::progress::{ErrorBudget, Progress, RunProgress, StepErrors, Stepping};
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::StepContext;
+use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result};
 use crate::load::{Load, LoadHistory};
 
 /// Two times closer than this fraction of a step are the same time.
-const SAME_TIME: f64 = 1e-6;
+pub(super) const SAME_TIME: f64 = 1e-6;
 
 /// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
 /// [`Run::next_step`] takes one step.
@@ -24,7 +28,7 @@ const SAME_TIME: f64 = 1e-6;
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6)?))
+///     .material(Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// let ramp = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
 /// let mut run = contact.follow(&ramp, Stepping::fixed(0.25), 2.0);
@@ -66,8 +70,16 @@ pub struct Run<'a> {
     stepping: Stepping,
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
-    /// Times at which steps end, ascending.
-    stops: Ascending,
+    /// Times at which steps end, and at which states within steps are sampled.
+    pub(super) stops: Schedule,
+    pub(super) sampled: Schedule,
+    /// Set by another thread to end the step under way.
+    cancelled: Option<Arc<AtomicBool>>,
+    /// Start and report of the last step of this run, and the number of its steps.
+    pub(super) last: Option<(f64, StepReport)>,
+    taken: u64,
+    /// Length of the first step of this run that took time.
+    first_step: f64,
     #[cfg(feature = "checkpoint")]
     pub(in crate::contact) autosave: Option<Autosave>,
     /// Report of a step after which the file could not be written.
@@ -93,7 +105,7 @@ impl ViscoelasticContact {
     ///
     /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// let load = StepLoad::new(Load::force(0.5))?;
     /// let mut simulation = Simulation { run: contact.into_follow(load, Stepping::fixed(0.5), 1.0) };
@@ -118,22 +130,17 @@ impl<'a> Run<'a> {
             stepping,
             until,
             progress: saved.map_or(begun, |saved| *saved),
-            stops: Ascending::default(),
+            stops: Schedule::default(),
+            sampled: Schedule::default(),
+            cancelled: None,
+            last: None,
+            taken: 0,
+            first_step: 0.0,
             #[cfg(feature = "checkpoint")]
             autosave: None,
             #[cfg(feature = "checkpoint")]
             unreported: None,
         }
-    }
-
-    /// Makes steps end exactly at these `times` \[s\] too, given in any order. Times before the time of the contact
-    /// have no effect.
-    ///
-    /// # Errors
-    /// If a time is not finite.
-    pub fn stop_at(mut self, times: &[f64]) -> Result<Run<'a>> {
-        self.stops.add("time to stop at", times)?;
-        Ok(self)
     }
 
     /// Takes the next step and returns its report, or `None` at the end of the run.
@@ -157,7 +164,7 @@ impl<'a> Run<'a> {
         {
             let report = match self.unreported.take() {
                 Some(report) => report,
-                None => self.take_step()?,
+                None => self.take_next()?,
             };
             if let Err(error) = self.autosave(report.is_none()) {
                 self.unreported = Some(report);
@@ -166,7 +173,22 @@ impl<'a> Run<'a> {
             Ok(report)
         }
         #[cfg(not(feature = "checkpoint"))]
-        self.take_step()
+        self.take_next()
+    }
+
+    /// Takes the next step and keeps its report for [`Run::samples`].
+    fn take_next(&mut self) -> Result<Option<StepReport>> {
+        self.last = None;
+        let start = self.contact.time();
+        let report = self.take_step()?;
+        self.last = report.map(|report| (start, report));
+        if let Some(report) = report {
+            self.taken += 1;
+            if self.first_step == 0.0 {
+                self.first_step = report.dt;
+            }
+        }
+        Ok(report)
     }
 
     fn take_step(&mut self) -> Result<Option<StepReport>> {
@@ -191,10 +213,10 @@ impl<'a> Run<'a> {
         let kink = if jumps { corner.min(turn) } else { corner };
         let corner = corner.min(turn);
         let stop = corner.min(self.until).min(self.next_stop(now));
-        let Run { contact, history, until, progress, .. } = self;
+        let Run { contact, history, until, progress, cancelled, .. } = self;
         if let Some(mut control) = progress.control.take() {
             let rows = contact.computation.state.region.rows();
-            let course = Course { history: &**history, until: *until, stop, kink };
+            let course = Course { history: &**history, until: *until, stop, kink, cancelled: cancelled.as_deref() };
             let report = rows.together(|| {
                 let (report, errors) = adaptive_step(contact, &mut control, course)?;
                 progress.include(errors, contact.mesh_error().unwrap_or_default());
@@ -219,7 +241,8 @@ impl<'a> Run<'a> {
         let loads = [load];
         let rows = self.contact.computation.state.region.rows();
         rows.together(|| {
-            let step = self.contact.request(time, dt, &loads, tolerance)?;
+            let step =
+                Step { cancelled: self.cancelled.as_deref(), ..self.contact.request(time, dt, &loads, tolerance)? };
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             if self.progress.scale.is_none() {
                 self.progress.scale = Some(RunScale::new(scene, &computation.state, &*self.history, self.until)?);
@@ -261,6 +284,40 @@ impl<'a> Run<'a> {
         Ok(if stop <= end + same { stop } else { end })
     }
 
+    /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
+    /// [`Error::Cancelled`] within an iteration of the solver, and leaves the contact as it was. While the flag is set no step is
+    /// taken; once it is cleared the run goes on, with the same steps. Where ranks share out the contact they look at their flags
+    /// when a step begins.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    ///
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let (load, cancel) = (StepLoad::new(Load::force(0.5))?, Arc::new(AtomicBool::new(false)));
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0).cancelled_by(Arc::clone(&cancel));
+    /// run.next_step()?;
+    /// cancel.store(true, Ordering::Relaxed); // by the handler of Ctrl-C, or of a button
+    /// assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
+    /// assert_eq!(run.contact().time(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> Run<'a> {
+        self.cancelled = Some(flag);
+        self
+    }
+
+    /// How far the run has come.
+    pub fn progress(&self) -> RunProgress {
+        let (start, time, until) = (self.progress.start, self.contact.time(), self.until);
+        RunProgress { steps: self.taken, start, time, until, first_step: self.first_step }
+    }
+
     /// The errors of the run so far, by their source.
     pub fn error_budget(&self) -> ErrorBudget {
         self.progress.error_budget(self.contact.mesh_error().unwrap_or_default())
@@ -275,11 +332,13 @@ impl<'a> Run<'a> {
     pub fn contact(&self) -> &ViscoelasticContact {
         &self.contact
     }
+}
 
-    /// The contact after the last step; a clone if the run borrows it.
+impl Run<'static> {
+    /// The contact of a run that owns it ([`ViscoelasticContact::into_follow`]), after the last step.
     pub fn into_contact(self) -> ViscoelasticContact {
         match self.contact {
-            OwnedOrBorrowed::Borrowed(contact) => contact.clone(),
+            OwnedOrBorrowed::Borrowed(contact) => contact.clone(), // of a leaked contact
             OwnedOrBorrowed::Owned(contact) => *contact,
         }
     }

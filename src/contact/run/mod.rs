@@ -8,6 +8,7 @@ mod adaptive_step;
 pub(in crate::contact) mod follow;
 pub(in crate::contact) mod progress;
 mod run_scale;
+pub(in crate::contact) mod samples;
 mod step_control;
 
 use std::ops::{Deref, DerefMut};

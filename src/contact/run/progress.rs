@@ -8,6 +8,7 @@ use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::step_control::StepControl;
 use crate::error::{Result, finite, positive, within};
 use crate::observe::MeshError;
+use crate::rounded::rounded;
 
 /// The rule for the length of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -146,6 +147,71 @@ impl Progress {
             max_mesh: self.mesh,
             solver: self.worst.map_or(0.0, |worst| worst.residual),
         }
+    }
+}
+
+/// How far a run has come, from [`Run::progress`](crate::contact::Run::progress). No share of the run is a share of its steps, which
+/// nobody knows before: take the one along which the steps are spread.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Zener::relaxing(1.0e6, 0.5e6, 1.0)?))
+///     .build()?;
+/// let load = StepLoad::new(Load::force(0.5))?;
+/// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-2), 1.0e4);
+/// while run.next_step()?.is_some() {
+///     println!("{:3.0} %: {}", 100.0 * run.progress().share_of_decades(), run.progress());
+/// }
+/// assert_eq!(run.progress().share_of_decades(), 1.0);
+/// assert_eq!(run.progress().share_of_time(), 1.0);
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct RunProgress {
+    /// Steps taken, those before a resumption not counted.
+    pub steps: u64,
+    /// Time at the start of the run \[s\].
+    pub start: f64,
+    /// Time of the contact \[s\].
+    pub time: f64,
+    /// Time at the end of the run \[s\].
+    pub until: f64,
+    /// Length of the first step that took time \[s\]; 0 before.
+    pub first_step: f64,
+}
+
+impl RunProgress {
+    /// The part of the time that is over, 0 to 1: for steps of given length, and for loads that keep changing.
+    pub fn share_of_time(&self) -> f64 {
+        if self.until > self.start {
+            ((self.time - self.start) / (self.until - self.start)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        }
+    }
+
+    /// The part of the decades of time that is over, 0 to 1: ln(1 + t/δ) over its value at the end, t counted from the start and δ
+    /// the first step. For adaptive steps under a load that is held, which grow in proportion to the time since it was applied.
+    pub fn share_of_decades(&self) -> f64 {
+        let decades = |time: f64| ((time - self.start) / self.first_step).ln_1p();
+        if self.first_step > 0.0 && self.until > self.start {
+            (decades(self.time) / decades(self.until)).clamp(0.0, 1.0)
+        } else {
+            self.share_of_time()
+        }
+    }
+}
+
+/// One line: `12 steps, t = 0.5 s of 10 s`.
+impl fmt::Display for RunProgress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let RunProgress { steps, time, until, .. } = *self;
+        write!(f, "{steps} steps, t = {} s of {} s", rounded(time, 4), rounded(until, 4))
     }
 }
 

@@ -176,13 +176,19 @@ impl StepControl {
         Ok(())
     }
 
-    /// Includes the defects of a step to be accepted; `is_given` states whether its motion is given.
-    pub(super) fn include(&mut self, rule: Option<&ExponentialRule>, dt: f64, error: &TimeError, is_given: bool) {
+    /// Includes the defects of a step to be accepted; `motion_is_given` states whether its motion is given.
+    pub(super) fn include(
+        &mut self,
+        rule: Option<&ExponentialRule>,
+        dt: f64,
+        error: &TimeError,
+        motion_is_given: bool,
+    ) {
         self.steps += 1;
         self.defects.iter_mut().for_each(|defects| defects.include(dt, error.defect));
         let Some(rule) = rule else { return };
         let [contact, surface] = self.lasting.get_or_insert_with(|| [(); 2].map(|()| LastingError::none(rule)));
-        contact.include(rule, error.defect[0], is_given);
+        contact.include(rule, error.defect[0], motion_is_given);
         surface.include(rule, error.surface, false);
     }
 
@@ -217,7 +223,7 @@ impl StepControl {
             steps: self.steps as f64 + 1.0,
             resolution,
             beginning: SHORTEST * self.tolerance * span.min(shortest),
-            is_given: false,
+            length_is_given: false,
         })
     }
 

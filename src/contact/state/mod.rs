@@ -28,7 +28,7 @@ pub(crate) struct State {
     /// The part of the grid that is computed: every field lives there, except for the gap of the indenter.
     pub(super) region: Region,
     /// Whether the region was chosen for a contact, rather than for bodies apart.
-    pub(super) region_is_placed: bool,
+    pub(super) region_is_for_contact: bool,
     /// Displacement and past of the bodies.
     pub(super) history: History,
     pub(super) current: Equilibrium,
@@ -115,7 +115,7 @@ impl State {
             indenter_is_new: false,
             history: history.layout(!region.covers()),
             region,
-            region_is_placed: false,
+            region_is_for_contact: false,
             previous: current.clone(),
             current,
             extrapolation: Extrapolation::default(),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::{Run, Scene, State, ViscoelasticContact};
 use crate::error::{Error, Result, within};
+use crate::extent::Extent;
 use crate::load::{Load, Tilt};
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
@@ -32,7 +33,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let mut start = contact.snapshot();
@@ -94,7 +95,7 @@ impl ViscoelasticContact {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// contact.step(0.2, Load::force(0.5))?;
@@ -116,15 +117,17 @@ impl ViscoelasticContact {
             let ends = self.computation.state.loads.iter().enumerate();
             Ok(ends.map(|(body, end)| start.load_like(body, end).towards(end, share)).collect())
         })
+        .map(|(contact, _)| contact)
     }
 
-    /// The contact at a `time` within the last step, under the loads that are found for the contact at its start.
+    /// The contact at a `time` within the last step, under the loads that are found for the contact at its start, and the
+    /// rectangle of its pressed cells if it was advanced.
     fn advanced_within_step(
         &self,
         time: f64,
         tolerance: f64,
         loads: impl FnOnce(&ViscoelasticContact) -> Result<Vec<Load>>,
-    ) -> Result<ViscoelasticContact> {
+    ) -> Result<(ViscoelasticContact, Option<Extent>)> {
         let state = &self.computation.state;
         let from = if state.history.start_is_kept() { state.start.clock.time } else { state.clock.time };
         // the start may come out a little off where it is found from the end
@@ -133,18 +136,19 @@ impl ViscoelasticContact {
         let mut contact = self.clone();
         contact.progress = None;
         if time == state.clock.time {
-            return Ok(contact);
+            return Ok((contact, None));
         }
         contact.computation.state.roll_back();
         contact.view.refresh(&contact.computation.state);
+        let mut reach = None;
         if time > from {
             let loads = loads(&contact)?;
             let mut step = contact.request(time, time - from, &loads, tolerance)?;
             step.interval.interpolant = state.start.interpolant;
             let attempt = contact.attempt(&step)?;
-            contact.adopt(attempt, step, [0.0; 2])?;
+            reach = contact.adopt(attempt, step, [0.0; 2])?;
         }
-        Ok(contact)
+        Ok((contact, reach))
     }
 
     /// The load of a body at present, as one of the kind of `other`.
@@ -174,7 +178,7 @@ impl Run<'_> {
     ///
     /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
     ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6)?))
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0)?))
     ///     .build()?;
     /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0)?;
     /// let mut run = contact.follow(&ramp, Stepping::adaptive(1.0e-3), 100.0);
@@ -192,6 +196,11 @@ impl Run<'_> {
     /// # Errors
     /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
     pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
+        Ok(self.reached_within_step(time)?.0)
+    }
+
+    /// [`Run::within_step`], and the rectangle of the pressed cells.
+    pub(in crate::contact) fn reached_within_step(&self, time: f64) -> Result<(ViscoelasticContact, Option<Extent>)> {
         let load = || Ok(vec![self.history.at(time).validated_at(time)?]);
         self.contact.advanced_within_step(time, self.solver_tolerance(), |_| load())
     }

@@ -50,8 +50,17 @@ const EDGE_MARGIN: usize = 2;
 const MIN_CELLS_ACROSS: usize = 8;
 const MIN_CELLS: usize = 50;
 
-/// The warnings of the step accepted last, with all pressed cells in `reach`.
-pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Extent>) -> Warnings {
+/// Contact moduli E* outside this range are in other units than Pa \[Pa\].
+const SOFTEST: f64 = 10.0;
+const STIFFEST: f64 = 1e13;
+
+/// The warnings of the step accepted last, with all pressed cells in `reach`, and the greatest slope in contact if it is steep.
+pub(super) fn collect_warnings(
+    scene: &Scene,
+    state: &State,
+    reach: Option<Extent>,
+    max_slope: Option<f64>,
+) -> Warnings {
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
     let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
@@ -76,6 +85,8 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = scene.settings.time_rule == TimeRule::Rectangle
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
+    // a body without elastic response has no modulus at once
+    let at_once = material.contact_compliance(0.0);
     let reasons = [
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
         (Warnings::FEW_CELLS, few),
@@ -85,7 +96,9 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
         (Warnings::RINGS, oscillates),
         (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
         (Warnings::UNCERTAIN_MATERIAL, has_memory && uncertain),
-        (Warnings::ROUNDING, solution.rounding > scene.settings.tolerance),
+        (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
+        (Warnings::MODULUS, at_once * SOFTEST > 1.0 || (at_once > 0.0 && at_once * STIFFEST < 1.0)),
+        (Warnings::STEEP, max_slope.is_some()),
     ];
     reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::Grid;
 use crate::axis::Axis;
+use crate::contact::step::needed_width::needed_lengths;
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
 use crate::error::{Convergence, Error, Result, StepError, exact_length};
 use crate::hereditary::Interval;
@@ -103,6 +104,7 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
     let (time, dt, tolerance) = (step.interval.time, step.interval.length, step.tolerance);
     match outcome {
         Outcome::Converged => Ok(()),
+        Outcome::Cancelled => Err(Error::Cancelled { what: "a step" }),
         Outcome::NotANumber => {
             Err(Error::Step(StepError::Overflow { time, what: "the residual of the contact problem" }))
         }
@@ -140,7 +142,8 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
     if edge == Edge::Refuse {
         let cells = state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
         if cells > 0 {
-            return Err(Error::Step(StepError::ContactAtEdge { time, cells }));
+            let (lengths, needed) = (scene.grid.lengths(), needed_lengths(scene, state, trial, step));
+            return Err(Error::Step(StepError::ContactAtEdge { time, cells, lengths, needed }));
         }
     }
     Ok(sum_of_pressure)

@@ -73,7 +73,7 @@ pub(in crate::contact) struct StepContext {
     /// ... nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
     pub(in crate::contact) beginning: f64,
     /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
-    pub(in crate::contact) is_given: bool,
+    pub(in crate::contact) length_is_given: bool,
 }
 
 impl Default for StepContext {
@@ -89,7 +89,7 @@ impl Default for StepContext {
             steps: f64::INFINITY,
             resolution: 0.0,
             beginning: 0.0,
-            is_given: true,
+            length_is_given: true,
         }
     }
 }
@@ -107,7 +107,7 @@ pub(in crate::contact) fn error_in_time(
     outlook: StepContext,
 ) -> TimeError {
     let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
-    let StepContext { greatest_on_switch, steps, resolution, beginning, is_given, .. } = outlook;
+    let StepContext { greatest_on_switch, steps, resolution, beginning, length_is_given, .. } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -169,7 +169,7 @@ pub(in crate::contact) fn error_in_time(
         beginning,
     };
     let error = state.history.time_error(measure);
-    if !is_given || forces == 0 {
+    if !length_is_given || forces == 0 {
         return error;
     }
     TimeError { relative: error.relative.max(first_step_error(scene, tried, step, least[0])), ..error }

@@ -177,7 +177,7 @@ fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
 /// Resets the trial for a new step; the free motions of the bodies start at their present values.
 pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
     trial.solution.counts = Counts::default();
-    trial.solution.rounding = 0.0;
+    trial.solution.relative_rounding = 0.0;
     trial.solution.trace.clear();
     (trial.reach, trial.predicted) = (0.0, false);
     let datum = step.indenter.gap().datum;

@@ -30,7 +30,7 @@ pub(super) fn jump_without_response(
     } else if greatest(false) <= step.tolerance {
         trial.solution.release();
     } else {
-        let what = "a jump of the load that changes the pressure (ramp the load over a short time instead)";
+        let what = "a jump of the load that changes the pressure";
         return Err(Error::Step(StepError::NoElasticResponse { time: step.interval.time, what }));
     }
     Ok(())

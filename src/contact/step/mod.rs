@@ -20,13 +20,17 @@ pub(in crate::contact) mod error_in_time;
 mod gap;
 mod initial_guess;
 mod jump;
+mod needed_width;
 pub(in crate::contact) mod request;
 pub(in crate::contact) mod spring;
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use crate::contact::window::placement::{outgrown, region_for};
-use crate::contact::{Computation, Equilibrium, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact};
+use crate::contact::{
+    Computation, Equilibrium, Estimated, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
+};
 use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
@@ -97,7 +101,7 @@ impl ViscoelasticContact {
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
-        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance })
+        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, cancelled: None })
     }
 
     /// Computes a step and accepts it.
@@ -124,6 +128,10 @@ impl ViscoelasticContact {
         let cells = if region.is_shared() { 0 } else { region.len() };
         let tried = rows.together(|| {
             rows.same(marks(step))?;
+            // ranks would see the flag in different iterations: they ask once a step
+            if step.cancelled.is_some_and(|flag| rows.any(flag.load(Ordering::Relaxed))) {
+                return Err(Error::Cancelled { what: "a step" });
+            }
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
         if let Some(larger) = &larger {
@@ -148,26 +156,33 @@ impl ViscoelasticContact {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let reach = self.adopt(attempt, step, error.sizes)?;
+        let report = self.report(estimated.then_some(error.relative), reach);
+        report.emit();
+        Ok(report)
+    }
+
+    /// The report of the last step, whose pressed cells are within `reach`.
+    pub(in crate::contact) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
-        let report = StepReport {
+        let max_slope = state.indenter.steepest(&scene.grid, &state.region, &state.current.solution.pressure);
+        StepReport {
             time: state.clock.time,
             force: self.force(),
             approach: self.approach(),
-            area: contact_cells as f64 * scene.grid.cell_area(),
             contact_cells,
             tilt: self.tilt(),
             dt: state.clock.last_length,
-            time_error: estimated.then_some(error.relative),
-            warnings: collect_warnings(scene, state, reach),
+            time_error,
+            estimated: Estimated::under(&state.loads),
+            warnings: collect_warnings(scene, state, reach, max_slope),
+            max_slope,
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
             preconditioner_applications: counts.preconditioner_applications,
             residual,
-        };
-        report.emit();
-        Ok(report)
+        }
     }
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
@@ -217,7 +232,7 @@ fn compute(
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step)? {
         let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
-        transferred.state.region_is_placed = placed;
+        transferred.state.region_is_for_contact = placed;
     }
     loop {
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
@@ -263,7 +278,8 @@ impl Computation {
         } else {
             initial_guess(state, window, trial, step, c);
         }
-        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
+        let cancelled = step.cancelled.filter(|_| !state.region.is_shared());
+        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
         let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
         let outcome = solve_with_springs(scene, state, step, c, trial, solve);

@@ -1,6 +1,7 @@
 //! The request for a step, and the trial that the step computes.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::contact::Indenter;
 use crate::contact::step::spring::TriedSpring;
@@ -18,6 +19,8 @@ pub(in crate::contact) struct Step<'a> {
     pub(in crate::contact) indenter: Arc<Indenter>,
     /// Tolerance of the solver.
     pub(in crate::contact) tolerance: f64,
+    /// Set by another thread to end the step.
+    pub(in crate::contact) cancelled: Option<&'a AtomicBool>,
 }
 
 impl Step<'_> {

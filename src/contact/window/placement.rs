@@ -35,14 +35,14 @@ pub(in crate::contact) fn region_for(scene: &Scene, state: &State, step: &Step<'
     }
     let unfolded = (still_folded != folded).then(|| state.region.unfolded(still_folded));
     let region = unfolded.as_ref().unwrap_or(&state.region);
-    let to_be_placed = state.is_undisturbed() && !state.region_is_placed && state.history.far_source().is_some();
+    let to_be_placed = state.is_undisturbed() && !state.region_is_for_contact && state.history.far_source().is_some();
     if to_be_placed
         && !region.covers()
         && let Some(placed) = first_contact(scene, region, step)
     {
         return Ok(Some((placed, true)));
     }
-    Ok(unfolded.map(|region| (region, state.region_is_placed)))
+    Ok(unfolded.map(|region| (region, state.region_is_for_contact)))
 }
 
 /// The region of a first contact, by an estimate of how deep the bodies sink in; `None` if nothing presses them.
@@ -150,7 +150,7 @@ pub(in crate::contact) fn outgrown(
     };
     let touched = motions().enumerate().filter_map(|(body, motion)| {
         cells_below(&scene.grid, folded, gap, body, motion, |cell, depth| {
-            let computed = state.region_is_placed && region.find(cell).is_some();
+            let computed = state.region_is_for_contact && region.find(cell).is_some();
             !computed && depth > least(distance(scene.grid.center(cell[0], cell[1])))
         })
     });

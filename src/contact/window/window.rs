@@ -79,7 +79,7 @@ impl Window {
         &mut self,
         indenter: &Indenter,
         [c, prescribed]: [f64; 2],
-        stop: Stop,
+        stop: Stop<'_>,
         trial: &mut Trial,
     ) -> Outcome {
         let Window { kernel, work, solver, gap, .. } = self;

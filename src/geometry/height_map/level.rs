@@ -6,6 +6,7 @@ use crate::linalg;
 
 /// The form that [`HeightMap::leveled`] subtracts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Form {
     /// The mean height.

@@ -13,10 +13,13 @@ pub use level::Form;
 pub use resample::{ResampledMap, ResamplingError};
 pub use unit::LengthUnit;
 
+use educe::Educe;
+
 use crate::Grid;
 use crate::error::{Error, LONGEST, MapError, Result, exact_length};
 use crate::geometry::Geometry;
 use crate::geometry::height_spectrum::HeightSpectrum;
+use crate::values::counted;
 
 /// Distances from a point below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-10;
@@ -53,11 +56,13 @@ const SAME_SPACING: f64 = 1e-12;
 /// assert_eq!(map.initial_gap(2e-6, 0.0), f64::INFINITY);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 pub struct HeightMap {
     cells: [usize; 2],
     spacing: [f64; 2],
     /// Row-major, x2 fastest; NaN where nothing was measured.
+    #[educe(Debug(method(counted)))]
     heights: Vec<f64>,
     /// The greatest known height; −∞ if there is none.
     highest: f64,

@@ -13,6 +13,7 @@ use crate::error::{Error, MapError, Result};
 /// assert_eq!(LengthUnit::Micrometre.to_metres(2.5), 2.5e-6);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LengthUnit {
     /// m.

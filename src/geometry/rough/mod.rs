@@ -32,7 +32,7 @@ use crate::parallel::{Rows, part};
 /// let grid = Grid::square(64, 1e-3)?;
 /// let spec = RoughSpec::new(1e-3, 0.05e-3, Roughness::RmsHeight(1e-6)).with_roll_off(0.25e-3).with_seed(1);
 /// let rough = Rough::new(&grid, spec)?;
-/// let statistics = SurfaceStatistics::of(rough.height_map())?;
+/// let statistics = rough.height_map().statistics()?;
 /// assert!((statistics.rms_height - 1e-6).abs() < 1e-15);
 ///
 /// let rough_sphere = Sum::new(Sphere::new(0.1)?, rough);
@@ -183,7 +183,6 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::geometry::SurfaceStatistics;
 
     const SPEC: RoughSpec = RoughSpec {
         hurst: 0.8,
@@ -210,7 +209,7 @@ mod tests {
             let rms = (heights.iter().map(|z| z * z).sum::<f64>() / grid.len() as f64).sqrt();
             assert!(mean.abs() < 1e-16 && (rms / 0.02 - 1.0).abs() < 1e-13);
             let by_slope = Rough::new(&grid, RoughSpec { roughness: Roughness::RmsSlope(0.3), ..SPEC }).unwrap();
-            let statistics = SurfaceStatistics::of(by_slope.height_map()).unwrap();
+            let statistics = by_slope.height_map().statistics().unwrap();
             assert_abs_diff_eq!(statistics.rms_slope / 0.3, 1.0, epsilon = 1e-12);
         }
     }
@@ -253,7 +252,7 @@ mod tests {
         let grid = Grid::square(128, 1.0).unwrap();
         let lay = Anisotropy { ratio: 4.0, direction: std::f64::consts::FRAC_PI_2 };
         let rough = Rough::new(&grid, RoughSpec { anisotropy: lay, shortest: 1.0 / 40.0, ..SPEC }).unwrap();
-        let slopes = SurfaceStatistics::of(rough.height_map()).unwrap().rms_slopes;
+        let slopes = rough.height_map().statistics().unwrap().rms_slopes;
         assert!((3.0..5.5).contains(&(slopes[0] / slopes[1])), "{slopes:?}");
     }
 

@@ -1,5 +1,8 @@
 //! Random rough surfaces distributed over ranks.
 
+use educe::Educe;
+
+use crate::values::counted;
 use std::sync::Arc;
 
 use super::{Rough, RoughSpec, heights};
@@ -16,11 +19,13 @@ const ROUNDING: f64 = 1e-6;
 ///
 /// As a [`Geometry`] it is defined at the cell centres of the local rows. Elsewhere it is NaN, which a contact refuses: to
 /// shift or turn a surface, use [`Rough`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 pub struct SharedRough {
     spec: RoughSpec,
     /// The local rows.
     grid: Grid,
+    #[educe(Debug(method(counted)))]
     heights: Vec<f64>,
     /// The greatest height on all ranks.
     highest: f64,
@@ -43,7 +48,7 @@ impl Rough {
     ///         .ranks(ranks)
     ///         .geometry(&rough)
     ///         .kernel(kernel)
-    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///         .build()?;
     ///     contact.step(0.0, Load::force(1.0e-2))?;
     ///     Ok::<_, Error>(contact.contact_area())

@@ -60,7 +60,7 @@ const SAME_POISSON: f64 = 1e-9;
 /// let kernel = InfluenceKernel::layer(&grid, layer)?;
 /// let mut contact = ViscoelasticContact::builder(grid)
 ///     .geometry(&Sphere::new(50.0e-6)?)
-///     .material(Material::incompressible(Zener::new(1.0e3, 1.0e3, 1.0e3)?))
+///     .material(Material::incompressible(Zener::with_time(1.0e3, 1.0e3, 1.0)?))
 ///     .kernel(kernel)
 ///     .build()?;
 /// contact.step(0.0, Load::force(50.0e-9))?;

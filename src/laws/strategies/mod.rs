@@ -74,16 +74,29 @@ pub fn rheologies(modulus: f64, time: f64) -> impl Strategy<Value = AnyRheology>
         body((g.clone(), eta.clone()), |(g, eta)| KelvinVoigt::new(g, eta)),
         body((g.clone(), g.clone(), eta.clone()), |(g, slow, eta)| Zener::new(g, slow, eta)),
         body((g.clone(), eta.clone(), g.clone(), eta), |(g, eta, slow, own)| Burgers::new(g, eta, slow, own)),
+        body((g.clone(), t.clone()), |(g, t)| Maxwell::with_time(g, t)),
+        body((g.clone(), t.clone()), |(g, t)| KelvinVoigt::with_time(g, t)),
+        body((g.clone(), 0.001..0.9_f64, t.clone()), |(g, rest, t)| Zener::relaxing(g, rest * g, t)),
+        body((g.clone(), t.clone(), g.clone(), t.clone()), |(g, t, slow, own)| {
+            Burgers::with_times((g, t), (slow, own))
+        }),
         body((zero_or(1.0 / modulus), zero_or(1.0 / (modulus * time)), kelvin), |(glassy, flow, terms)| {
             GeneralizedKelvin::new(glassy, flow, &terms)
         }),
         body((zero_or(modulus), maxwell), |(rest, terms)| GeneralizedMaxwell::new(rest, &terms)),
+        body((g.clone(), prop::collection::vec((0.01..0.2_f64, t.clone()), 1..5)), |(g, terms)| {
+            GeneralizedMaxwell::prony(g, &terms)
+        }),
         body((compliance.clone(), t.clone(), exponent.clone()), |(j, t, n)| PowerLaw::new(j, t, n)),
         body((g.clone(), around(modulus * time.powf(0.5)), exponent.clone()), |(g, v, n)| {
             FractionalMaxwell::new(g, v, n)
         }),
-        body((g, 0.001..0.9_f64, t.clone(), exponent.clone()), |(g, rest, t, n)| {
+        body((g.clone(), t.clone(), exponent.clone()), |(g, t, n)| FractionalMaxwell::with_time(g, t, n)),
+        body((g.clone(), 0.001..0.9_f64, t.clone(), exponent.clone()), |(g, rest, t, n)| {
             FractionalZener::new(g, rest * g, t, n)
+        }),
+        body((g, 0.01..0.9_f64, t.clone(), 0.3..0.95_f64), |(g, rest, t, n)| {
+            FractionalZener::relaxing(g, rest * g, t, n)
         }),
         body((compliance.clone(), compliance.clone(), t.clone(), exponent.clone()), |(j, rise, t, n)| {
             Kww::new(j, rise, t, n)

@@ -11,6 +11,7 @@ const NARROWER: f64 = 0.4;
 
 /// The point where a stress is greatest, see [`SubsurfaceStress::greatest`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StressPeak {
     /// The greatest value \[Pa\].

@@ -12,6 +12,9 @@ pub use greatest::StressPeak;
 pub use section::{StressSection, StressVolume};
 pub use tensor::Stress;
 
+use educe::Educe;
+
+use crate::values::counted;
 use num_complex::Complex64;
 
 use crate::axis::Axis;
@@ -88,10 +91,13 @@ pub struct SubsurfaceStress {
 }
 
 /// A field that acts like a pressure.
-#[derive(Debug, Clone)]
+#[derive(Clone, Educe)]
+#[educe(Debug)]
 struct Source {
+    #[educe(Debug(method(counted)))]
     field: Vec<f64>,
     /// Its transform on the padded grid.
+    #[educe(Debug(method(counted)))]
     spectrum: Vec<Complex64>,
     weights: Weights,
 }

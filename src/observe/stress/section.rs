@@ -1,11 +1,15 @@
 //! The stress on a section, and in a volume.
 
+use educe::Educe;
+
 use super::Stress;
 use crate::Axis;
 use crate::Grid;
+use crate::values::counted;
 
 /// The stress on a vertical section, see [`SubsurfaceStress::on_section`](super::SubsurfaceStress::on_section).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 #[non_exhaustive]
 pub struct StressSection {
     /// The direction of the section on the surface.
@@ -13,11 +17,14 @@ pub struct StressSection {
     /// The other coordinate, constant \[m\].
     pub at: f64,
     /// Cell centres along the section \[m\].
+    #[educe(Debug(method(counted)))]
     pub positions: Vec<f64>,
     /// Depths \[m\].
+    #[educe(Debug(method(counted)))]
     pub depths: Vec<f64>,
     /// The stress, one for each position and depth, depths fastest: the stress below `positions[i]` at `depths[k]` is entry
     /// `i * depths.len() + k`.
+    #[educe(Debug(method(counted)))]
     pub values: Vec<Stress>,
 }
 
@@ -29,14 +36,17 @@ impl StressSection {
 }
 
 /// The stress in a volume, see [`SubsurfaceStress::in_volume`](super::SubsurfaceStress::in_volume).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 #[non_exhaustive]
 pub struct StressVolume {
     /// The grid of the surface.
     pub grid: Grid,
     /// Depths \[m\].
+    #[educe(Debug(method(counted)))]
     pub depths: Vec<f64>,
     /// The stress, plane by plane, each in the order of fields.
+    #[educe(Debug(method(counted)))]
     pub values: Vec<Stress>,
 }
 

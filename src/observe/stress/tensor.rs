@@ -17,6 +17,7 @@ const MOST_SWEEPS: usize = 12;
 /// assert_eq!(stress.von_mises(), 2.0e6);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::exhaustive_structs, reason = "a symmetric tensor has six components")]
 pub struct Stress {
     /// σ11.

@@ -6,6 +6,7 @@
 /// compliance, fluidity, retarded compliances) or of a relaxation series (equilibrium modulus,
 /// immediate viscosity, relaxing moduli).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum MaterialFunction {
     /// Creep compliance J(t) \[1/Pa\] over the time \[s\].

@@ -1,9 +1,13 @@
+use educe::Educe;
+
+use crate::values::counted;
 use std::fmt;
 
 use super::{FittedSeries, MaterialFunction, Sample};
 
 /// One given value and the value of the fitted series.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct FitSample {
     /// The material function.
@@ -35,6 +39,7 @@ const SYSTEMATIC: f64 = 1.0;
 
 /// Why a series fitted to measurements should be inspected before use. `Display` explains it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum FitWarning {
     /// There are too few samples to determine the curve between them: measure more per decade.
@@ -74,11 +79,15 @@ impl fmt::Display for FitWarning {
 /// assert!(creep.report().max_misfit() <= 1.0e-4);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitReport {
+    #[educe(Debug(method(counted)))]
     samples: Vec<FitSample>,
     terms: usize,
     wrong_way: f64,
+    #[educe(Debug(method(counted)))]
     interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
 }

@@ -13,14 +13,36 @@ pub(crate) struct Row {
 
 /// What a table of measurements holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Experiment {
-    /// Time \[s\] and creep compliance J \[1/Pa\].
+    /// Time \[s\] and creep compliance \[1/Pa\]: J in shear, D in tension.
     Creep,
-    /// Time \[s\] and relaxation modulus G \[Pa\].
+    /// Time \[s\] and relaxation modulus \[Pa\]: G in shear, E in tension.
     Relaxation,
-    /// Angular frequency \[rad/s\], storage and loss modulus G′, G″ \[Pa\] (DMA, rheometer).
+    /// Angular frequency \[rad/s\], storage and loss modulus \[Pa\]: G′, G″ in shear (rheometer), E′, E″ in tension (DMA).
     Dynamic,
+}
+
+/// What the headings of a file say about the deformation of the specimen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Deformation {
+    /// Nothing, or numbers without headings.
+    Unnamed,
+    /// J, G, G′ or G″.
+    Shear,
+    /// D, E, E′ or E″.
+    Tension,
+}
+
+impl Deformation {
+    /// Rejects a table whose headings say otherwise than `wanted`.
+    pub(crate) fn accepts(self, wanted: Deformation) -> Result<()> {
+        if self == Deformation::Unnamed || self == wanted {
+            return Ok(());
+        }
+        Err(TableError::Deformation { in_tension: self == Deformation::Tension }.into())
+    }
 }
 
 /// The columns of a table.

@@ -1,7 +1,10 @@
+use educe::Educe;
+
 use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
-use crate::rheology::table::data::Row;
+use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
 use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
+use crate::values::counted;
 
 /// Measurements at one temperature.
 ///
@@ -13,11 +16,14 @@ use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
 /// assert_eq!(at_60.temperature(), 333.15);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 pub struct Isotherm {
     temperature: f64,
     experiment: Experiment,
+    deformation: Deformation,
     /// Ascending.
+    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
 }
 
@@ -28,9 +34,9 @@ impl Isotherm {
     /// If the temperature is not finite and positive.
     pub fn new(temperature: f64, measurements: Measurements) -> Result<Isotherm> {
         within("temperature", temperature, temperature > 0.0, "finite and > 0 (kelvin)")?;
-        let Measurements { experiment, mut rows, .. } = measurements;
+        let Measurements { experiment, deformation, mut rows, .. } = measurements;
         rows.retain(|row| row.x > 0.0); // a time of zero cannot be shifted
-        Ok(Isotherm { temperature, experiment, rows })
+        Ok(Isotherm { temperature, experiment, deformation, rows })
     }
 
     /// Temperature \[K\].
@@ -203,6 +209,20 @@ impl MasterCurve {
     /// # Errors
     /// If the curve cannot be fitted ([`Measurements::fit`]).
     pub fn fit(&self) -> Result<CreepSeries> {
+        self.fitted(Deformation::Shear)
+    }
+
+    /// [`MasterCurve::fit`] of isotherms in tension: the creep of a rod
+    /// ([`Measurements::fit_tension`]).
+    ///
+    /// # Errors
+    /// If the curve cannot be fitted.
+    pub fn fit_tension(&self) -> Result<CreepSeries> {
+        self.fitted(Deformation::Tension)
+    }
+
+    fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
+        self.isotherms.iter().try_for_each(|isotherm| isotherm.deformation.accepts(deformation))?;
         let mut rows: Vec<Row> = self.reduced().collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         for k in 0..rows.len() {
@@ -211,7 +231,7 @@ impl MasterCurve {
             }
             rows[k].place = Place::Entry(k);
         }
-        Measurements::from_rows(self.isotherms[0].experiment, rows)?.fit()
+        Measurements::from_rows(self.isotherms[0].experiment, rows)?.fitted()
     }
 }
 

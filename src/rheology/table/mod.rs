@@ -7,11 +7,14 @@ mod master_curve;
 pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
+use educe::Educe;
+
 use crate::error::{Place, Result, TableError, exact_length};
 use crate::rheology::CreepSeries;
 use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
+use crate::values::counted;
 pub use data::Experiment;
-use data::{Row, validated};
+use data::{Deformation, Row, validated};
 
 /// Greatest root mean square misfit of an accepted fit.
 const MOST_MISFIT: f64 = 0.1;
@@ -40,11 +43,15 @@ const NOTICEABLE: f64 = 12.0;
 /// assert!(body.creep_compliance(200.0).is_nan()); // never measured
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq, Educe)]
+#[educe(Debug)]
 pub struct Measurements {
     experiment: Experiment,
+    deformation: Deformation,
     /// Ascending.
+    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
+    #[educe(Debug(method(counted)))]
     samples: Vec<Sample>,
     /// Greatest deviation of the samples from a monotone curve.
     wrong_way: f64,
@@ -119,7 +126,7 @@ impl Measurements {
 
     fn from_rows(experiment: Experiment, mut rows: Vec<Row>) -> Result<Measurements> {
         let (samples, wrong_way) = validated(experiment.layout(), &mut rows)?;
-        Ok(Measurements { experiment, rows, samples, wrong_way })
+        Ok(Measurements { experiment, deformation: Deformation::Unnamed, rows, samples, wrong_way })
     }
 
     /// The body that the table describes: a series with positive coefficients, by least squares of the relative misfit.
@@ -139,8 +146,35 @@ impl Measurements {
     /// choose [`CreepSeries::extrapolated`].
     ///
     /// # Errors
-    /// If no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)).
+    /// If no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)), or the headings of its file name
+    /// moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
     pub fn fit(&self) -> Result<CreepSeries> {
+        self.deformation.accepts(Deformation::Shear)?;
+        self.fitted()
+    }
+
+    /// [`Measurements::fit`] of a table in tension, E(t), D(t), or E′ and E″ (a DMA): the creep D(t) of a rod, of which
+    /// [`Material::from_tension`](crate::rheology::Material::from_tension) makes a body.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Material, Measurements, Rheology};
+    ///
+    /// let times = [0.1, 1.0, 10.0, 100.0, 1000.0];
+    /// let rod = Measurements::creep(&times, &[5.0e-10, 5.3e-10, 5.8e-10, 6.5e-10, 7.4e-10])?.fit_tension()?;
+    /// let (nu, strain) = (0.38, rod.creep_compliance(10.0));
+    /// let body = Material::from_tension(rod, nu)?;
+    /// assert!((body.contact_compliance(10.0) / ((1.0 - nu * nu) * strain) - 1.0).abs() < 1e-15);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Measurements::fit`], if the headings name moduli in shear.
+    pub fn fit_tension(&self) -> Result<CreepSeries> {
+        self.deformation.accepts(Deformation::Tension)?;
+        self.fitted()
+    }
+
+    fn fitted(&self) -> Result<CreepSeries> {
         let (layout, samples) = (self.experiment.layout(), &self.samples);
         let time = |x: f64| if layout.zero { x } else { 1.0 / x };
         let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);

@@ -127,8 +127,8 @@ impl ActiveSet {
     /// The displacement that a residual below the tolerance may hide, and the rounding of the gap in it.
     fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> [f64; 2] {
         let square = self.set.sum_over_all(problem, |k| (problem.compliance * solution.potential[k]).powi(2));
-        let cancellation = problem.rounding(&solution.pressure) + self.guess_rounding;
+        let cancellation = problem.displacement_rounding(&solution.pressure) + self.guess_rounding;
         let sums = ResidualSums { displacement: square, cancellation, ..ResidualSums::of(&self.set) };
-        [tolerance * sums.yielding() + sums.rounding(), sums.rounding()]
+        [tolerance * sums.yielding() + sums.gap_rounding(), sums.gap_rounding()]
     }
 }

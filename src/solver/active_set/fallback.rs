@@ -186,7 +186,7 @@ mod tests {
             })
             .collect();
         let freedom = Freedom { translation: true, tilt: [true; 2], point: [0.1, -0.05], total: 5.0 };
-        let stop = Stop { tolerance: 1e-10, max_iterations: 1000 };
+        let stop = Stop { tolerance: 1e-10, max_iterations: 1000, cancelled: None };
         let mut work = kernel.workspace();
         for compliance in [5.0, 0.5, 1e-3, 1e-9] {
             let problem = Problem {

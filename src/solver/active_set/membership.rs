@@ -70,7 +70,7 @@ impl ActiveSet {
     pub(super) fn should_remove_tensile(
         &self,
         problem: &Problem<'_>,
-        stop: Stop,
+        stop: Stop<'_>,
         state: ResidualSums,
         aggressive: bool,
     ) -> bool {

@@ -5,7 +5,7 @@ use super::unit::{COMPLIANCE, FREQUENCY, MODULUS, TIME, name, readings, same};
 use crate::error::TableError;
 use crate::input::{TextRow, shortened};
 use crate::rheology::fit::MaterialFunction;
-use crate::rheology::table::data::Layout;
+use crate::rheology::table::data::{Deformation, Layout};
 
 /// Parts of headings of other quantities.
 const OTHERS: &[&str] = &["factor", "tan", "strain", "stress", "phase", "%"];
@@ -14,7 +14,7 @@ const OTHERS: &[&str] = &["factor", "tan", "strain", "stress", "phase", "%"];
 fn words(column: &str) -> &'static [&'static str] {
     match column {
         "creep compliance" => &["j", "creep", "compliance"],
-        "relaxation modulus" => &["g", "e", "relaxation", "modulus"],
+        "relaxation modulus" => &["g", "e", "relaxation", "modulus", "young's"],
         "storage modulus" => &["g'", "g′", "e'", "e′", "storage", "gp"],
         "loss modulus" => &["g''", "g″", "g\"", "e''", "e″", "e\"", "loss", "gpp"],
         _ => &["time", "t", "omega", "ω", "angular", "frequency", "freq", "f", "w"],
@@ -26,8 +26,10 @@ pub(super) fn columns(headings: &TextRow, layout: &Layout) -> Result<Vec<usize>,
     let place = |name: &'static str| {
         let is_named = |heading: &str| {
             let heading = heading.to_lowercase();
-            let word = heading.split(|c: char| " [({_/,;:=.|*".contains(c)).next().unwrap_or_default();
-            words(name).contains(&word) && !OTHERS.iter().any(|other| heading.contains(other))
+            let word = symbol(&heading);
+            // a D alone may be a diameter
+            let of_tension = name == "creep compliance" && word == "d" && is_compliance(&heading);
+            (words(name).contains(&word) || of_tension) && !OTHERS.iter().any(|other| heading.contains(other))
         };
         let mut places = (0..headings.fields.len()).filter(|&k| is_named(&headings.fields[k]));
         match (places.next(), places.next()) {
@@ -39,6 +41,39 @@ pub(super) fn columns(headings: &TextRow, layout: &Layout) -> Result<Vec<usize>,
         }
     };
     layout.names().map(place).collect()
+}
+
+/// The first word of a heading.
+fn symbol(heading: &str) -> &str {
+    heading.split(|c: char| " [({_/,;:=.|*".contains(c)).next().unwrap_or_default()
+}
+
+/// Whether a heading is a function of time, or has the unit of a compliance.
+fn is_compliance(heading: &str) -> bool {
+    let of_compliance = |text: &str| readings(text).iter().any(|reading| reading.0 == COMPLIANCE);
+    heading.contains("(t)") || unit_texts(heading).iter().any(|(text, _)| of_compliance(text))
+}
+
+/// The deformation that the headings of the columns of values name; `order` has the indices of the columns that are read.
+pub(super) fn deformation(headings: &TextRow, order: &[usize]) -> Deformation {
+    let named = |heading: &str| {
+        let heading = heading.to_lowercase();
+        let word = symbol(&heading);
+        let letter = word.trim_end_matches(['\'', '′', '"', '″']);
+        if ["e", "d"].contains(&letter)
+            || word == "young's"
+            || heading.contains("tensile")
+            || heading.contains("tension")
+        {
+            Deformation::Tension
+        } else if ["g", "j", "gp", "gpp"].contains(&letter) || heading.contains("shear") {
+            Deformation::Shear
+        } else {
+            Deformation::Unnamed
+        }
+    };
+    let of_values = order[1..].iter().map(|&column| named(&headings.fields[column]));
+    of_values.fold(Deformation::Unnamed, |found, next| if found == Deformation::Unnamed { next } else { found })
 }
 
 /// Rejects headings with units other than those given; `order` has the indices of the columns that are read.

@@ -8,9 +8,9 @@ use std::path::Path;
 
 use crate::error::{Place, Result, positive};
 use crate::input::{TextFormat, TextRow, TextTable, open};
-use crate::rheology::table::data::{Layout, Row};
+use crate::rheology::table::data::{Deformation, Layout, Row};
 use crate::rheology::table::{Experiment, Measurements};
-use headings::{check_units, columns};
+use headings::{check_units, columns, deformation};
 
 /// The units of a file in SI.
 ///
@@ -35,7 +35,8 @@ impl Measurements {
     /// Rows may stand in any order. Columns too, if the first line names them by the first word or symbol of each heading,
     /// whatever the case and the unit after it. The first line has headings if none of its fields is a number. Without
     /// headings there are the columns of the experiment, in their order. Headings with a unit (`t [min]`, `J (1/GPa)`,
-    /// `E/MPa`) must agree with `units`; words that are not a known unit are ignored.
+    /// `E/MPa`) must agree with `units`; words that are not a known unit are ignored. Headings that name moduli or compliances in
+    /// tension (E, E′, E″, D) make a table for [`Measurements::fit_tension`]; those in shear, for [`Measurements::fit`].
     ///
     /// `format` states the delimiter and the decimal mark.
     ///
@@ -79,11 +80,13 @@ impl Measurements {
         units: Units,
         format: TextFormat,
     ) -> Result<Measurements> {
-        Measurements::from_rows(experiment, read(reader, experiment.layout(), units, format)?)
+        let (rows, deformation) = read(reader, experiment.layout(), units, format)?;
+        Ok(Measurements { deformation, ..Measurements::from_rows(experiment, rows)? })
     }
 }
 
-fn read(reader: impl Read, layout: Layout, units: Units, format: TextFormat) -> Result<Vec<Row>> {
+/// The rows of a file, and the deformation that its headings name.
+fn read(reader: impl Read, layout: Layout, units: Units, format: TextFormat) -> Result<(Vec<Row>, Deformation)> {
     positive("Units::abscissa", units.abscissa)?;
     positive("Units::value", units.value)?;
     let table = TextTable::read(reader, layout.table, format)?;
@@ -92,11 +95,13 @@ fn read(reader: impl Read, layout: Layout, units: Units, format: TextFormat) -> 
     let columns_needed = names.join(", ");
     // the headings determine the number of columns; without headings there are only those needed
     let (mut order, mut width) = ((0..names.len()).collect::<Vec<_>>(), names.len());
+    let mut named = Deformation::Unnamed;
     if let Some(mut headings) = rows.next_if(|row| !row.has_numbers()) {
         drop_empty(&mut headings, 0);
         width = headings.fields.len();
         order = columns(&headings, &layout)?;
         check_units(&headings, &order, &layout, units)?;
+        named = deformation(&headings, &order);
     }
     let numbers = |mut row: TextRow| {
         drop_empty(&mut row, width);
@@ -105,7 +110,7 @@ fn read(reader: impl Read, layout: Layout, units: Units, format: TextFormat) -> 
         let values = order[1..].iter().map(|&column| Ok(row.number(column)? * units.value)).collect::<Result<_>>()?;
         Ok(Row { place: Place::Line(row.line), x, values })
     };
-    rows.map(numbers).collect()
+    Ok((rows.map(numbers).collect::<Result<_>>()?, named))
 }
 
 /// Drops empty fields beyond `width`, left by delimiters at the end of a line.

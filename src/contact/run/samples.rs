@@ -1,0 +1,155 @@
+//! Times of a run at which steps end or states are sampled.
+
+use std::borrow::Cow;
+
+use crate::contact::read::report::StepReport;
+use crate::contact::run::follow::{Run, SAME_TIME};
+use crate::contact::stepper::ViscoelasticContact;
+use crate::error::Result;
+
+/// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
+#[derive(Debug)]
+pub struct Sample<'a> {
+    contact: Cow<'a, ViscoelasticContact>,
+    report: StepReport,
+    at_end: bool,
+    is_asked_for: bool,
+}
+
+impl Sample<'_> {
+    /// The contact at this time.
+    pub fn contact(&self) -> &ViscoelasticContact {
+        &self.contact
+    }
+
+    /// The report of the step from the start of the run's step to this time, with the work that the sample took; its
+    /// [`StepReport::time_error`] is the error of the whole step. At the end of the step it is the report of the step.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// Whether this is the end of the step: it takes no work.
+    pub fn is_end_of_step(&self) -> bool {
+        self.at_end
+    }
+
+    /// Whether a time to sample was given here; false for an end of a step between such times.
+    pub fn is_asked_for(&self) -> bool {
+        self.is_asked_for
+    }
+}
+
+/// Steps that end at times of your choice, and states between the ends of steps. Stops shorten steps, so that an adaptive run takes
+/// more of them; samples leave the steps as they are, bitwise, and cost a contact problem for each time inside a step.
+impl<'a> Run<'a> {
+    /// Makes steps end exactly at these `times` \[s\] too, given in any order. Times before the time of the contact
+    /// have no effect.
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn stop_at(mut self, times: &[f64]) -> Result<Run<'a>> {
+        self.stops.add("time to stop at", times)?;
+        Ok(self)
+    }
+
+    /// Makes steps end exactly at every multiple of `interval` \[s\] from the start of the run too.
+    ///
+    /// # Errors
+    /// If the interval is not finite and positive.
+    pub fn stop_every(mut self, interval: f64) -> Result<Run<'a>> {
+        self.stops.add_every("interval of the stops", interval, self.progress.start)?;
+        Ok(self)
+    }
+
+    /// Makes steps end exactly `first` \[s\] after the start of the run too, and at `per_decade` times in each decade beyond.
+    ///
+    /// # Errors
+    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
+    pub fn stop_at_decades(mut self, first: f64, per_decade: usize) -> Result<Run<'a>> {
+        let names = ["first time to stop at", "stops per decade"];
+        self.stops.add_decades(names, (first, per_decade), self.progress.start)?;
+        Ok(self)
+    }
+
+    /// Samples the states at these `times` \[s\], given in any order ([`Run::samples`]).
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn sample_at(mut self, times: &[f64]) -> Result<Run<'a>> {
+        self.sampled.add("time to sample", times)?;
+        Ok(self)
+    }
+
+    /// Samples the states at every multiple of `interval` \[s\] from the start of the run ([`Run::samples`]).
+    ///
+    /// # Errors
+    /// If the interval is not finite and positive.
+    pub fn sample_every(mut self, interval: f64) -> Result<Run<'a>> {
+        self.sampled.add_every("interval of the samples", interval, self.progress.start)?;
+        Ok(self)
+    }
+
+    /// Samples the states `first` \[s\] after the start of the run, and at `per_decade` times in each decade beyond
+    /// ([`Run::samples`]).
+    ///
+    /// # Errors
+    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
+    pub fn sample_at_decades(mut self, first: f64, per_decade: usize) -> Result<Run<'a>> {
+        let names = ["first time to sample", "samples per decade"];
+        self.sampled.add_decades(names, (first, per_decade), self.progress.start)?;
+        Ok(self)
+    }
+
+    /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`],
+    /// [`Run::sample_every`], [`Run::sample_at_decades`]), and at its end. Each is as exact as the end of the step
+    /// ([`Run::within_step`]). So a run of few long steps is drawn as a curve, and the steps stay as they are.
+    ///
+    /// A sample inside the step costs a copy of the contact and a contact problem; the end costs nothing. Where ranks share out
+    /// the contact, all of them take the samples.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::relaxing(1.0e6, 0.3e6, 0.5)?))
+    ///     .build()?;
+    /// let load = StepLoad::new(Load::force(0.5))?;
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-2), 100.0).sample_at_decades(1.0e-2, 10)?;
+    /// let (mut steps, mut curve) = (0, Vec::new());
+    /// while run.next_step()?.is_some() {
+    ///     steps += 1;
+    ///     for sample in run.samples() {
+    ///         let sample = sample?;
+    ///         curve.push((sample.contact().time(), sample.contact().approach()));
+    ///     }
+    /// }
+    /// assert!(steps < 20 && curve.len() > 40);
+    /// assert!(curve.is_sorted_by_key(|point| point.0));
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Each sample as [`Run::within_step`].
+    pub fn samples(&self) -> impl Iterator<Item = Result<Sample<'_>>> {
+        let (start, end) = self.last.map_or((0.0, 0.0), |(start, report)| (start, report.time));
+        let same = SAME_TIME * (end - start);
+        let (mut time, mut left) = (start + same, self.last);
+        std::iter::from_fn(move || {
+            let (_, report) = left?;
+            let next = self.sampled.after(time).filter(|next| *next < end - same);
+            let Some(next) = next else {
+                left = None;
+                let is_asked_for = self.sampled.after((end - same).next_down()).is_some_and(|next| next <= end + same);
+                let contact = Cow::Borrowed(self.contact());
+                return Some(Ok(Sample { contact, report, at_end: true, is_asked_for }));
+            };
+            // times of two rules that agree but for rounding are one
+            time = next + same;
+            Some(self.reached_within_step(next).map(|(contact, reach)| {
+                let report = contact.report(report.time_error, reach);
+                Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true }
+            }))
+        })
+    }
+}

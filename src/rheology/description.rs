@@ -1,0 +1,92 @@
+//! A material in words and numbers.
+
+use std::fmt;
+
+use crate::rheology::material::{Body, Volume};
+use crate::rheology::{CreepSpectrum, Material};
+
+/// What a material says of one of its bodies.
+#[derive(Debug)]
+pub(crate) struct BodyDescription<'a> {
+    /// Poisson's ratio, if constant by definition; else the bulk modulus \[Pa\].
+    pub(crate) volume: Result<f64, f64>,
+    body: &'a Body,
+}
+
+impl BodyDescription<'_> {
+    /// The contact creep compliance, if it has an exact series.
+    pub(crate) fn contact_creep(&self) -> Option<CreepSpectrum> {
+        self.body.contact_spectrum().ok()?
+    }
+
+    /// The rheology as Rust prints it.
+    pub(crate) fn rheology(&self) -> String {
+        format!("{:?}", self.body.rheology)
+    }
+}
+
+impl Material {
+    /// The bodies, in the order in which they were joined.
+    pub(crate) fn descriptions(&self) -> impl Iterator<Item = BodyDescription<'_>> {
+        self.bodies.iter().map(|body| {
+            let volume = match body.volume {
+                Volume::Proportional { poisson, .. } => Ok(poisson),
+                Volume::Elastic(bulk_modulus, ..) => Err(bulk_modulus),
+            };
+            BodyDescription { volume, body }
+        })
+    }
+}
+
+/// One line: volume and contact modulus 1/C of each body, and its retardation times.
+///
+/// ```
+/// use viscocontact::rheology::{Elastic, Material, Zener};
+///
+/// let rubber = Material::incompressible(Zener::relaxing(4.0e6, 1.0e6, 0.5)?);
+/// assert_eq!(rubber.to_string(), "incompressible, 1/C from 1.600e7 Pa to 4.000e6 Pa, 1 retardation time (2.0e0 s)");
+/// let steel = Material::constant_poisson(Elastic::young(210.0e9, 0.3)?, 0.3)?;
+/// assert_eq!(rubber.against(steel).to_string().split(" against ").nth(1), Some("Poisson's ratio 0.3, 1/C 2.308e11 Pa"));
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+impl fmt::Display for Material {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, body) in self.descriptions().enumerate() {
+            if k > 0 {
+                f.write_str(" against ")?;
+            }
+            match body.volume {
+                Ok(0.5) => f.write_str("incompressible")?,
+                Ok(poisson) => write!(f, "Poisson's ratio {poisson}")?,
+                Err(bulk) => write!(f, "bulk modulus {bulk:.3e} Pa")?,
+            }
+            let Some(creep) = body.contact_creep() else {
+                let glassy = body.body.contact_compliance(0.0);
+                if glassy > 0.0 {
+                    write!(f, ", 1/C {:.3e} Pa at t = 0", 1.0 / glassy)?;
+                } else {
+                    f.write_str(", no elastic response")?;
+                }
+                f.write_str(", no exact series")?;
+                continue;
+            };
+            let (glassy, fluidity, terms) = (creep.glassy(), creep.fluidity(), creep.terms());
+            let rubbery = glassy + terms.iter().map(|(compliance, _)| compliance).sum::<f64>();
+            match (glassy > 0.0, fluidity > 0.0, terms.is_empty()) {
+                (true, false, true) => write!(f, ", 1/C {:.3e} Pa", 1.0 / glassy)?,
+                (true, false, false) => write!(f, ", 1/C from {:.3e} Pa to {:.3e} Pa", 1.0 / glassy, 1.0 / rubbery)?,
+                (true, true, _) => write!(f, ", 1/C {:.3e} Pa at t = 0, flows", 1.0 / glassy)?,
+                (false, false, _) => write!(f, ", no elastic response, 1/C {:.3e} Pa in the end", 1.0 / rubbery)?,
+                (false, true, _) => f.write_str(", no elastic response, flows")?,
+            }
+            match *terms {
+                [] => {}
+                [(_, time)] => write!(f, ", 1 retardation time ({time:.1e} s)")?,
+                [(_, first), .., (_, last)] => {
+                    write!(f, ", {} retardation times ({first:.1e} s to {last:.1e} s)", terms.len())?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

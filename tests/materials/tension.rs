@@ -1,0 +1,242 @@
+//! Named constructors, and bodies measured in tension.
+
+use approx::assert_abs_diff_eq;
+use viscocontact::num_complex::Complex64;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{CreepSpectrum, Experiment, Isotherm, MasterCurve, TableError, Units};
+use viscocontact::{Error, TextFormat};
+
+fn terms_of(body: &dyn Rheology) -> (f64, Vec<(f64, f64)>) {
+    let relaxation = body.creep_spectrum().unwrap().relaxation();
+    (relaxation.equilibrium(), relaxation.terms().to_vec())
+}
+
+fn close(found: f64, expected: f64, within: f64) {
+    assert_abs_diff_eq!(found / expected, 1.0, epsilon = within);
+}
+
+/// What each name promises, from the relaxation modulus that the body has.
+#[test]
+fn named_constructors_take_times() {
+    let (rest, terms) = terms_of(&Maxwell::with_time(2.0e6, 3.0).unwrap());
+    assert_eq!(rest, 0.0);
+    close(terms[0].0, 2.0e6, 1e-14);
+    close(terms[0].1, 3.0, 1e-14);
+
+    for (glassy, rubbery, time) in [(1.0e9, 1.0e6, 1.0e-3), (3.0e6, 2.9e6, 40.0), (1.0e9, 1.0e9 - 1.0, 1.0)] {
+        let (rest, terms) = terms_of(&Zener::relaxing(glassy, rubbery, time).unwrap());
+        close(rest, rubbery, 1e-13);
+        let rounding = 1e-15 * glassy / (glassy - rubbery);
+        close(terms[0].0, glassy - rubbery, 1e-12 + 10.0 * rounding);
+        close(terms[0].1, time, 1e-12);
+    }
+
+    let (rest, terms) = terms_of(&GeneralizedMaxwell::prony(8.0e6, &[(0.25, 0.1), (0.5, 10.0)]).unwrap());
+    close(rest, 2.0e6, 1e-13);
+    for (found, expected) in terms.iter().zip([(2.0e6, 0.1), (4.0e6, 10.0)]) {
+        close(found.0, expected.0, 1e-12);
+        close(found.1, expected.1, 1e-12);
+    }
+    let fluid = GeneralizedMaxwell::prony(1.0e6, &[(0.1, 0.1), (0.2, 1.0), (0.7, 10.0)]).unwrap();
+    assert_eq!(terms_of(&fluid).0, 0.0, "shares that add up to 1 but for rounding");
+
+    // the same bodies by viscosities
+    let (g, slow, tau, lambda) = (1.0e9, 1.0e8, 100.0, 5.0);
+    let pairs: [(Box<dyn Rheology>, Box<dyn Rheology>); 4] = [
+        (Box::new(Maxwell::with_time(g, tau).unwrap()), Box::new(Maxwell::new(g, g * tau).unwrap())),
+        (Box::new(KelvinVoigt::with_time(g, tau).unwrap()), Box::new(KelvinVoigt::new(g, g * tau).unwrap())),
+        (Box::new(Zener::with_time(g, slow, tau).unwrap()), Box::new(Zener::new(g, slow, slow * tau).unwrap())),
+        (
+            Box::new(Burgers::with_times((g, tau), (slow, lambda)).unwrap()),
+            Box::new(Burgers::new(g, g * tau, slow, slow * lambda).unwrap()),
+        ),
+    ];
+    for (timed, viscous) in &pairs {
+        for t in [0.3, 7.0, 1.0e3] {
+            close(timed.creep_compliance(t), viscous.creep_compliance(t), 1e-14);
+        }
+    }
+    let springpot = FractionalMaxwell::with_time(2.0e6, 4.0, 0.5).unwrap();
+    let gamma = 0.5 * std::f64::consts::PI.sqrt(); // Γ(3/2)
+    close(springpot.creep_compliance(16.0), (1.0 + 2.0 / gamma) / 2.0e6, 1e-14);
+}
+
+/// G* = G_∞ + (G − G_∞) (iωτ)^α/(1 + (iωτ)^α), against the oscillation of the series fitted to its creep.
+#[test]
+fn a_fractional_body_relaxes_in_its_time() {
+    let (glassy, rubbery, time, order) = (1.0e9, 1.0e7, 0.02, 0.6);
+    let body = FractionalZener::relaxing(glassy, rubbery, time, order).unwrap();
+    let series = body.series(1e-6..=1e6, 1e-6).unwrap().creep_spectrum().unwrap();
+    for omega in [0.1, 1.0, 50.0, 1.0e3] {
+        let wave = Complex64::new(0.0, omega * time).powf(order);
+        let modulus = rubbery + (glassy - rubbery) * wave / (1.0 + wave);
+        let error = (series.complex_modulus(omega) - modulus).norm() / modulus.norm();
+        println!("ω = {omega} rad/s: {error:.1e}");
+        assert!(error < 1e-4, "{error:e}");
+    }
+}
+
+#[test]
+fn named_constructors_name_what_they_refuse() {
+    let field = |error: Error| match error {
+        Error::OutOfRange { field, .. } => field,
+        error => panic!("{error}"),
+    };
+    assert_eq!(field(Maxwell::with_time(1.0e6, 0.0).unwrap_err()), "relaxation time");
+    assert_eq!(field(KelvinVoigt::with_time(1.0e6, f64::NAN).unwrap_err()), "retardation time");
+    assert_eq!(field(Zener::relaxing(1.0e6, 1.0e6, 1.0).unwrap_err()), "glassy modulus");
+    assert_eq!(field(Zener::relaxing(1.0e6, -1.0, 1.0).unwrap_err()), "rubbery modulus");
+    assert_eq!(field(FractionalZener::relaxing(1.0e6, 2.0e6, 1.0, 0.5).unwrap_err()), "glassy modulus");
+    assert_eq!(field(FractionalZener::relaxing(2.0e6, 1.0e6, 1.0, 1.5).unwrap_err()), "exponent");
+    assert_eq!(field(Burgers::with_times((1.0, 1.0), (1.0, 0.0)).unwrap_err()), "retardation time");
+    assert_eq!(field(GeneralizedMaxwell::prony(1.0, &[(0.6, 1.0), (0.6, 2.0)]).unwrap_err()), "sum of the shares");
+    assert_eq!(field(GeneralizedMaxwell::prony(1.0, &[(3.0e6, 1.0)]).unwrap_err()), "share of the glassy modulus");
+    assert_eq!(field(Elastic::young(1.0, 0.6).unwrap_err()), "Poisson's ratio");
+    assert_eq!(field(Elastic::young(0.0, 0.3).unwrap_err()), "Young's modulus");
+    assert_eq!(field(Material::from_tension(Elastic::new(1.0).unwrap(), -1.0).unwrap_err()), "Poisson's ratio");
+    let stiff = Material::from_tension_elastic_bulk(Elastic::new(9.0e9).unwrap(), 1.0e9);
+    assert_eq!(field(stiff.unwrap_err()), "bulk modulus");
+    let dashpot = Material::from_tension_elastic_bulk(KelvinVoigt::new(1.0e6, 1.0e6).unwrap(), 1.0e9);
+    assert_eq!(field(dashpot.unwrap_err()), "bulk modulus");
+}
+
+#[test]
+fn bodies_in_tension_have_the_contact_compliance_of_their_shear() {
+    let terms = [(2.0e-10, 0.1), (4.0e-10, 10.0)];
+    let rod = CreepSpectrum::new(3.0e-10, 1.0e-13, &terms).unwrap();
+    for nu in [-0.5, 0.0, 0.3, 0.5] {
+        let material = Material::from_tension(rod.clone(), nu).unwrap();
+        let shear = Material::constant_poisson(rod.scaled(2.0 * (1.0 + nu)).unwrap(), nu).unwrap();
+        assert_eq!(material.poisson_ratios().collect::<Vec<_>>(), [Some(nu)]);
+        let series = material.contact_spectrum().unwrap().unwrap();
+        for t in [0.0, 0.05, 3.0, 1.0e4] {
+            close(material.contact_compliance(t), (1.0 - nu * nu) * rod.compliance(t), 1e-14);
+            close(material.contact_compliance(t), shear.contact_compliance(t), 1e-14);
+            close(series.compliance(t), material.contact_compliance(t), 1e-14);
+        }
+    }
+}
+
+/// The correspondence principle in tension: at every s the contact compliance is (1 − ν²)/E of the elastic body of Young's modulus
+/// E = 1/(s D̂(s)) and bulk modulus B, whose Poisson's ratio is (3B − E)/(6B).
+#[test]
+fn an_elastic_bulk_in_tension_obeys_the_correspondence_principle() {
+    let carson = |spectrum: &CreepSpectrum, s: f64| {
+        let terms = spectrum.terms().iter().map(|&(c, lambda)| c / (1.0 + s * lambda));
+        spectrum.glassy() + spectrum.fluidity() / s + terms.sum::<f64>()
+    };
+    let bodies = [
+        CreepSpectrum::new(5.0e-10, 0.0, &[]).unwrap(),
+        CreepSpectrum::new(5.0e-10, 0.0, &[(3.0e-10, 0.1), (1.0e-6, 10.0)]).unwrap(),
+        CreepSpectrum::new(4.0e-11, 1.0e-9, &[(3.0e-10, 0.1)]).unwrap(),
+    ];
+    for rod in bodies {
+        let bulk = 3.5e9;
+        let material = Material::from_tension_elastic_bulk(rod.clone(), bulk).unwrap();
+        let contact = material.contact_spectrum().unwrap().unwrap();
+        for s in [1e-4, 0.1, 1.0, 30.0, 1e5] {
+            let e = 1.0 / carson(&rod, s);
+            let nu = (3.0 * bulk - e) / (6.0 * bulk);
+            close(carson(&contact, s), (1.0 - nu * nu) / e, 1e-11);
+        }
+    }
+}
+
+/// A ball on silicone: a³ = (3/4) R F (1 − ν²)/E, and the approach a²/R.
+#[test]
+fn a_ball_on_a_rod_sinks_in_by_hertz() {
+    let (radius, force, e, nu) = (1.0e-2_f64, 0.5, 2.0e6, 0.48);
+    let touch = (0.75 * radius * force * (1.0 - nu * nu) / e).cbrt();
+    let mut contact = ViscoelasticContact::builder(Grid::square(64, 3.0 * touch).unwrap())
+        .geometry(&Sphere::new(radius).unwrap())
+        .material(Material::from_tension(Elastic::new(e).unwrap(), nu).unwrap())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(force)).unwrap();
+    close(contact.approach(), touch * touch / radius, 1e-3);
+}
+
+/// E(t), D(t), E′ and E″ of one body give its contact compliance.
+#[test]
+fn tables_in_tension_become_bodies() {
+    let rod = GeneralizedMaxwell::new(1.0e6, &[(3.0e6, 0.1), (1.0e6, 10.0)]).unwrap();
+    let creep = rod.creep_spectrum().unwrap();
+    let relaxation = creep.relaxation();
+    let times: Vec<f64> = (-15..=15).map(|k| 10f64.powf(0.2 * f64::from(k))).collect();
+    let of = |value: &dyn Fn(f64) -> f64| times.iter().map(|&x| value(x)).collect::<Vec<_>>();
+    let tables = [
+        ("E(t)", Measurements::relaxation(&times, &of(&|t| relaxation.modulus(t)))),
+        ("D(t)", Measurements::creep(&times, &of(&|t| creep.compliance(t)))),
+        (
+            "E', E''",
+            Measurements::dynamic(
+                &times,
+                &of(&|w| relaxation.storage_modulus(w)),
+                &of(&|w| relaxation.loss_modulus(w)),
+            ),
+        ),
+    ];
+    let nu = 0.49;
+    for (name, table) in tables {
+        let material = Material::from_tension(table.unwrap().fit_tension().unwrap(), nu).unwrap();
+        for t in [0.03, 0.5, 7.0, 300.0] {
+            let relative = material.contact_compliance(t) / ((1.0 - nu * nu) * creep.compliance(t)) - 1.0;
+            println!("{name} at {t} s: {relative:.1e}");
+            assert!(relative.abs() < 2e-3, "{name} at {t} s: {relative:e}");
+        }
+    }
+}
+
+/// A file whose headings say tension is not fitted as shear, nor the reverse; nor are isotherms from it.
+#[test]
+fn headings_keep_tension_and_shear_apart() {
+    let read = |experiment, headings: &str| {
+        let rows = match experiment {
+            Experiment::Dynamic => "0.1,1.0,0.2\n1,1.5,0.4\n10,2.2,0.4\n100,2.5,0.1\n",
+            Experiment::Relaxation => "1,2.0\n2,1.5\n4,1.2\n8,1.1\n16,1.05\n",
+            _ => "1,1.0\n2,1.1\n4,1.3\n8,1.4\n16,1.45\n",
+        };
+        let text = format!("{headings}\n{rows}");
+        Measurements::from_csv_reader(experiment, text.as_bytes(), Units::SI, TextFormat::default()).unwrap()
+    };
+    let refuses = |result: viscocontact::Result<viscocontact::rheology::CreepSeries>, tension: bool| match result {
+        Err(Error::Table(TableError::Deformation { in_tension })) => assert_eq!(in_tension, tension),
+        other => panic!("{other:?}"),
+    };
+    for (experiment, headings) in [
+        (Experiment::Dynamic, "omega,E',E''"),
+        (Experiment::Dynamic, "omega [rad/s],E′ [Pa],E″ [Pa]"),
+        (Experiment::Dynamic, "omega,storage modulus in tension [Pa],loss modulus [Pa]"),
+        (Experiment::Relaxation, "t,E(t)"),
+        (Experiment::Relaxation, "t,Young's modulus [Pa]"),
+        (Experiment::Creep, "t [s],D [1/Pa]"),
+        (Experiment::Creep, "t [s],D(t)"),
+    ] {
+        let table = read(experiment, headings);
+        refuses(table.fit(), true);
+        assert!(table.fit_tension().is_ok(), "{headings}");
+        let isotherm = Isotherm::new(300.0, table).unwrap();
+        let master = MasterCurve::new(300.0, vec![isotherm]).unwrap();
+        refuses(master.fit(), true);
+        assert!(master.fit_tension().is_ok(), "{headings}");
+    }
+    for (experiment, headings) in [
+        (Experiment::Dynamic, "omega,G',G''"),
+        (Experiment::Relaxation, "t,G(t)"),
+        (Experiment::Creep, "t,J"),
+        (Experiment::Creep, "t,creep compliance in shear"),
+    ] {
+        let table = read(experiment, headings);
+        refuses(table.fit_tension(), false);
+        assert!(table.fit().is_ok(), "{headings}");
+    }
+    for (experiment, headings) in [(Experiment::Relaxation, "t,modulus"), (Experiment::Creep, "t,compliance")] {
+        let table = read(experiment, headings);
+        assert_eq!(table.fit().unwrap().report(), table.fit_tension().unwrap().report());
+    }
+    // a diameter is no compliance
+    let diameter = "t,D [mm],J\n1,5,1.0\n2,5,1.1\n4,5,1.3\n8,5,1.4\n";
+    let table = Measurements::from_csv_reader(Experiment::Creep, diameter.as_bytes(), Units::SI, TextFormat::default())
+        .unwrap();
+    assert!(table.fit().is_ok());
+}
