@@ -408,8 +408,8 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std:
 }
 
 /// States within the steps of adaptive runs err by at most twice what was asked for, and greatest pressures by twice what the
-/// budget states: or as the ends of the steps do, where those err by more. Areas err by at most three times what the budget states: a
-/// cell is met too early or too late at few of the moments looked at, seldom at an end.
+/// budget states: or as the ends of the steps do, where those err by more. Areas err by at most three times what the budget
+/// states: a cell is met too early or too late at few of the moments looked at, seldom at an end.
 ///
 /// A body without elastic response answers each cell that it meets with a finite pressure at once, and the step control passes
 /// over events shorter than its resolution: of such bodies the approach is compared alone.
