@@ -227,7 +227,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     let mut chart = Chart::new("Centre of pressure of the sphere, six turns", "x1 [µm]", "x2 [µm]", Legend::UpperRight);
     for (turn, path) in centers.into_iter().enumerate() {
         let label = if turn < 3 { format!("{} is pressed", NAMES[turn]) } else { String::new() };
-        chart.add(label, COLORS[turn % 3], Style::LineAndDots, path);
+        chart.add(label, COLORS[turn % 3], Style::Line, path);
     }
     Ok(chart.save(args.output.join("sphere.png"))?)
 }

@@ -56,7 +56,7 @@
 //! open.
 //!
 //! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`],
-//! [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
+//! [`guide::data`], [`guide::curves`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
 //!
 //! # Conventions
 //!

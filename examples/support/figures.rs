@@ -10,7 +10,8 @@ use std::sync::Mutex;
 /// A figure: its name, and its text in the documents.
 pub type Outcome = Result<(), String>;
 
-/// Compares or writes the whole of a figure. A decimal may differ by one in its last place; counts and words are compared exactly.
+/// Compares or writes the whole of a figure. A decimal may differ by one in its last place or by 1e-6;
+/// counts and words are compared exactly.
 pub fn figure(name: &str, text: &str) -> Outcome {
     update(name, text, true, |_| text.to_owned())
 }
@@ -85,13 +86,14 @@ fn documents() -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// Whether two texts agree but for the last place of decimals, and for numbers that are rounding alone.
+/// Whether two texts agree but for the last place of decimals, 1e-6 of them, and for numbers that are rounding alone.
 fn agree(one: &str, other: &str) -> bool {
     let (one, other) = (words(one), words(other));
     let alike = |(a, b): (&String, &String)| {
         a == b
             || decimal(a).zip(decimal(b)).is_some_and(|((x, place), (y, other))| {
-                (x - y).abs() <= 1.01 * place.max(other) || x.abs().max(y.abs()) < 1e-11
+                let greatest = x.abs().max(y.abs());
+                (x - y).abs() <= (1.01 * place.max(other)).max(1e-6 * greatest) || greatest < 1e-11
             })
     };
     one.len() == other.len() && one.iter().zip(&other).all(alike)
