@@ -17,7 +17,7 @@ pub(crate) fn check(what: &'static str, bytes: u128) -> Result<()> {
     let granted = usize::try_from(bytes).is_ok_and(|bytes| {
         let mut probe = Vec::<u8>::new();
         let granted = probe.try_reserve_exact(bytes).is_ok();
-        // otherwise the compiler may remove an allocation that nobody uses
+        // without this the compiler may remove the unused allocation
         black_box(probe.as_ptr());
         granted
     });

@@ -4,8 +4,8 @@ use crate::contact::window::fields::transferred;
 use crate::contact::{Footprint, Indenter, Region, Scene, State, Trial, Window};
 use crate::error::Result;
 
-/// State, window and trial of one computation. A step that needs a larger region goes on in a copy; whichever was accepted
-/// last is the contact's.
+/// State, window and trial of one computation. A step that needs a larger region continues in a copy, which the
+/// contact takes over if the step is accepted.
 #[derive(Debug, Clone)]
 pub(crate) struct Computation {
     pub(super) state: State,
@@ -19,7 +19,7 @@ impl Computation {
         Computation { trial: Trial::new(state.region.len(), scene.bodies), window, state }
     }
 
-    /// A copy on another region, for a step under `indenter`; the state stays what it is.
+    /// A copy on another region, for a step under `indenter`; the state is not changed.
     ///
     /// # Errors
     /// If there is no memory for both.

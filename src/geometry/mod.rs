@@ -49,9 +49,8 @@ pub use wavy::Wavy;
 
 use std::fmt::Debug;
 
-use crate::Grid;
 use crate::error::{Error, Result};
-use crate::memory;
+use crate::{Grid, memory};
 
 /// The gap between the undeformed bodies at zero approach.
 ///

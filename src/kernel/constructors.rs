@@ -5,10 +5,9 @@ use std::sync::Arc;
 use super::definiteness::least_eigenvalue;
 use super::influence::indices;
 use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Remainder, Strip, magnitude, wave_number};
-use crate::Grid;
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
-use crate::memory;
+use crate::{Grid, memory};
 
 /// Greatest difference of mirrored coefficients, relative to the greatest coefficient.
 const UNEQUAL: f64 = 1e-12;

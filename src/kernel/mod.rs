@@ -35,10 +35,9 @@ pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
 
-use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
-use crate::memory;
 use crate::parallel::Rows;
+use crate::{Grid, memory};
 use influence::{Body, Response, magnitude};
 use layer::Remainder;
 use layout::{Ends, Layout};

@@ -16,8 +16,9 @@ use crate::output::Metadata;
 use crate::output::npz::Archive;
 use crate::states::{ElasticState, ElasticStates, Pressed, Rest};
 
-/// Writes elastic states as an NPZ archive, so that a [`Sweep`](crate::states::Sweep) is made once: `numpy.load(path)["level"]` and so on, arrays named as
-/// the fields of an [`ElasticState`], and the pressures if they were kept. An existing file is replaced.
+/// Writes elastic states as an NPZ archive, so that a [`Sweep`](crate::states::Sweep) is made once:
+/// `numpy.load(path)["level"]` and so on, arrays named as the fields of an [`ElasticState`], and the pressures if they
+/// were kept. An existing file is replaced.
 ///
 /// Needs the feature `npy`.
 ///
@@ -82,8 +83,8 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
     })
 }
 
-/// Reads elastic states that [`write_states`] has written. They hold no surface: [`StatesContact::fields`](crate::states::StatesContact::fields) needs the
-/// states of a sweep of this process.
+/// Reads elastic states that [`write_states`] has written. They hold no surface:
+/// [`StatesContact::fields`](crate::states::StatesContact::fields) needs the states of a sweep of this process.
 ///
 /// Needs the feature `npy`.
 ///

@@ -281,7 +281,7 @@ impl Rows {
         };
         let found = self.gather([message.len() as f64, mark as f64].into_iter(), |_| 2, first_failed);
         self.intact()?;
-        // nobody has failed, or all in the same way
+        // no rank has failed, or all have in the same way
         let Some((rank, length)) = found else { return own };
         let own = if self.rank() == rank { message.as_bytes() } else { &[] };
         let bytes = own.iter().map(|&byte| f64::from(byte));

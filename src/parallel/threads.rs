@@ -1,6 +1,5 @@
 //! Ranks that are threads of one process.
 
-use std::fmt;
 use std::panic::resume_unwind;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
@@ -21,7 +20,7 @@ impl Threads {
     /// Runs `job` on `size` threads, each with its rank; returns the results in the order of the ranks.
     ///
     /// A rank that is done, or panics, has left: calls in which others wait for it fail with [`RanksError::Left`]. When all
-    /// have ended, a panic goes on in the caller.
+    /// have ended, the panic of a rank continues in the caller.
     ///
     /// # Errors
     /// If `size` is zero, or more than 1024.
@@ -115,7 +114,7 @@ impl Meeting {
 }
 
 impl Threads {
-    /// Brings numbers, and takes `received_counts[r]` of those that each rank r has brought for this one.
+    /// Offers `numbers` to all ranks, and receives `received_counts[r]` numbers from each rank r.
     fn meet(
         &self,
         (numbers, counts): (&[f64], &[usize]),
@@ -137,7 +136,7 @@ impl Threads {
             part.iter_mut().zip(&numbers[start..]).for_each(|(part, &number)| *part = number);
             rest = others;
         }
-        // nobody may bring anything new before all have read
+        // no rank may offer new numbers before all ranks have read the old ones
         self.meeting.wait()?;
         if agree { Ok(()) } else { Err(RanksError::Apart) }
     }
@@ -167,8 +166,4 @@ impl Ranks for Threads {
     }
 }
 
-impl fmt::Debug for Threads {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Threads").field("rank", &self.rank).field("size", &self.size()).finish()
-    }
-}
+debug_by!(self: Threads => rank: self.rank, size: self.size());

@@ -3,16 +3,19 @@
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
 
-use crate::contact::{Stepping, ViscoelasticContact};
+use crate::axis::Axis;
+use crate::contact::Stepping;
 use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::convergence::{ConvergedRun, DOMAIN_TO_CONTACT, converge, grid_with};
+use crate::plan::convergence::{ConvergedRun, converge};
+use crate::plan::domain::{Body, ContactSize, Side};
 use crate::plan::error_law::ErrorLaw;
-use crate::plan::trial_runs::{ContactSize, TrialScene};
+use crate::plan::trial_runs::TrialScene;
 use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
+use crate::{Grid, InfluenceKernel};
 
 /// Most cells along a side of a plan: more exceed the memory of a workstation.
 const MOST_PLANNED_CELLS: usize = 1 << 13;
@@ -47,6 +50,7 @@ pub struct PlanBuilder<'a> {
     accuracy: Accuracy,
     temperature: Option<&'a TemperatureHistory>,
     area: bool,
+    body: Body<'a>,
 }
 
 /// How far planning has come: the state of a coarse run.
@@ -70,8 +74,8 @@ impl Plan {
         history: &'a dyn LoadHistory,
         until: f64,
     ) -> PlanBuilder<'a> {
-        let (accuracy, temperature, area) = (Accuracy::default(), None, false);
-        PlanBuilder { geometry, material, history, until, accuracy, temperature, area }
+        let (accuracy, temperature, area, body) = (Accuracy::default(), None, false, Body::default());
+        PlanBuilder { geometry, material, history, until, accuracy, temperature, area, body }
     }
 }
 
@@ -81,8 +85,8 @@ impl<'a> PlanBuilder<'a> {
         PlanBuilder { accuracy, ..self }
     }
 
-    /// A temperature that changes ([`Builder::temperature`](crate::contact::Builder::temperature)): the times of the plan and of the load are
-    /// times, the body creeps in reduced time.
+    /// A temperature that changes ([`Builder::temperature`](crate::contact::Builder::temperature)): the times of the
+    /// plan and of the load are times, the body creeps in reduced time.
     pub fn temperature(self, temperature: &'a TemperatureHistory) -> PlanBuilder<'a> {
         PlanBuilder { temperature: Some(temperature), ..self }
     }
@@ -93,11 +97,41 @@ impl<'a> PlanBuilder<'a> {
         PlanBuilder { area, ..self }
     }
 
+    /// Another body than a half-space, by its kernel on a grid: the plan chooses the grid.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// // a gel of 2 mm on glass
+    /// let layer = Layer::bonded_to_rigid(2.0e-3, 0.5)?;
+    /// let on_glass = |grid: &Grid| InfluenceKernel::layer(grid, layer);
+    /// let (sphere, load) = (Sphere::new(10.0e-3)?, StepLoad::new(Load::force(0.1))?);
+    /// let gel = Material::incompressible(Zener::new(1.0e4, 1.0e4, 1.0e4)?);
+    /// let plan = Plan::builder(&sphere, &gel, &load, 10.0).accuracy(Accuracy::COARSE).kernel(&on_glass).build()?;
+    /// println!("{plan}");
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn kernel(self, kernel: &'a dyn Fn(&Grid) -> Result<InfluenceKernel>) -> PlanBuilder<'a> {
+        PlanBuilder { body: Body { kernel: Some(kernel), ..self.body }, ..self }
+    }
+
+    /// A side of the domain that is a period of the body, of this length \[m\]. Other sides are as long as the contact needs.
+    pub fn period(mut self, axis: Axis, length: f64) -> PlanBuilder<'a> {
+        self.body.sides[usize::from(axis == Axis::X2)] = Side::Period(length);
+        self
+    }
+
+    /// A line contact: one cell along x2, of this length \[m\], on which the force acts.
+    pub fn line(mut self, length: f64) -> PlanBuilder<'a> {
+        self.body.sides[1] = Side::Uniform(length);
+        self
+    }
+
     /// Plans the run.
     ///
     /// # Errors
-    /// If the end of the run is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or
-    /// approach and force need more than 8192 cells along a side; for a temperature of the run as
+    /// If the end of the run is not finite and positive, a part is invalid, no domain holds the contact, the coarse
+    /// runs fail, or approach and force need more than 8192 cells along a side; for a temperature of the run as
     /// [`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor).
     pub fn build(self) -> Result<Plan> {
         self.build_with(|_| ControlFlow::Continue(()))
@@ -108,27 +142,39 @@ impl<'a> PlanBuilder<'a> {
     /// # Errors
     /// As [`PlanBuilder::build`]; [`Error::Cancelled`] if `progress` ends it.
     pub fn build_with(self, progress: impl FnMut(PlanProgress) -> ControlFlow<()>) -> Result<Plan> {
-        let PlanBuilder { geometry, material, history, until, accuracy, temperature, area } = self;
+        let PlanBuilder { geometry, material, history, until, accuracy, temperature, area, body } = self;
         positive("end of the run", until)?;
         let (steps, progress) = (Cell::new(0), RefCell::new(progress));
-        let progress = |contact: &ViscoelasticContact| {
+        let progress = |cells: [usize; 2], time: f64| {
             steps.set(steps.get() + 1);
-            let progressed = PlanProgress { steps: steps.get(), cells: contact.grid().cells(), time: contact.time() };
+            let progressed = PlanProgress { steps: steps.get(), cells, time };
             match progress.borrow_mut()(progressed) {
                 ControlFlow::Continue(()) => Ok(()),
                 ControlFlow::Break(()) => Err(Error::Cancelled { what: "a plan" }),
             }
         };
         let (tolerance, progress) = (accuracy.step_tolerance(), &progress);
-        let scene =
-            TrialScene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance, progress };
+        let (whole, kernels) = (until, &RefCell::default());
+        let scene = TrialScene {
+            geometry,
+            material,
+            temperature,
+            history,
+            until,
+            whole,
+            accuracy,
+            tolerance,
+            progress,
+            body,
+            kernels,
+        };
         let size = ContactSize::of(&scene)?;
-        let found = size.on_growing_domain(|size| converge(&scene, size, area))?;
-        let ConvergedRun { steps, meshes, mut pressure, reach } = found;
+        let converged = size.on_growing_domain(|size| converge(&scene, size, area))?;
+        let ConvergedRun { steps, meshes, mut pressure, reach } = converged;
         let size = ContactSize { reach, ..size };
         let needed = |pressure: ErrorLaw| {
             let across = meshes.across_for(pressure, steps.left_for_mesh(accuracy), accuracy, area).max(FEWEST_ACROSS);
-            (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * size.reach[axis] / size.width[axis]))
+            (across, size.cells(across))
         };
         let (mut across, mut sides) = needed(pressure);
         if sides[0].max(sides[1]) > MOST_PLANNED_CELLS as f64 {
@@ -140,7 +186,7 @@ impl<'a> PlanBuilder<'a> {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }
-        let grid = grid_with(&size, across)?;
+        let grid = size.grid(across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
         let converges = pressure.converges && steps.resolve_pressure(accuracy);
         let mesh_error = MeshError {
@@ -149,7 +195,7 @@ impl<'a> PlanBuilder<'a> {
             area: 2.0 * meshes.radius().at(across),
             singular: meshes.singular().at(across),
         };
-        let builder = scene.builder(grid.clone());
+        let builder = scene.builder(grid.clone())?;
         let memory = builder.memory()?;
         Ok(Plan {
             builder,

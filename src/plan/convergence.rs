@@ -1,12 +1,12 @@
 //! How the states of a run converge with the mesh.
 
-use crate::Grid;
-use crate::error::{Error, Result, StepError};
+use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::plan::Accuracy;
+use crate::plan::domain::{ContactSize, Side};
 use crate::plan::error_law::{ErrorLaw, ORDERS};
 use crate::plan::steps::{Differences, Steps, relative};
-use crate::plan::trial_runs::{ContactSize, Run, StepState, TrialScene, greatest};
+use crate::plan::trial_runs::{Run, StepState, TrialScene, greatest};
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: f64 = 16.0;
@@ -19,9 +19,6 @@ const MOST_TRIAL_CELLS: usize = 2048;
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Most domains for ever smaller contacts.
 const MAX_ZOOMS: usize = 12;
-/// Growth factor of a domain whose edge the contact reaches on a finer mesh, and the greatest number of growths.
-const GROWTH: f64 = 1.2;
-const MAX_GROWTHS: u32 = 5;
 /// Greatest difference of the greatest pressure that counts as second order, over the estimate from the neighbours of
 /// the peak. A difference of second order is three times the error on the finer mesh.
 const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
@@ -32,42 +29,21 @@ const BOUNDING_CELLS: usize = 12;
 const BOUNDING_MARGIN: f64 = 1.25;
 /// Least width of the contact on a finer mesh, as a fraction of the width on a coarse one.
 const MIN_NARROWING: f64 = 0.25;
-/// Ratio of the domain to the rectangle of the contact.
-pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
-
-/// The grid with `across` cells across the widest contact.
-pub(super) fn grid_with(size: &ContactSize, across: f64) -> Result<Grid> {
-    let lengths = size.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
-    let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / size.width[axis]).ceil() as usize));
-    Grid::new(cells, lengths)
-}
 
 impl ContactSize {
     /// Size of the contact on a mesh that resolves it: a contact far off the middle is only a few cells wide on the
     /// coarsest mesh.
     pub(super) fn of(scene: &TrialScene<'_>) -> Result<ContactSize> {
         let size = scene.size()?;
-        if [0, 1].iter().all(|&axis| size.width[axis] > size.reach[axis]) {
+        if [0, 1].iter().all(|&axis| size.sides[axis] != Side::Found || size.width[axis] > size.reach[axis]) {
             return Ok(size);
         }
         size.on_growing_domain(|size| {
-            let finer = scene.follow(grid_with(size, LEAST_ACROSS)?, &[])?.size;
+            let finer = scene.follow(size.grid(LEAST_ACROSS)?, &[])?.size;
             // a contact may be a few cells wide on any mesh
             let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * size.width[axis]));
             Ok(ContactSize { width, ..finer })
         })
-    }
-
-    /// Runs `compute` on domains that grow until they contain the contact.
-    pub(super) fn on_growing_domain<T>(&self, compute: impl Fn(&ContactSize) -> Result<T>) -> Result<T> {
-        let mut size = *self;
-        for _ in 0..MAX_GROWTHS {
-            match compute(&size) {
-                Err(Error::Step(StepError::ContactAtEdge { .. })) => size.reach = size.reach.map(|half| GROWTH * half),
-                other => return other,
-            }
-        }
-        compute(&size)
     }
 }
 
@@ -94,7 +70,7 @@ impl Meshes {
         let mut meshes = Meshes { punch, across: LEAST_ACROSS, differences: Vec::new(), finest: base, work_order: 0.0 };
         loop {
             meshes.across *= 2.0;
-            let grid = grid_with(size, meshes.across)?;
+            let grid = size.grid(meshes.across)?;
             let [n1, n2] = grid.cells();
             let finer = scene.repeat(grid, &meshes.finest.steps)?;
             meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states));
@@ -180,7 +156,7 @@ impl Meshes {
         for by_force in [true, false] {
             let loads = ends.clone().map(|(_, (_, load))| load).filter(|load| normal(load).0 == by_force);
             let Some(&load) = loads.max_by(|a, b| normal(a).1.total_cmp(&normal(b).1)) else { continue };
-            let mut elastic = scene.builder(grid_with(size, self.across)?).build()?;
+            let mut elastic = scene.builder(size.grid(self.across)?)?.build()?;
             let resolved = elastic.step(0.0, load).is_ok() && elastic.contact_cells() >= BOUNDING_CELLS;
             if !resolved || BOUNDING_MARGIN * elastic.max_pressure() > highest.pressure {
                 return Ok(false);
@@ -214,20 +190,23 @@ pub(super) struct ConvergedRun {
 
 /// Finds the steps and the meshes; `area` states whether the contact radius has to be resolved.
 pub(super) fn converge(scene: &TrialScene<'_>, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
-    let mut first = grid_with(size, STEPS_ACROSS)?;
+    let mut first = size.grid(STEPS_ACROSS)?;
     if first.cells().into_iter().any(|cells| cells > MOST_TRIAL_CELLS) {
-        first = grid_with(size, LEAST_ACROSS)?;
+        first = size.grid(LEAST_ACROSS)?;
     }
     let punch = scene.has_edge(&first);
     let steps = Steps::find(scene, &first)?;
     let scene = &TrialScene { tolerance: steps.tolerance, ..*scene };
-    let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, size)) {
-        Some(Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. }))) => return Err(error),
-        // the run succeeds without a separate domain for this part
-        Some(law) => Some(law.unwrap_or(ErrorLaw::NONE)),
-        None => None,
-    };
-    let base = scene.repeat(grid_with(size, LEAST_ACROSS)?, &steps.run.steps)?;
+    // a period holds all of its contacts
+    let is_period = size.sides.iter().any(|side| matches!(side, Side::Period(_)));
+    let zoomed =
+        match scene.before_growth(&steps.run).filter(|_| !is_period).map(|until| small_contact(scene, until, size)) {
+            Some(Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. }))) => return Err(error),
+            // the run succeeds without a separate domain for this part
+            Some(law) => Some(law.unwrap_or(ErrorLaw::NONE)),
+            None => None,
+        };
+    let base = scene.repeat(size.grid(LEAST_ACROSS)?, &steps.run.steps)?;
     let left = steps.left_for_mesh(scene.accuracy);
     let meshes = Meshes::refine(scene, size, (base, punch), |meshes| {
         // a pressure on a separate domain does not determine the cells of these meshes
@@ -249,7 +228,7 @@ fn small_contact(scene: &TrialScene<'_>, until: f64, whole: &ContactSize) -> Res
     let (part, size, base) = loop {
         let part = TrialScene { until, ..*scene };
         let (size, base) = ContactSize::of(&part)?
-            .on_growing_domain(|size| Ok((*size, part.follow(grid_with(size, LEAST_ACROSS)?, &[])?)))?;
+            .on_growing_domain(|size| Ok((*size, part.follow(size.grid(LEAST_ACROSS)?, &[])?)))?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
             Some(earlier) => until = earlier,
@@ -257,7 +236,7 @@ fn small_contact(scene: &TrialScene<'_>, until: f64, whole: &ContactSize) -> Res
         }
     };
     let (meshes, bounded) = size.on_growing_domain(|size| {
-        let base = part.repeat(grid_with(size, LEAST_ACROSS)?, &base.steps)?;
+        let base = part.repeat(size.grid(LEAST_ACROSS)?, &base.steps)?;
         let meshes = Meshes::refine(&part, size, (base, false), |meshes| {
             let pressure = meshes.pressure();
             if pressure.converges {
@@ -277,17 +256,4 @@ fn small_contact(scene: &TrialScene<'_>, until: f64, whole: &ContactSize) -> Res
     let larger = [0, 1].map(|axis| whole.width[axis] / size.width[axis]);
     let across = meshes.across * larger[0].max(larger[1]);
     Ok(ErrorLaw { across, ..meshes.pressure() })
-}
-
-/// The next even number of cells without prime factors above 5, for fast transforms.
-fn smooth_size(least: usize) -> usize {
-    let smooth = |mut n: usize| {
-        for factor in [2, 3, 5] {
-            while n.is_multiple_of(factor) {
-                n /= factor;
-            }
-        }
-        n == 1
-    };
-    (least..).find(|&n| n.is_multiple_of(2) && smooth(n)).unwrap_or(least)
 }

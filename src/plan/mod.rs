@@ -3,6 +3,7 @@
 mod accuracy;
 mod builder;
 mod convergence;
+mod domain;
 mod error_law;
 mod steps;
 mod trial_runs;
@@ -37,7 +38,9 @@ use crate::observe::mesh_error::MeshError;
 /// the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
 /// Planning takes as long as several runs on up to 128 cells across the contact. The plan does not include changes to its
-/// builder. Layers and other kernels are not planned.
+/// builder. Other bodies than half-spaces are planned with [`PlanBuilder::kernel`], periodic ones with
+/// [`PlanBuilder::period`] and line contacts with
+/// [`PlanBuilder::line`].
 ///
 /// ```
 /// use viscocontact::prelude::*;

@@ -1,13 +1,16 @@
 //! The scene on coarse meshes: its domain, its steps, and its states.
 
-use crate::Grid;
+use std::cell::RefCell;
+use std::sync::Arc;
+
 use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
 use crate::error::{Error, Result, StepError};
-use crate::extent::Extent;
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
+use crate::plan::domain::{Body, ContactSize, Side};
 use crate::rheology::{Material, TemperatureHistory};
+use crate::{Grid, InfluenceKernel};
 
 /// Cells along a side of the runs that find the domain.
 const DOMAIN_CELLS: usize = 24;
@@ -40,17 +43,11 @@ pub(super) struct TrialScene<'a> {
     pub(super) accuracy: Accuracy,
     /// Tolerance of the steps.
     pub(super) tolerance: f64,
-    /// Called after each step; its error ends the planning.
-    pub(super) progress: &'a dyn Fn(&ViscoelasticContact) -> Result<()>,
-}
-
-/// Size of the contact during a run.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct ContactSize {
-    /// Half sides of the rectangle about the origin that contained the contact.
-    pub(super) reach: [f64; 2],
-    /// Greatest widths of the contact at any one time.
-    pub(super) width: [f64; 2],
+    /// Called with the cells and the time after each step, and after each elastic state; its error ends the planning.
+    pub(super) progress: &'a dyn Fn([usize; 2], f64) -> Result<()>,
+    pub(super) body: Body<'a>,
+    /// Kernels made so far.
+    pub(super) kernels: &'a RefCell<Vec<Arc<InfluenceKernel>>>,
 }
 
 /// A state at the end of a step.
@@ -80,6 +77,11 @@ pub(super) struct Run {
 }
 
 impl Run {
+    /// No steps yet, on a domain with these sides.
+    pub(super) fn on(sides: [Side; 2]) -> Run {
+        Run { size: ContactSize::none(sides), ..Run::default() }
+    }
+
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
         let mesh = contact.mesh_error().unwrap_or_default();
         self.convolutions += report.convolution_equivalents();
@@ -94,56 +96,76 @@ impl Run {
             singular: mesh.map_or(0.0, |error| error.singular),
             resolved: !report.warnings.contains(Warnings::FEW_CELLS),
         });
-        let Some(Extent { low, high }) = contact.extent_of_contact() else { return };
-        let grid = contact.grid();
-        let (first, last) = (grid.center(low[0], low[1]), grid.center(high[0], high[1]));
-        for axis in 0..2 {
-            let (side, ContactSize { reach, width }) = (grid.spacing()[axis], &mut self.size);
-            reach[axis] = reach[axis].max(first[axis].abs().max(last[axis].abs()) + 0.5 * side);
-            width[axis] = width[axis].max((high[axis] + 1 - low[axis]) as f64 * side);
+        if let Some(extent) = contact.extent_of_contact() {
+            self.size.include(contact.grid(), extent);
         }
     }
 }
 
 impl TrialScene<'_> {
-    pub(super) fn builder(&self, grid: Grid) -> Builder {
+    pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
+        let kernel = self.kernel(&grid)?;
         let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
-        let builder = builder.settings(self.accuracy.settings()).times_of(self.history, self.whole);
-        match self.temperature {
+        let builder = builder.kernel(kernel).settings(self.accuracy.settings()).times_of(self.history, self.whole);
+        Ok(match self.temperature {
             Some(temperature) => builder.temperature(temperature.clone()),
             None => builder,
-        }
+        })
     }
 
-    /// Runs on domains of several sizes until the contact fills one well; returns the size of the contact.
+    /// The kernel on a grid, made once.
+    fn kernel(&self, grid: &Grid) -> Result<Arc<InfluenceKernel>> {
+        if let Some(made) = self.kernels.borrow().iter().find(|kernel| kernel.grid() == grid) {
+            return Ok(Arc::clone(made));
+        }
+        let kernel = Arc::new(match self.body.kernel {
+            Some(kernel) => kernel(grid)?,
+            None => InfluenceKernel::half_space(grid)?,
+        });
+        self.kernels.borrow_mut().push(Arc::clone(&kernel));
+        Ok(kernel)
+    }
+
+    /// Finds the contact on domains of several sizes until it fills one well; returns the size of the contact.
     pub(super) fn size(&self) -> Result<ContactSize> {
-        let mut lengths = [self.first_length()?; 2];
+        let sides = self.body.sides;
+        let (is_found, first) = (sides.map(|side| side == Side::Found), self.first_length()?);
+        let mut lengths = sides.map(|side| match side {
+            Side::Found => first,
+            Side::Period(length) | Side::Uniform(length) => length,
+        });
+        let cells = sides.map(|side| if matches!(side, Side::Uniform(_)) { 1 } else { DOMAIN_CELLS });
         for _ in 0..MAX_DOMAINS {
-            match self.follow(Grid::new([DOMAIN_CELLS; 2], lengths)?, &[]) {
-                Err(Error::Step(StepError::ContactAtEdge { .. })) => lengths = lengths.map(|length| 1.7 * length),
-                Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
+            let factors = match self.follow(Grid::new(cells, lengths)?, &[]).map(|run| run.size) {
+                Err(Error::Step(StepError::ContactAtEdge { .. })) => [1.7; 2],
+                Err(Error::NothingToTouch { .. }) => [0.3; 2],
                 Err(error) => return Err(error),
-                Ok(run) => {
-                    let filled = [0, 1].map(|axis| 2.0 * run.size.reach[axis] / lengths[axis]);
-                    if filled.iter().all(|part| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(part)) {
-                        return Ok(run.size);
+                Ok(size) => {
+                    let filled = [0, 1].map(|axis| 2.0 * size.reach[axis] / lengths[axis]);
+                    let fits = |axis: usize| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(&filled[axis]);
+                    if (0..2).all(|axis| !is_found[axis] || fits(axis)) && size.width != [0.0; 2] {
+                        return Ok(size);
                     }
                     let least = 2.0 / DOMAIN_CELLS as f64;
-                    lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
+                    filled.map(|filled| (filled.max(least) * 1.3).clamp(0.1, 1.7))
                 }
+            };
+            if !is_found.contains(&true) {
+                break;
             }
+            lengths = [0, 1].map(|axis| if is_found[axis] { lengths[axis] * factors[axis] } else { lengths[axis] });
         }
         Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
     }
 
     /// The run in steps as long as the scene's tolerance allows; steps also end at the times `stops`.
     pub(super) fn follow(&self, grid: Grid, stops: &[f64]) -> Result<Run> {
-        let mut contact = self.builder(grid).build()?;
+        let mut contact = self.builder(grid)?.build()?;
         let mut follow = contact.follow(self.history, Stepping::adaptive(self.tolerance), self.until).stop_at(stops)?;
-        let mut run = Run::default();
+        let mut run = Run::on(self.body.sides);
         while let Some(report) = follow.next_step()? {
             run.add(follow.contact(), &report);
-            (self.progress)(follow.contact())?;
+            (self.progress)(follow.contact().grid().cells(), report.time)?;
         }
         Ok(run)
     }
@@ -167,12 +189,12 @@ impl TrialScene<'_> {
 
     /// The run in given steps.
     pub(super) fn repeat(&self, grid: Grid, steps: &[(f64, Load)]) -> Result<Run> {
-        let mut contact = self.builder(grid).build()?;
-        let mut run = Run::default();
+        let mut contact = self.builder(grid)?.build()?;
+        let mut run = Run::on(self.body.sides);
         for &(dt, load) in steps {
             let report = advance(&mut contact, dt, load, MAX_HALVINGS)?;
             run.add(&contact, &report);
-            (self.progress)(&contact)?;
+            (self.progress)(contact.grid().cells(), report.time)?;
         }
         Ok(run)
     }
@@ -218,11 +240,15 @@ impl TrialScene<'_> {
         if !compliance.is_finite() {
             compliance = self.material.contact_compliance(0.0);
         }
+        if let Some(Side::Uniform(length)) = self.body.sides.iter().find(|side| matches!(side, Side::Uniform(_))) {
+            force /= length;
+        }
         let lowest = self.geometry.initial_gap(0.0, 0.0);
         let rise = |length: f64| {
-            let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
-            let gaps = around.map(|[x1, x2]| self.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
-            gaps.into_iter().fold(f64::INFINITY, f64::min) - lowest
+            let around = [(0, [1.0, 0.0]), (1, [0.0, 1.0]), (0, [-1.0, 0.0]), (1, [0.0, -1.0])];
+            let found = around.into_iter().filter(|(axis, _)| self.body.sides[*axis] == Side::Found);
+            let gaps = found.map(|(_, [x1, x2])| self.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
+            gaps.fold(f64::INFINITY, f64::min) - lowest
         };
         let depth = |length: f64| {
             let rise = rise(length);

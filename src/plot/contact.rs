@@ -1,11 +1,10 @@
 //! Maps and charts of a contact.
 
-use crate::Axis;
-use crate::ViscoelasticContact;
 use crate::error::Result;
 use crate::output::Field;
 use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
+use crate::{Axis, ViscoelasticContact};
 
 impl Map {
     /// The pressure of a contact, white out of contact; the colour scale begins at zero. A line contact, whose map is a

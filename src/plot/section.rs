@@ -1,12 +1,11 @@
 //! Maps of the stress on a section.
 
-use crate::Axis;
 use crate::error::{Result, exact_length, in_order, least_length};
 use crate::observe::{Stress, StressSection};
 use crate::plot::contact::time_title;
 use crate::plot::map::runs;
 use crate::plot::{Map, Quantity};
-use crate::{Grid, ViscoelasticContact};
+use crate::{Axis, Grid, ViscoelasticContact};
 
 /// Greatest difference of the steps between depths, relative to the first of them.
 const UNEQUAL: f64 = 1e-6;

@@ -2,7 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::ascending::{Ascending, TimeTable};
-use crate::error::{Error, MaterialError, Result, finite, within};
+use crate::error::{MaterialError, Result, finite, positive, within};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
 
@@ -42,7 +42,19 @@ use crate::rheology::TimeTemperature;
 pub struct TemperatureHistory {
     law: TimeTemperature,
     course: Course,
+    ageing: Option<Ageing>,
     rule: GaussLegendre,
+}
+
+/// Times grow as a power of the age.
+#[derive(Debug, Clone, Copy)]
+struct Ageing {
+    /// The shift rate μ.
+    rate: f64,
+    /// Age for which the times of the material hold \[s\].
+    reference: f64,
+    /// Age at time 0 \[s\].
+    start: f64,
 }
 
 #[derive(Clone)]
@@ -81,8 +93,8 @@ impl TemperatureHistory {
         TemperatureHistory::table(law, &[(0.0, temperature)])
     }
 
-    /// The temperature through a `table` of times \[s\] and temperatures \[K\]: linear in between, constant before the first and
-    /// after the last. Two entries at the same time are a jump. A ramp is a table of two.
+    /// The temperature through a `table` of times \[s\] and temperatures \[K\]: linear in between, constant before the
+    /// first and after the last. Two entries at the same time are a jump. A ramp is a table of two.
     ///
     /// # Errors
     /// If there is no entry, a time is not finite or earlier than the one before, or for a temperature as
@@ -93,8 +105,8 @@ impl TemperatureHistory {
         Ok(TemperatureHistory::new(law, Course::Table(checked)))
     }
 
-    /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive steps end there.
-    /// The returned temperatures are checked when they are used.
+    /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive
+    /// steps end there. The returned temperatures are checked when they are used.
     ///
     /// # Errors
     /// If a corner is not finite.
@@ -109,7 +121,37 @@ impl TemperatureHistory {
     }
 
     fn new(law: TimeTemperature, course: Course) -> TemperatureHistory {
-        TemperatureHistory { law, course, rule: GaussLegendre::new(POINTS) }
+        TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS) }
+    }
+
+    /// With physical ageing: a glass that was quenched an age t_e ago has times that grow as (t_e/t_ref)^μ, so that dξ
+    /// = dt/(a_T (t_e/t_ref)^μ) (L. C. E. Struik, *Physical Aging in Amorphous Polymers and Other Materials*, 1978).
+    /// `rate` is μ, about 1 for many glasses; the times of the material hold for the age `reference` \[s\]; at time 0
+    /// its age is `start` \[s\]. Ageing that a change of temperature erases is not modelled.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+    ///
+    /// let law = TimeTemperature::arrhenius(300.0e3, 293.15)?;
+    /// let glass = TemperatureHistory::constant(law, 293.15)?.ageing(1.0, 3600.0, 3600.0)?;
+    /// // with μ = 1 a test creeps by the logarithm of the age: t_ref ln(1 + t/t_e)
+    /// assert!((glass.reduced_time(0.0, 36_000.0)? - 3600.0 * 11.0_f64.ln()).abs() < 1e-9);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If μ is outside \[0, 2\], or an age is not finite and positive.
+    pub fn ageing(self, rate: f64, reference: f64, start: f64) -> Result<TemperatureHistory> {
+        within("shift rate of ageing", rate, (0.0..=2.0).contains(&rate), "in [0, 2]")?;
+        positive("reference age", reference)?;
+        positive("age at the start", start)?;
+        Ok(TemperatureHistory { ageing: Some(Ageing { rate, reference, start }), ..self })
+    }
+
+    /// dξ/dt.
+    pub(crate) fn rate(&self, time: f64) -> Result<f64> {
+        let aged = self.ageing.map_or(1.0, |Ageing { rate, reference, start }| ((start + time) / reference).powf(rate));
+        Ok(1.0 / (self.law.shift_factor(self.at(time))? * aged))
     }
 
     /// The time–temperature law.
@@ -130,8 +172,8 @@ impl TemperatureHistory {
     ///
     /// # Errors
     /// If a time is not finite, `to` is before `from`, the reduced time overflows, a closure is too rough
-    /// ([`MaterialError::RoughTemperature`](crate::rheology::MaterialError::RoughTemperature)), or for a temperature in between as
-    /// [`TimeTemperature::shift_factor`].
+    /// ([`MaterialError::RoughTemperature`](crate::rheology::MaterialError::RoughTemperature)), or for a temperature
+    /// in between as [`TimeTemperature::shift_factor`].
     pub fn reduced_time(&self, from: f64, to: f64) -> Result<f64> {
         finite("start of the reduced time", from)?;
         finite("end of the reduced time", to)?;
@@ -161,12 +203,11 @@ impl TemperatureHistory {
 
     /// Approximate time after `from` in which the reduced time grows by `reduced`; at most `most`.
     pub(crate) fn length_of(&self, from: f64, reduced: f64, most: f64) -> Result<f64> {
-        let rate = |time: f64| Ok::<_, Error>(1.0 / self.law.shift_factor(self.at(time))?);
         let (mut low, mut high) = (0.0, most);
-        let mut length = (reduced / rate(from)?).min(most);
+        let mut length = (reduced / self.rate(from)?).min(most);
         for _ in 0..MAX_TRIALS {
             // temperatures beyond the range of the law are too far
-            let [grown, rate] = match (self.reduced_time(from, from + length), rate(from + length)) {
+            let [grown, rate] = match (self.reduced_time(from, from + length), self.rate(from + length)) {
                 (Ok(grown), Ok(rate)) => [grown, rate],
                 _ => [f64::INFINITY, 0.0],
             };
@@ -190,7 +231,16 @@ impl TemperatureHistory {
         if let Course::Table(table) = &self.course
             && table.is_constant_after(from)
         {
-            return Ok((to - from) / self.law.shift_factor(self.at(from))?);
+            let length = match self.ageing {
+                None => to - from,
+                // ∫ (t_e/t_e0)^(−μ) dt, without cancellation
+                Some(Ageing { rate, start, .. }) => {
+                    let (age, power) = (start + from, 1.0 - rate);
+                    let grown = ((to - from) / age).ln_1p();
+                    age * if power == 0.0 { grown } else { (power * grown).exp_m1() / power }
+                }
+            };
+            return Ok(length * self.rate(from)?);
         }
         self.halved(from, to)
     }
@@ -231,8 +281,8 @@ impl TemperatureHistory {
 
     fn quadrature(&self, from: f64, to: f64) -> Result<f64> {
         let mut invalid = None;
-        let sum = self.rule.integrate(from, to, |time| match self.law.shift_factor(self.at(time)) {
-            Ok(factor) => 1.0 / factor,
+        let sum = self.rule.integrate(from, to, |time| match self.rate(time) {
+            Ok(rate) => rate,
             Err(error) => {
                 invalid.get_or_insert(error);
                 0.0
@@ -256,6 +306,9 @@ impl fmt::Debug for TemperatureHistory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = f.debug_struct("TemperatureHistory");
         debug.field("law", &self.law);
+        if let Some(ageing) = &self.ageing {
+            debug.field("ageing", ageing);
+        }
         match &self.course {
             Course::Table(table) => debug.field("table", table).finish(),
             Course::Function { corners, .. } => debug.field("corners", &corners.as_slice()).finish_non_exhaustive(),

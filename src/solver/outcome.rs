@@ -84,8 +84,8 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Finds the rounding of the gap from `guess_rounding`, the rounding of the guess, and writes the relative residual and its rounding to `solution`,
-    /// the residual to its trace, too. The step judges convergence and warns of rounding by them.
+    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `guess_rounding` is the rounding
+    /// of the guess. The step judges convergence and warns of rounding by them.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, guess_rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.displacement_rounding(&solution.pressure) + guess_rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations

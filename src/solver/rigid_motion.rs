@@ -1,8 +1,7 @@
 //! The rigid motion of a body: the modes that a load leaves free, and the balance of force and moments of each free mode.
 
-use crate::Grid;
-use crate::linalg;
 use crate::parallel::Rows;
+use crate::{Grid, linalg};
 
 /// The motions ω + α1 ξ1 + α2 ξ2 of one body that a load leaves free, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and

@@ -15,8 +15,9 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
-/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every step adds a group at
-/// most; groups with the same past merge. A step allocates nothing unless there are more groups than ever before.
+/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every
+/// step adds a group at most; groups with the same past merge. A step allocates nothing unless there are more groups
+/// than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
     scene: Arc<Scene>,
@@ -61,7 +62,8 @@ impl StatesContact {
     /// An undisturbed contact of a material on the surface of these states.
     ///
     /// # Errors
-    /// If the material has no exponential series ([`Material::fitted`] gives it one), or another Poisson's ratio than the layer of the sweep.
+    /// If the material has no exponential series ([`Material::fitted`] gives it one), or another Poisson's ratio than
+    /// the layer of the sweep.
     pub fn new(states: &Arc<ElasticStates>, material: &Material) -> Result<StatesContact> {
         material.validate()?;
         if let Some(poisson) = states.poisson {
@@ -88,12 +90,15 @@ impl StatesContact {
         self
     }
 
-    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last one, and added to the states of
-    /// this contact. Steps then agree with those of a [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also under a given approach, in area
-    /// to the cell. Without it, the approach and the level under a given approach err by the interpolation of the sweep; the level under a given force does not err.
+    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last
+    /// one, and added to the states of this contact. Steps then agree with those of a
+    /// [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also under a given
+    /// approach, in area to the cell. Without it, the approach and the level under a given approach err by the
+    /// interpolation of the sweep; the level under a given force does not err.
     ///
     /// # Errors
-    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of [`Builder::build`](crate::contact::Builder::build).
+    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
+    /// [`Builder::build`](crate::contact::Builder::build).
     pub fn with_exact_states(mut self) -> Result<StatesContact> {
         let elastic = self.states.elastic_contact()?;
         Arc::make_mut(&mut self.scene).elastic = Some(Arc::new(Mutex::new(elastic)));
@@ -103,9 +108,9 @@ impl StatesContact {
     /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
     ///
     /// # Errors
-    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another load point than the sweep, needs a
-    /// state beyond it, or a group of levels leaves its order; if `dt` = 0 and the body has no elastic response, or the time is beyond the
-    /// material's. A step that fails changes nothing.
+    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
+    /// load point than the sweep, needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the
+    /// body has no elastic response, or the time is beyond the material's. A step that fails changes nothing.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StatesReport> {
         self.step_to(self.time + dt, dt, load)
     }
@@ -167,8 +172,8 @@ impl StatesContact {
         }
     }
 
-    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they were, bitwise, with exact
-    /// states to the tolerance of the solver.
+    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they
+    /// were, bitwise, with exact states to the tolerance of the solver.
     ///
     /// # Errors
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
@@ -273,8 +278,9 @@ impl StatesContact {
         self.states.stiffness(self.levels.level)
     }
 
-    /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its traction w_i \[Pa\]. With
-    /// p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) − p_e(l_i−1)), l_0 = 0.
+    /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its
+    /// traction w_i \[Pa\]. With p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) −
+    /// p_e(l_i−1)), l_0 = 0.
     pub fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.levels.groups().map(|(top, traction, _)| (top, traction)).take_while(|(top, _)| *top <= self.levels.level)
     }

@@ -8,13 +8,11 @@ use crate::contact::Builder;
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
 use crate::states::elastic::Solved;
+use crate::states::interpolation::{hermite, hermite_slope, root, slope_of_parabola};
 use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-12;
-/// Upper limit of the steps of Newton's method.
-const MAX_STEPS: usize = 100;
-
 /// An elastic contact of unit compliance at one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -26,8 +24,8 @@ pub struct ElasticState {
     pub approach: f64,
     /// Tilt along x1 and x2 \[rad\].
     pub tilt: [f64; 2],
-    /// Stiffness over the contact modulus, dl/dy for a motion of the body without tilt \[m\]: 2a for a circle of radius a. Infinite on periodic
-    /// bodies in full contact.
+    /// Stiffness over the contact modulus, dl/dy for a motion of the body without tilt \[m\]: 2a for a circle of
+    /// radius a. Infinite on periodic bodies in full contact.
     pub stiffness: f64,
     /// Contact area, fractions of cells included \[m²\].
     pub area: f64,
@@ -39,8 +37,8 @@ pub struct ElasticState {
 
 /// The elastic states of one contact, by ascending level, from a [`Sweep`](crate::states::Sweep).
 ///
-/// Between states the logarithm of the approach is a cubic of the logarithm of the level, and area and tilt are linear in it; below the
-/// first state the approach is a power of the level.
+/// Between states the logarithm of the approach is a cubic of the logarithm of the level, and area and tilt are linear
+/// in it; below the first state the approach is a power of the level.
 #[derive(Clone)]
 pub struct ElasticStates {
     pub(crate) states: Vec<ElasticState>,
@@ -107,8 +105,9 @@ impl ElasticStates {
         elastic
     }
 
-    /// States of an upright body from a table of (level \[m²\], approach \[m\], stiffness over the modulus \[m\], contact area \[m²\]), as of a closed form or of
-    /// another program. The approach is measured from the first touch, and the contact is taken to grow only.
+    /// States of an upright body from a table of (level \[m²\], approach \[m\], stiffness over the modulus \[m\],
+    /// contact area \[m²\]), as of a closed form or of another program. The approach is measured from the first touch,
+    /// and the contact is taken to grow only.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -192,7 +191,8 @@ impl ElasticStates {
         &self.states
     }
 
-    /// Greatest error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle of two others.
+    /// Greatest error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle
+    /// of two others.
     pub fn interpolation_error(&self) -> f64 {
         self.error
     }
@@ -202,7 +202,8 @@ impl ElasticStates {
         self.grid.as_ref()
     }
 
-    /// The level from which the contact only grows as the load grows \[m²\]: contacts of a level between 0 and this one are refused.
+    /// The level from which the contact only grows as the load grows \[m²\]: contacts of a level between 0 and this
+    /// one are refused.
     pub fn first_level(&self) -> f64 {
         self.first_level
     }
@@ -264,8 +265,8 @@ impl ElasticStates {
         hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
     }
 
-    /// Error of the interpolation at a state, in ln δ: of the depth, or, where stiffnesses give slopes, an eighth of the slope's over the
-    /// interval. A kink between two states shows in the slope where the depth happens to agree.
+    /// Error of the interpolation at a state, in ln δ: of the depth, or, where stiffnesses give slopes, an eighth of
+    /// the slope's over the interval. A kink between two states shows in the slope where the depth happens to agree.
     pub(super) fn error_at(&self, state: &ElasticState) -> f64 {
         let (level, depth) = (state.level.ln(), self.depth_of(state));
         let value = (self.depth(state.level) / depth).ln().abs();
@@ -329,8 +330,8 @@ impl ElasticStates {
         self.rest.approach + self.depth(level)
     }
 
-    /// The level of the elastic contact at an approach of the load point \[m²\]: 0 without contact, NaN beyond the last state. An elastic body of contact
-    /// modulus E* carries the force E* times it.
+    /// The level of the elastic contact at an approach of the load point \[m²\]: 0 without contact, NaN beyond the
+    /// last state. An elastic body of contact modulus E* carries the force E* times it.
     pub fn level_at(&self, approach: f64) -> f64 {
         self.level_where(0.0, approach - self.rest.approach)
     }
@@ -345,9 +346,9 @@ impl ElasticStates {
         self.linear(level, |state| state.stiffness, Some(1.0 / 3.0))
     }
 
-    /// Conductance of the contact of two conductors of resistivities ρ₁ and ρ₂, electrical \[Ω m → S\] or thermal
-    /// \[m K/W → W/K\]: 2 S/(E* (ρ₁ + ρ₂)), with S/E* the stiffness over the modulus (J. R. Barber, Proc. R. Soc. A 459, 2003). Exact for
-    /// half-spaces that conduct through the contact alone.
+    /// Conductance of the contact of two conductors of resistivities ρ₁ and ρ₂, electrical \[Ω m → S\] or thermal \[m
+    /// K/W → W/K\]: 2 S/(E* (ρ₁ + ρ₂)), with S/E* the stiffness over the modulus (J. R. Barber, Proc. R. Soc. A 459,
+    /// 2003). Exact for half-spaces that conduct through the contact alone.
     pub fn conductance(&self, level: f64, resistivities: [f64; 2]) -> f64 {
         2.0 * self.stiffness(level) / resistivities.iter().sum::<f64>()
     }
@@ -361,52 +362,6 @@ pub(super) fn load_point(tilt: &[Tilt; 2]) -> [f64; 2] {
 /// Approach of a point of the body.
 pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64 {
     approach + tilt[0] * point[0] + tilt[1] * point[1]
-}
-
-/// The root of a rising function, given with its slope: Newton's steps from the upper end, halved intervals where one leaves the bracket.
-fn root([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> [f64; 2]) -> f64 {
-    let mut s = high;
-    for _ in 0..MAX_STEPS {
-        let [excess, slope] = at(s);
-        if excess > 0.0 {
-            high = s
-        } else {
-            low = s
-        }
-        let next = s - excess / slope;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - s).abs() <= f64::EPSILON * s.abs().max(1.0) {
-            break;
-        }
-        s = next;
-    }
-    s
-}
-
-/// Cubic with the values `f` and slopes `m` at 0 and 1.
-fn hermite([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f64 {
-    let (r, d) = (1.0 - s, f1 - f0);
-    f0 + s * d + s * r * (r * (m0 - d) - s * (m1 - d))
-}
-
-/// Its slope.
-fn hermite_slope([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f64 {
-    let (r, d) = (1.0 - s, f1 - f0);
-    d + (r - s) * (r * (m0 - d) - s * (m1 - d)) - s * r * (m0 + m1 - 2.0 * d)
-}
-
-/// Slope at `x` of the parabola through three points, of the line through two, 1 for fewer.
-fn slope_of_parabola(points: impl Iterator<Item = [f64; 2]>, x: f64) -> f64 {
-    let points: Vec<[f64; 2]> = points.collect();
-    let chord = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
-    match points[..] {
-        [a, b, c] => {
-            let [first, second] = [chord(a, b), chord(b, c)];
-            first + (second - first) / (c[0] - a[0]) * (2.0 * x - a[0] - b[0])
-        }
-        [a, b] => chord(a, b),
-        _ => 1.0,
-    }
 }
 
 impl fmt::Debug for ElasticStates {

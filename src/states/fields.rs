@@ -18,8 +18,9 @@ pub struct StatesFields {
 }
 
 impl StatesContact {
-    /// The pressure \[Pa\] from the states that the sweep kept ([`Sweep::keep_pressures`](crate::states::Sweep::keep_pressures)), linear in the level
-    /// between them: one value for each cell of the grid.
+    /// The pressure \[Pa\] from the states that the sweep kept
+    /// ([`Sweep::keep_pressures`](crate::states::Sweep::keep_pressures)), linear in the level between them: one value
+    /// for each cell of the grid.
     ///
     /// # Errors
     /// [`StatesError::NoPressures`] if none were kept.
@@ -42,7 +43,8 @@ impl StatesContact {
     /// All fields, exact: by an elastic contact at the level of each group, from the smallest to the largest.
     ///
     /// # Errors
-    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
+    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
+    /// [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
     pub fn fields(&self) -> Result<StatesFields> {
         let states = self.states();
         let mut elastic = states.elastic_contact()?;

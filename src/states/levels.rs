@@ -15,8 +15,8 @@ const GROUPS: usize = 256;
 pub(super) enum Demand {
     /// A force \[N\].
     Force(f64),
-    /// A depth of the load point below the first touch of the undisturbed bodies \[m\], which a spring of the compliance `give` \[m/N\] prescribes:
-    /// depth less give times force; 0 for a given approach.
+    /// A depth of the load point below the first touch of the undisturbed bodies \[m\], which a spring of the
+    /// compliance `give` \[m/N\] prescribes: depth less give times force; 0 for a given approach.
     Depth { depth: f64, give: f64 },
 }
 
@@ -107,8 +107,8 @@ impl Levels {
         self.history.reset_differences();
     }
 
-    /// The level up to which groups are held at the end of a step, and the sum δ(c) + `give` c/C_Δ that a demand for a depth finds it by.
-    /// Changes nothing that steps are made of.
+    /// The level up to which groups are held at the end of a step, and the sum δ(c) + `give` c/C_Δ that a demand for a
+    /// depth finds it by. Changes nothing that steps are made of.
     pub(super) fn wanted(
         &mut self,
         states: &ElasticStates,
@@ -181,8 +181,8 @@ impl Levels {
         self.bottom(self.groups.len()).0 + (force - carried) * compliance
     }
 
-    /// The level c up to which groups are held where D(c) + `give` Σ (1 − W) Δl = `depth`, with D(c) = δ(c) + Σ W Δδ above c; NaN
-    /// beyond the sweep.
+    /// The level c up to which groups are held where D(c) + `give` Σ (1 − W) Δl = `depth`, with D(c) = δ(c) + Σ W Δδ
+    /// above c; NaN beyond the sweep.
     fn level_of_depth(&self, states: &ElasticStates, give: f64, depth: f64) -> Wanted {
         let mut reached: f64 =
             self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum();

@@ -1,17 +1,17 @@
 //! A creeping contact from its own elastic states, a thousand times cheaper than step by step in space.
 //!
-//! Let p_e(x; l) and y_e(l) be the pressure and the motions of the *elastic* contact of unit compliance under the load l, the *level*. Where this contact
-//! only grows with l, the creeping contact is, in every history of force or approach, with separation and renewed contact, a
-//! superposition of its elastic states:
+//! Let p_e(x; l) and y_e(l) be the pressure and the motions of the *elastic* contact of unit compliance under the load
+//! l, the *level*. Where this contact only grows with l, the creeping contact is, in every history of force or
+//! approach, with separation and renewed contact, a superposition of its elastic states:
 //!
 //! ```text
 //! p(x, t) = ∫₀ᶜ w(l, t) dp_e(x; l),    A(t) = A_e(c(t)),    W = C ∗ dw
 //! F(t)    = ∫₀ᶜ w(l, t) dl,            y(t) = ∫ W(l, t) dy_e(l)
 //! ```
 //!
-//! Levels below c(t) are held at W = 1, those above are free, w = 0. So the surface is solved once ([`Sweep`]), and every material, history and
-//! temperature after that costs a recursion on numbers ([`StatesContact`]). Ting (1966, 1968) and Graham (1967) have this for contacts of one
-//! parameter; docs/methods.md proves it for every shape.
+//! Levels below c(t) are held at W = 1, those above are free, w = 0. So the surface is solved once ([`Sweep`]), and
+//! every material, history and temperature after that costs a recursion on numbers ([`StatesContact`]). Ting (1966,
+//! 1968) and Graham (1967) have this for contacts of one parameter; docs/methods.md proves it for every shape.
 //!
 //! | covered | not covered: [`ViscoelasticContact`](crate::ViscoelasticContact) |
 //! |---|---|
@@ -42,6 +42,7 @@ mod contact;
 mod curve;
 mod elastic;
 mod fields;
+mod interpolation;
 mod levels;
 mod pressed;
 mod run;

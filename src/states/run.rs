@@ -19,7 +19,8 @@ const ALLOWED: f64 = 0.3;
 /// Order of a corrected step, so that two halves err by a seventh of their difference to the whole.
 const ORDER: f64 = 3.0;
 
-/// A run of a [`StatesContact`] along a load history, made by [`StatesContact::follow`]. Each call of [`StatesRun::next_step`] takes one step.
+/// A run of a [`StatesContact`] along a load history, made by [`StatesContact::follow`]. Each call of
+/// [`StatesRun::next_step`] takes one step.
 ///
 /// Adaptive steps are taken whole and in two halves; the difference is the error of the step, and the halves are kept.
 ///
@@ -183,12 +184,12 @@ impl<'a> StatesRun<'a> {
         })
     }
 
-    /// Takes the next step and returns its report, or `None` at the end of the run. At the start, and where the history jumps, a step of length
-    /// zero applies the new load; steps end at corners and jumps.
+    /// Takes the next step and returns its report, or `None` at the end of the run. At the start, and where the
+    /// history jumps, a step of length zero applies the new load; steps end at corners and jumps.
     ///
     /// # Errors
-    /// If the end of the run, the fixed step or the tolerance is not allowed, the history returns an invalid load, or a step fails
-    /// ([`StatesContact::step`]).
+    /// If the end of the run, the fixed step or the tolerance is not allowed, the history returns an invalid load, or
+    /// a step fails ([`StatesContact::step`]).
     pub fn next_step(&mut self) -> Result<Option<StatesReport>> {
         self.stepped = false;
         let report = self.take_step()?;
@@ -226,8 +227,8 @@ impl<'a> StatesRun<'a> {
         Ok(Some(report))
     }
 
-    /// The contact at a time within the last step, its ends included, under the load of the history at that time: as exact as the steps of the
-    /// run.
+    /// The contact at a time within the last step, its ends included, under the load of the history at that time: as
+    /// exact as the steps of the run.
     ///
     /// # Errors
     /// If the time does not lie within the last step, the load of the history there is invalid, or the step to it fails.

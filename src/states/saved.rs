@@ -27,8 +27,9 @@ struct Saved<'a> {
 const KIND: &str = "elastic states";
 
 impl StatesContact {
-    /// Saves the whole state to a file, from which a contact of the same states and material continues ([`StatesContact::resume`]) by the same
-    /// steps, bitwise. The file is complete when this returns; until then, what was there before is not touched.
+    /// Saves the whole state to a file, from which a contact of the same states and material continues
+    /// ([`StatesContact::resume`]) by the same steps, bitwise. The file is complete when this returns; until then,
+    /// what was there before is not touched.
     ///
     /// Needs the feature `checkpoint`.
     ///
@@ -49,7 +50,8 @@ impl StatesContact {
     /// Needs the feature `checkpoint`.
     ///
     /// # Errors
-    /// If the file cannot be read, is damaged, of another format or of another contact ([`Error::Checkpoint`]); the contact is then as it was.
+    /// If the file cannot be read, is damaged, of another format or of another contact ([`Error::Checkpoint`]); the
+    /// contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let saved = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source })?;

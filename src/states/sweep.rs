@@ -27,8 +27,9 @@ pub enum Reach {
 
 /// Finds the elastic states of a shape on a body, each by the stepper with an elastic body of unit compliance.
 ///
-/// A first pass takes levels that double. Then a state is added in the middle, in ln l, of two others, and more beside it where depth or slope differ from
-/// their interpolation by more than the accuracy times √(δ δ_last): small contacts have few cells, whose own error is larger. A sweep costs about as much as so many jumps of the load.
+/// A first pass takes levels that double. Then a state is added in the middle, in ln l, of two others, and more beside
+/// it where depth or slope differ from their interpolation by more than the accuracy times √(δ δ_last): small contacts
+/// have few cells, whose own error is larger. A sweep costs about as much as so many jumps of the load.
 #[derive(Debug, Clone)]
 #[must_use = "a sweep does nothing until it is run"]
 pub struct Sweep {
@@ -108,14 +109,15 @@ impl Sweep {
     /// Runs the sweep.
     ///
     /// # Errors
-    /// Those of [`Builder::build`] and [`ViscoelasticContact::step`]; [`StatesError::Shrinks`] if the pressure falls somewhere while the load
-    /// grows; if the accuracy is outside \[1e-8, 0.1\], or the reach is not finite and positive.
+    /// Those of [`Builder::build`] and [`ViscoelasticContact::step`]; [`StatesError::Shrinks`] if the pressure falls
+    /// somewhere while the load grows; if the accuracy is outside \[1e-8, 0.1\], or the reach is not finite and
+    /// positive.
     pub fn run(self, to: Reach) -> Result<Arc<ElasticStates>> {
         self.run_with(to, |_| ControlFlow::Continue(()))
     }
 
-    /// As [`Sweep::run`], calling `progress` after each state with all states so far, in the order of their solution; it may end the sweep early, with the
-    /// states that it has then.
+    /// As [`Sweep::run`], calling `progress` after each state with all states so far, in the order of their solution;
+    /// it may end the sweep early, with the states that it has then.
     ///
     /// # Errors
     /// As [`Sweep::run`].

@@ -1,7 +1,6 @@
 //! The memory that a builder predicts, against the bytes that are allocated.
 
-use crate::common::figures;
-use crate::common::{builder_on, elastic, maxwell};
+use crate::common::{builder_on, elastic, figures, maxwell};
 use std::alloc::System;
 use std::sync::Arc;
 

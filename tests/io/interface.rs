@@ -5,9 +5,8 @@ use std::error::Error as _;
 use std::io;
 
 use crate::common::{maxwell, sphere_on};
-use viscocontact::Error;
 use viscocontact::rheology::{Experiment, Units};
-use viscocontact::{FileError, TextFormat};
+use viscocontact::{Error, FileError, TextFormat};
 
 /// Names that the prelude leaves to others: an ambiguous one would not compile.
 mod names {

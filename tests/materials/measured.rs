@@ -6,10 +6,9 @@ mod units;
 
 use crate::common::{noise, sphere_on};
 use approx::assert_abs_diff_eq;
-use viscocontact::Error;
-use viscocontact::Result;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
+use viscocontact::{Error, Result};
 
 fn log_spaced(first: f64, last: f64, a_decade: usize) -> Vec<f64> {
     let count = ((last / first).log10() * a_decade as f64).round() as usize;

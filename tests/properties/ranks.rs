@@ -6,8 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::common::any_scene::{AnyScene, Course, Stepper};
-use crate::common::chosen_scenes;
-use crate::common::{Temporary, from_environment};
+use crate::common::{Temporary, chosen_scenes, from_environment};
 use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::Threads;
 use viscocontact::prelude::*;

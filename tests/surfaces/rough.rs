@@ -1,7 +1,6 @@
 //! Rough surfaces on periodic bodies: the work of the solver, and published results.
 
-use crate::common::figures;
-use crate::common::{E_STAR, G, builder_of, elastic};
+use crate::common::{E_STAR, G, builder_of, elastic, figures};
 use std::sync::Arc;
 
 use crate::common::rough::self_affine;

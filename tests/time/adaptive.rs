@@ -1,8 +1,7 @@
 //! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
 
-use crate::common::figures;
 use crate::common::histories::{Scene, scenes};
-use crate::common::{RADIUS, builder_on, contact_of, elastic, maxwell};
+use crate::common::{RADIUS, builder_on, contact_of, elastic, figures, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;

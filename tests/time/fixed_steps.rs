@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::figures;
-use crate::common::sphere_on;
+use crate::common::{figures, sphere_on};
 use viscocontact::prelude::*;
 
 /// Approach, or force where the approach is given, at every multiple of `dt` by steps of that over `parts`, and the greatest

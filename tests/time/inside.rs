@@ -408,7 +408,8 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std:
 }
 
 /// States within the steps of adaptive runs err by at most twice what was asked for, and greatest pressures by twice what the
-/// budget states: or as the ends of the steps do, where those err by more.
+/// budget states: or as the ends of the steps do, where those err by more. Areas err by at most three times what the budget
+/// states: a cell is met too early or too late at few of the moments looked at, seldom at an end.
 ///
 /// A body without elastic response answers each cell that it meets with a finite pressure at once, and the step control passes
 /// over events shorter than its resolution: of such bodies the approach is compared alone.
@@ -418,7 +419,7 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
     let first = from_environment("INSIDE_FIRST", 0);
     let lines = from_environment("INSIDE_LINES", 0) > 0;
     let mut all: [[Ratios; 5]; 2] = Default::default();
-    let (mut worse, mut failed, mut beyond) = ([0; 5], 0, 0);
+    let (mut worse, mut failed, mut beyond, mut of_area) = ([0; 4], 0, 0, 0);
     for number in first..first + scenes {
         let inside = Inside::new(seed, number);
         for tolerance in [1e-3, 1e-4] {
@@ -436,6 +437,7 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
             }
             let [within, ends] = errors;
             beyond += usize::from(within[..3].iter().any(|&error| error > 2.0));
+            of_area += usize::from(within[4] > 3.0);
             if lines || within.iter().any(|&error| error > 2.0) {
                 println!("{within:.2?}, ends {ends:.2?} {name}");
             }
@@ -454,8 +456,9 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
     }
     let runs = all[0][0].count() + failed;
     println!("{beyond} of {runs} runs are beyond 2 in approach, force or tilt within steps");
+    println!("{of_area} of {runs} runs are beyond 3 in area within steps");
     println!("{failed} of {runs} runs failed; worse within steps than at their ends, of each quantity: {worse:?}");
     // three times as many looks see more of the moments just before a cell joins or leaves
     assert!(failed == 0 && worse.iter().all(|worse| 100 * worse <= runs));
-    assert!(100 * beyond <= 4 * runs);
+    assert!(100 * beyond <= 2 * runs && 100 * of_area <= runs);
 }

@@ -6,11 +6,10 @@ use crate::common::{builder_of, builder_on};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use viscocontact::Error;
-use viscocontact::Result;
 use viscocontact::geometry::Sum;
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::prelude::*;
+use viscocontact::{Error, Result};
 
 const LENGTH: f64 = 4.0e-3;
 const DT: f64 = 0.1;

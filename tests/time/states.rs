@@ -101,7 +101,8 @@ fn retracted_and_sprung_paraboloids_match_the_tables() {
     }
 }
 
-/// An ellipsoid, a pyramid and a rough tip, retracted and driven by a spring: the stepper in space and the states agree, by the default rule.
+/// An ellipsoid, a pyramid and a rough tip, retracted and driven by a spring: the stepper in space and the states
+/// agree, by the default rule.
 #[test]
 fn any_shape_is_retracted_and_sprung_as_its_states() {
     let grid = Grid::square(32, 1.0).unwrap();
@@ -227,7 +228,8 @@ impl Scene {
     }
 }
 
-/// Pressures, motions and cells of both, step by step, in histories of force or approach with jumps, holds, separation and renewed contact.
+/// Pressures, motions and cells of both, step by step, in histories of force or approach with jumps, holds, separation
+/// and renewed contact.
 #[test]
 fn random_contacts_are_superpositions_of_their_elastic_states() {
     let (mut compared, mut refused, mut apart, mut interpolated, mut worst) = (0, 0, 0, 0.0, [0.0; 2]);
@@ -262,7 +264,7 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
         let (by_force, by_spring) = (draws.chance(0.5), draws.chance(0.5));
         let softer = draws.power_of_ten(-2.0, 2.0);
         // under a given force the level is exact without it
-        let exact = !by_force || draws.chance(0.3);
+        let exact = !by_force || number % 3 == 0;
         if exact {
             contact = contact.with_exact_states().unwrap();
         }

@@ -6,10 +6,9 @@ use viscocontact::observe::Stress;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-use crate::common::figures;
 use crate::common::random_bodies::random_body;
 use crate::common::refused::field;
-use crate::common::{Draws, builder_on};
+use crate::common::{Draws, builder_on, figures};
 
 const REFERENCE: f64 = 300.0;
 
@@ -32,6 +31,38 @@ fn settings() -> Settings {
 fn close(value: f64, expected: f64, within: f64, what: &str) {
     let equal = relative_eq!(value, expected, epsilon = 0.0, max_relative = within);
     assert!(equal, "{what}: {value:e}, expected {expected:e}");
+}
+
+/// ∫ (t_e/t_ref)^(−μ) dt in closed form, at a constant temperature and, through the quadrature, at one that varies by nothing.
+#[test]
+fn ageing_bodies_creep_in_the_time_of_struik() {
+    for (rate, start) in [(0.0, 10.0), (0.5, 10.0), (0.7, 1.0e3), (1.0, 1.0), (1.0, 1.0e7)] {
+        let reference = 100.0;
+        let constant = TemperatureHistory::constant(wlf(), REFERENCE).unwrap();
+        let function = TemperatureHistory::function(wlf(), |_| REFERENCE, &[]).unwrap();
+        let primitive = |age: f64| {
+            let shift: f64 = 1.0 - rate;
+            if shift == 0.0 { reference * age.ln() } else { reference * (age / reference).powf(shift) / shift }
+        };
+        for (from, to) in [(0.0, 1.0), (5.0, 2.0e3), (0.0, 1.0e6)] {
+            let expected = primitive(start + to) - primitive(start + from);
+            for history in [&constant, &function] {
+                let aged = history.clone().ageing(rate, reference, start).unwrap();
+                let rounding = 1e-15 * primitive(start + to).abs() / expected;
+                close(aged.reduced_time(from, to).unwrap(), expected, 1e-12 + rounding, "ageing");
+            }
+        }
+        // from nothing to nothing, without cancellation
+        let aged = constant.ageing(rate, reference, start).unwrap();
+        let short = 1e-6 * (start / reference).powf(-rate);
+        close(aged.reduced_time(0.0, 1e-6).unwrap(), short, 1e-6 / start, "a short time");
+    }
+    let constant = || TemperatureHistory::constant(wlf(), REFERENCE).unwrap();
+    for (rate, reference, start) in
+        [(-0.1, 1.0, 1.0), (2.1, 1.0, 1.0), (f64::NAN, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 0.0)]
+    {
+        assert!(constant().ageing(rate, reference, start).is_err());
+    }
 }
 
 #[test]

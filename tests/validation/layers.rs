@@ -8,12 +8,10 @@
 //! f = 2E*δ for a flat punch and 2E*(δ − x²/R) for a paraboloid, whose pressure ends smoothly where φ(a) = 0. The
 //! force is ∫₀ᵃ φ ds. L is the textbook's fraction here, nothing is shared with the crate.
 
-use crate::common::builder_of;
+use crate::common::{builder_of, figures, gauss};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::figures;
-use crate::common::gauss;
 use crate::common::rolling::eliminate;
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;

@@ -8,6 +8,7 @@ mod mesh_error;
 mod oscillation;
 mod paper_figures;
 mod plan;
+mod plan_kernels;
 mod plan_random;
 mod plane;
 mod rolling;

@@ -2,9 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::figures;
 use crate::common::histories::{four_terms, triangle};
-use crate::common::{RADIUS, contact_of, elastic, maxwell};
+use crate::common::{RADIUS, contact_of, elastic, figures, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};

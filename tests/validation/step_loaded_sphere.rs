@@ -1,8 +1,7 @@
 //! The paper's scene against its Table 1: the figures that the README claims.
 
-use crate::common::StepLoadedSphere;
-use crate::common::figures;
 use crate::common::step_loaded_sphere::errors;
+use crate::common::{StepLoadedSphere, figures};
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 

@@ -125,8 +125,8 @@ impl Builder {
     /// load that breaks the symmetry makes the contact compute the mirror images too: the memory for these is returned with
     /// symmetry set to false. A gap for which there is no memory counts as asymmetric.
     ///
-    /// A series of the material over [`Builder::times`] is fitted for this, in a tenth of a second. The threads are those of the
-    /// pool of the call. For a contact that [ranks](crate::parallel) share out, the local rows count; all ranks must call.
+    /// A series of the material over [`Builder::times`] is fitted for this, in a tenth of a second. The pool of the call
+    /// gives the threads. For a contact that [ranks](crate::parallel) share out, the local rows count; all ranks must call.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -48,9 +48,8 @@ impl Times {
         if self.of_run {
             if let Some(history) = temperature {
                 let slowest = (0..=TEMPERATURES).try_fold(f64::INFINITY, |least: f64, k| {
-                    let factor =
-                        history.law().shift_factor(history.at(last * f64::from(k) / f64::from(TEMPERATURES)))?;
-                    Ok::<_, Error>(least.min(1.0 / factor))
+                    let rate = history.rate(last * f64::from(k) / f64::from(TEMPERATURES))?;
+                    Ok::<_, Error>(least.min(rate))
                 })?;
                 (first, last) = (first * slowest, history.reduced_time(0.0, last)?);
             }

@@ -3,7 +3,6 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::Grid;
 use crate::contact::indenter::even_axes;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
 use crate::contact::{Indenter, Region, Settings, Solver, State, Trial};
@@ -11,9 +10,9 @@ use crate::error::{Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary::History;
 use crate::kernel::InfluenceKernel;
-use crate::memory;
 use crate::parallel::Rows;
 use crate::solver::{Bands, Extension};
+use crate::{Grid, memory};
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
 ///

@@ -8,9 +8,9 @@ use crate::contact::run::progress::Autosave;
 use crate::error::Result;
 
 impl Run<'_> {
-    /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
-    /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
-    /// with the next run of the same stepping as if nothing had happened, bitwise. Where [ranks](crate::parallel) share out the
+    /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end. An interruption loses
+    /// no more than that. A contact that is built alike resumes from the file ([`ViscoelasticContact::resume`]): the next run of
+    /// the same stepping takes the same steps, bitwise. Where [ranks](crate::parallel) share out the
     /// contact, all of them save when the time has passed on one.
     ///
     /// Needs the feature `checkpoint`.

@@ -13,7 +13,7 @@ use crate::parallel::Rows;
 /// Values that ranks bring at a time, or one row where that is more.
 const PIECE: usize = 1 << 16;
 
-/// Writes fields to the file that rank 0 has. A rank goes on when writing has failed, as others wait for what it brings.
+/// Writes fields to the file of rank 0. A rank continues after writing has failed, since the others wait for its rows.
 pub(super) struct FieldWriter<'a> {
     out: Option<Output<'a>>,
     written: io::Result<()>,

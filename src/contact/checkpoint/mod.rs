@@ -90,10 +90,10 @@ impl ViscoelasticContact {
     /// kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance, iterations, edge,
     /// memory), not in the rest. Where an indenter has moved, it is where it was.
     ///
-    /// Scenes are compared by sums over gap and influence, the rigid body that each cell belongs to, and materials by their series, or by their compliance at eight times a decade
-    /// where they have none: closures that agree there cannot be told apart. A run along a history that saved it
-    /// ([`Run::autosave_to`](crate::contact::Run::autosave_to)) goes on where it was with the next
-    /// [`ViscoelasticContact::follow`].
+    /// Scenes are compared by sums over gap and influence and by the rigid body of each cell. Materials are compared by their
+    /// series, or, without a series, by their compliance at eight times a decade; closures with equal values there count as
+    /// equal. A run along a history that saved the contact ([`Run::autosave_to`](crate::contact::Run::autosave_to)) resumes with
+    /// the next [`ViscoelasticContact::follow`].
     ///
     /// Needs the feature `checkpoint`.
     ///

@@ -30,7 +30,7 @@ pub(crate) struct Built {
     creep: OnceLock<Mark>,
 }
 
-/// What a property of a scene is compared by.
+/// The value of a property by which scenes are compared.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Mark {
     Text(String),
@@ -141,7 +141,7 @@ impl Mark {
 #[derive(Serialize, Deserialize)]
 pub(super) struct Fingerprint([Mark; 13]);
 
-/// What is compared, by name.
+/// The properties that are compared, by name.
 fn marks(scene: &Scene) -> [(&'static str, Mark); 13] {
     let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.settings;
     let ([n1, n2], [d1, d2]) = (scene.grid.cells(), scene.grid.spacing());

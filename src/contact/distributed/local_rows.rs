@@ -2,16 +2,15 @@
 
 use std::ops::Range;
 
-use crate::Axis;
 use crate::contact::{State, ViscoelasticContact};
 use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::parallel::Rows;
-use crate::sum;
+use crate::{Axis, sum};
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
     /// grid, unless [`Builder::ranks`](crate::contact::Builder::ranks) share them out. Then they are the rows of this rank, from the upper
-    /// half where the contact is symmetric about x1 = 0, whose other half nobody computes; there may be none.
+    /// half where the contact is symmetric about x1 = 0, since the other half is not computed; a rank may have no rows.
     pub fn rows(&self) -> Range<usize> {
         self.computation.state.region.shown_rows()
     }

@@ -1,14 +1,13 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
-use crate::Axis;
 use crate::contact::{Solver, State, ViscoelasticContact};
 use crate::error::{Convergence, Error, Result, StepError, finite};
-use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
 use crate::observe::profile::line_through;
 use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
+use crate::{Axis, memory};
 
 impl ViscoelasticContact {
     /// Area of contact \[m²\].

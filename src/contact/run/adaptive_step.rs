@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::progress::StepErrors;
-use crate::contact::run::step_control::{LEAST_TOLERANCE, NODES, StepControl};
+use crate::contact::run::step_control::{NODES, StepControl};
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
@@ -83,7 +83,7 @@ pub(super) fn adaptive_step(
         let end = scene.reduced_time(clock, kink.min(until))?;
         let outlook = control.outlook(scene, &loads[0], [time, age, step.interval.dt, end])?;
         step.interval.interpolant = scene.settings.adaptive_interpolant();
-        step.tolerance = tolerance.min((tolerance / outlook.on_switch[1]).max(LEAST_TOLERANCE));
+        step.tolerance = control.solver_tolerance_before_meeting(scene, tolerance, [time, step.interval.dt], &outlook);
         let attempt = match contact.attempt(&step) {
             Err(Error::Step(StepError::NotConverged { .. })) if failures < MAX_SOLVER_RETRIES => {
                 failures += 1;
@@ -101,8 +101,10 @@ pub(super) fn adaptive_step(
         if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
             error.relative = error.relative.max(straying);
         }
+        let excess = StepControl::excess(scene, computed, step.interval.dt);
+        error.relative *= excess;
         let by_kinks = error.by_kinks && error.relative > control.tolerance;
-        let order = if by_kinks { ORDER_OF_KINKS } else { order };
+        let order = if by_kinks || excess > 1.0 { ORDER_OF_KINKS } else { order };
         if !control.judge(step.interval.dt, error.relative, order, dashpot) {
             events::rejected(time, dt, error.relative, control.tolerance);
             add_work(&mut wasted, computed);

@@ -34,7 +34,7 @@ pub(super) struct RunScale {
     stress: f64,
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
-    returns: Returns,
+    rises: Rises,
     /// Times at which a given approach or a spring follows a given force, ascending.
     switches: Vec<f64>,
 }
@@ -61,7 +61,7 @@ impl RunScale {
         });
         let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
         times.sort_by(f64::total_cmp);
-        scale.returns = Returns::new(history, touch, &times)?;
+        scale.rises = Rises::new(scene, history, touch, &times)?;
         let mut times: Vec<f64> = times.into_iter().chain(decades).collect();
         times.sort_by(f64::total_cmp);
         let mut last = None;
@@ -93,7 +93,7 @@ impl RunScale {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         let sizes = [self.force, self.depth, self.stress, self.depth_over_compliance];
-        !self.touch.is_nan() && self.returns.fits() && sizes.iter().all(|&size| size >= 0.0)
+        !self.touch.is_nan() && self.rises.fits() && sizes.iter().all(|&size| size >= 0.0)
     }
 
     /// Includes a load that acts.
@@ -150,14 +150,26 @@ impl RunScale {
         self.switches.iter().copied().find(|&time| time >= now).unwrap_or(f64::INFINITY)
     }
 
+    /// Finds how the bodies respond where they meet, for steps of such a tolerance.
+    pub(super) fn find_stiffness(&mut self, scene: &Scene, tolerance: f64) {
+        let most = tolerance * self.stress;
+        self.rises.0.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
+    }
+
     /// The depth below first touch to which the bodies may return after `now`, when they have been loaded for the time
-    /// `age`; 0 if they do not return.
-    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> f64 {
+    /// `age`, and the response of v to an error of u when they meet; 0 if they do not return.
+    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> [f64; 2] {
+        let [depth, stiffness] = self.rises.after(now, |rise| rise.again);
         match load {
-            Load::Force { .. } => self.expected(scene, load, age)[0],
-            Load::Approach { .. } => self.returns.depth_after(now),
-            Load::Spring { .. } => self.returns.depth_after(now).min(self.expected(scene, load, age)[0]),
+            Load::Force { .. } => [self.expected(scene, load, age)[0], 0.0],
+            Load::Approach { .. } => [depth, stiffness],
+            Load::Spring { .. } => [depth.min(self.expected(scene, load, age)[0]), stiffness],
         }
+    }
+
+    /// The response of v to an error of u when the bodies meet more cells after `now`; 0 if no approach is given then.
+    pub(super) fn stiffness_after(&self, now: f64) -> f64 {
+        self.rises.after(now, |_| true)[1]
     }
 
     /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies into contact.
@@ -183,45 +195,75 @@ impl RunScale {
     }
 }
 
-/// Ends of the rises of a prescribed approach, or of a driven spring, after it has receded, and their depths below first touch. At such a rise
-/// a body meets a surface that is still recovering.
+/// A rise of a prescribed approach, or of a driven spring, in which a body meets the surface.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+struct Rise {
+    end: f64,
+    /// Depth below first touch at its end.
+    depth: f64,
+    /// Depth per second of reduced time; infinite for a jump.
+    rate: f64,
+    /// Whether the approach has receded before: the surface is still recovering.
+    again: bool,
+    /// The response of v to an error of u when they meet.
+    stiffness: f64,
+}
+
+/// Fixed-point iterations for the error of u that changes v by the most allowed: compliances grow less than linearly.
+const ITERATIONS: u32 = 16;
+
+impl Rise {
+    /// A surface that is off by δ is met too early or too late by δ/rate, in which time bodies respond by 1/C(δ/rate). Finds this
+    /// response for the δ that changes v by `most`.
+    fn find_stiffness(&mut self, scene: &Scene, most: f64) {
+        let compliance = |off: f64| scene.material.contact_compliance(off / self.rate);
+        let off = (0..ITERATIONS).fold(self.depth, |off, _| most * compliance(off));
+        self.stiffness = 1.0 / compliance(off);
+    }
+}
+
+/// The rises of a history, ascending in time.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-struct Returns(Vec<(f64, f64)>);
+struct Rises(Vec<Rise>);
 
-impl Returns {
-    /// The returns of a history, from its loads at these ascending times; first touch is at the approach `touch`.
-    fn new(history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Returns> {
-        let (mut returns, mut receded, mut last) = (Returns::default(), false, None);
+impl Rises {
+    /// From the loads of a history at these ascending times; first touch is at the approach `touch`.
+    fn new(scene: &Scene, history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Rises> {
+        let (mut rises, mut again, mut last) = (Rises::default(), false, None);
         for &time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let approach = match load(history, time).validated_at(time)? {
                     Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth,
                     Load::Force { .. } => {
                         // a force may have receded, too
-                        (receded, last) = (true, None);
+                        (again, last) = (true, None);
                         continue;
                     }
                 };
-                if let Some(before) = last.replace(approach) {
-                    receded |= approach < before;
-                    if receded && approach > before.max(touch) {
-                        returns.0.push((time, approach - touch));
+                if let Some((start, before)) = last.replace((time, approach)) {
+                    again |= approach < before;
+                    if approach > before.max(touch) {
+                        let rate = (approach - before) / scene.reduced_length([start, time], time - start)?;
+                        let depth = approach - touch;
+                        rises.0.push(Rise { end: time, depth, rate, again, stiffness: 0.0 });
                     }
                 }
             }
         }
-        Ok(returns)
+        Ok(rises)
     }
 
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     fn fits(&self) -> bool {
-        self.0.iter().all(|&(_, depth)| depth >= 0.0)
+        self.0.iter().all(|rise| rise.depth >= 0.0 && rise.rate > 0.0 && rise.stiffness >= 0.0)
     }
 
-    /// Greatest depth of the rises that end at `now` or later; 0 if there are none.
-    fn depth_after(&self, now: f64) -> f64 {
-        self.0.iter().filter(|(end, _)| *end >= now).fold(0.0, |deepest, &(_, depth)| deepest.max(depth))
+    /// Greatest depth and stiffness of such rises that end at `now` or later; 0 if there are none.
+    fn after(&self, now: f64, is_meant: impl Fn(&Rise) -> bool) -> [f64; 2] {
+        let rises = self.0.iter().filter(|rise| rise.end >= now && is_meant(rise));
+        rises.fold([0.0; 2], |[depth, stiffness], rise| [depth.max(rise.depth), stiffness.max(rise.stiffness)])
     }
 }

@@ -1,13 +1,16 @@
 //! The length of steps chosen by an estimate of their error.
 
+use crate::contact::computation::Computation;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
 use crate::error::Result;
+use crate::extent::Extent;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
+use crate::solver::Freedom;
 
 /// Chooses steps whose error stays below the tolerance. Two errors count: the error of the displacement within the step
 /// ([`History::time_error`](crate::hereditary::History::time_error)), and the deviation of the load from the polynomial
@@ -48,6 +51,12 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
+/// An error of the solver counts so many times as much as its response to the surface that the body meets later: the errors of many
+/// steps add up.
+const SOLVER_ON_MEETING: f64 = 3.0;
+/// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate of the first step
+/// after it, which the next step does not put right, is too low by this factor times the ratio of the step before to this one.
+const AT_TURN: f64 = 5.0;
 /// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass answers is over
 /// before the first step ends.
 const MOST_ON_SWITCH: f64 = 3e3;
@@ -114,10 +123,38 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no switch from a given force to a given
-    /// approach is to come.
+    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no given approach is to come.
     pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
         wanted.max(SOLVER_SHARE * self.tolerance)
+    }
+
+    /// Tolerance of the solver in a step of length `dt` to the time `now`, at most `tolerance`: where a given approach is to come,
+    /// the bodies respond to an error of u by more than in the steps that leave it.
+    pub(super) fn solver_tolerance_before_meeting(
+        &self,
+        scene: &Scene,
+        tolerance: f64,
+        [now, dt]: [f64; 2],
+        outlook: &StepContext,
+    ) -> f64 {
+        let stiffness = self.scale.as_ref().map_or(0.0, |scale| scale.stiffness_after(now));
+        let answer = SOLVER_ON_MEETING * stiffness * scene.material.contact_compliance(dt);
+        tolerance.min((tolerance / answer.max(outlook.on_switch[1])).max(LEAST_TOLERANCE))
+    }
+
+    /// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where a body is
+    /// free to tilt on a small contact, whose errors are greater by its lever at the end of the grid.
+    pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
+        let clock = &tried.state.clock;
+        let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
+        let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
+        let tilts = tried.trial.free.iter().any(Freedom::tilts);
+        let reach = if tilts { tried.pressed().1 } else { None };
+        let lever = |Extent { low, high }: Extent| {
+            let levers = [0, 1].map(|axis| 0.5 * scene.grid.cells()[axis] as f64 / (high[axis] + 1 - low[axis]) as f64);
+            levers[0].max(levers[1]).max(1.0)
+        };
+        of_turn * reach.map_or(1.0, lever)
     }
 
     /// Prepares a step from `state`: computes the scales of the run where needed, and makes the present load a node.
@@ -128,7 +165,9 @@ impl StepControl {
             self.since = reduced;
         }
         if self.scale.is_none() {
-            self.scale = Some(RunScale::new(scene, state, history, until)?);
+            let mut scale = RunScale::new(scene, state, history, until)?;
+            scale.find_stiffness(scene, self.tolerance);
+            self.scale = Some(scale);
         }
         self.scale.iter_mut().for_each(|scale| scale.include(&state.loads[0]));
         if self.defects.is_none() {
@@ -167,9 +206,12 @@ impl StepControl {
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
+        let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
+        let [depth, stiffness] =
+            self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
+            coming_back: [depth, stiffness.max(soon)],
             lasting: self
                 .lasting
                 .as_ref()

@@ -45,7 +45,7 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
 /// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
-/// A body that comes back to a surface meets it with the modulus of this time, in times that matter.
+/// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that matter.
 pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
 
 /// Data of a run besides the step.
@@ -53,8 +53,9 @@ pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
 pub(in crate::contact) struct StepContext {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(in crate::contact) expected: [f64; 2],
-    /// The depth below first touch to which the bodies may come back; 0 if they do not.
-    pub(in crate::contact) coming_back: f64,
+    /// The depth below first touch to which the bodies may come back, or 0 if they do not, and the response of v to an error
+    /// of u when they meet.
+    pub(in crate::contact) coming_back: [f64; 2],
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(in crate::contact) lasting: [f64; 2],
     pub(in crate::contact) tolerance: f64,
@@ -79,7 +80,7 @@ impl Default for StepContext {
     fn default() -> StepContext {
         StepContext {
             expected: [0.0; 2],
-            coming_back: 0.0,
+            coming_back: [0.0; 2],
             lasting: [0.0; 2],
             tolerance: 1.0,
             on_switch: [0.0; 2],
@@ -155,8 +156,8 @@ pub(in crate::contact) fn error_in_time(
         least,
         gap,
         from_rest,
-        coming_back,
-        stiffness: if resolution > 0.0 { 1.0 / compliance(SHORTEST_TOUCH * resolution) } else { 0.0 },
+        coming_back: coming_back[0],
+        stiffness: coming_back[1],
         lasting,
         tolerance,
         advance,

@@ -193,7 +193,7 @@ impl ViscoelasticContact {
         step: Step<'_>,
         sizes: [f64; 2],
     ) -> Result<Option<Extent>> {
-        // nothing is asked of other ranks once the state changes
+        // all exchanges with other ranks precede the change of the state
         let (contact_cells, reach) = attempt.computation(&self.computation).pressed();
         self.computation.state.region.rows().intact()?;
         if let Some(larger) = attempt.larger {

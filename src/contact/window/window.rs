@@ -18,7 +18,7 @@ pub(crate) struct Window {
     pub(super) lowest_outside: f64,
     /// The number of the indenter that the gap belongs to.
     indenter: Option<u64>,
-    /// What fetches rows of other ranks, if they share out the region.
+    /// Exchange of halo rows, if ranks share out the region.
     beside: Option<(HaloExchange, HaloRows)>,
 }
 

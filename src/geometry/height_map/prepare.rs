@@ -1,7 +1,6 @@
 //! Preparation of maps: masked, cropped, mirrored, scaled and placed.
 
 use super::HeightMap;
-use crate::Grid;
 use crate::error::{Result, count_within, finite};
 use crate::memory;
 
@@ -90,11 +89,6 @@ impl HeightMap {
     #[must_use]
     pub fn periodic(self) -> HeightMap {
         HeightMap { periodic: true, ..self }
-    }
-
-    /// Middle of a grid \[m\]; the origin, except for a part of a grid.
-    pub(super) fn middle_of(grid: &Grid) -> [f64; 2] {
-        [0, 1].map(|axis| 0.5 * (grid.coordinate(axis, 0) + grid.coordinate(axis, grid.cells()[axis] - 1)))
     }
 }
 

@@ -1,10 +1,9 @@
 //! Interpolation of a map onto another grid.
 
 use super::HeightMap;
-use crate::Grid;
 use crate::error::{Error, MapError, Result};
 use crate::geometry::statistics::FLAT;
-use crate::memory;
+use crate::{Grid, memory};
 
 /// A map interpolated onto another grid, and the error of the interpolation.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +55,8 @@ impl HeightMap {
         });
         let mut map = HeightMap::on(grid, memory::collect("a map on another grid", grid.len(), heights)?);
         map.require_known()?;
-        map.center = HeightMap::middle_of(grid);
+        map.center =
+            [0, 1].map(|axis| 0.5 * (grid.coordinate(axis, 0) + grid.coordinate(axis, grid.cells()[axis] - 1)));
         // If the old map has no missing points, missing points of the new map lie outside the old map.
         map.masked = self.masked || self.missing == 0;
         let (old, new) = (self.lengths(), map.lengths());

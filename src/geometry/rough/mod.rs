@@ -13,12 +13,11 @@ use num_complex::Complex64;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::Grid;
 use crate::error::{Error, MapError, Result, within};
 use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap};
-use crate::memory;
 use crate::parallel::{Rows, part};
+use crate::{Grid, memory};
 
 /// A self-affine random surface: a sum of waves with Gaussian random amplitudes and the spectrum of a [`RoughSpec`].
 ///

@@ -183,8 +183,8 @@ impl Layer {
         }
     }
 
-    /// Rejects a material whose Poisson's ratio differs from that of a layer, `layer`: `bodies` are the ratios of the bodies of a contact, none
-    /// where it is not constant.
+    /// Rejects a material whose Poisson's ratio differs from the ratio `layer` of the layer. `bodies` are the ratios of the bodies of a
+    /// contact, `None` where the ratio is not constant.
     pub(crate) fn check_material(layer: f64, bodies: &[Option<f64>]) -> Result<()> {
         let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer, what }));
         match bodies {

@@ -15,8 +15,8 @@ pub(crate) struct TransformWorkspace {
     /// Coefficients of the rows, in tiles: the coefficients of 8 rows side by side. A folded row holds the (real) coefficients of
     /// two.
     pub(super) tiles: Vec<Complex64>,
-    /// Coefficients after the columns, 8 columns below each other; empty for a single thread, which works in
-    /// place, but for a rank what it sends or receives.
+    /// Coefficients after the columns, 8 columns below each other; empty for a single thread, which works in place. A rank packs
+    /// here the numbers that it exchanges.
     pub(super) result: Vec<Complex64>,
     pub(super) lanes: Vec<Lane>,
     /// Replaces all of these where the operator has a single column.

@@ -3,9 +3,8 @@
 use educe::Educe;
 
 use super::Stress;
-use crate::Axis;
-use crate::Grid;
 use crate::values::counted;
+use crate::{Axis, Grid};
 
 /// The stress on a vertical section, see [`SubsurfaceStress::on_section`](super::SubsurfaceStress::on_section).
 #[derive(Clone, PartialEq, Educe)]

@@ -28,7 +28,7 @@ impl RowBuffers {
     }
 }
 
-/// What a pass computes of a level, from the level below it (S) or above it (x).
+/// The operation of a pass, which computes a level from the level below it (S) or above it (x).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operation {
     /// S = Σ w f over each block, of a field that is 1 on the set.

@@ -19,11 +19,9 @@ mod xyz;
 use std::io::Read;
 use std::path::Path;
 
-use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::geometry::HeightMap;
-use crate::input;
-use crate::memory;
+use crate::{Grid, input, memory};
 
 use header::Header;
 use number::{Kind, Number};

@@ -5,11 +5,10 @@
 use std::io::Read;
 
 use super::{Header, Kind, Number, bytes, wrong_size};
-use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::file::npy::MAGIC;
 use crate::geometry::{HeightMap, LengthUnit};
-use crate::memory;
+use crate::{Grid, memory};
 
 const FORMAT: &str = "NPY";
 
