@@ -134,9 +134,9 @@
 //! # Limitations
 //!
 //! Friction, adhesion, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes. A [`Layer`] lies on a rigid base, or on one that creeps as it does; bodies of several layers
-//! need their own influence coefficients or spectrum from the user ([`InfluenceKernel::from_coefficients`],
-//! [`InfluenceKernel::from_spectrum`]).
+//! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). A [`Layer`] lies on a rigid base, or on one
+//! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
+//! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 //!
 //! # Related programs
 //!

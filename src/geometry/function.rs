@@ -8,6 +8,7 @@ use crate::geometry::Geometry;
 /// let saddle = FnGeometry::new(|x1, x2| x1 * x1 - x2 * x2);
 /// assert_eq!(saddle.initial_gap(2.0, 1.0), 3.0);
 /// ```
+#[derive(Clone)]
 pub struct FnGeometry<F> {
     gap: F,
 }

@@ -12,6 +12,7 @@ use crate::load::{Load, LoadHistory};
 /// assert_eq!(history.next_breakpoint(0.0), Some(1.0));
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
+#[derive(Clone)]
 pub struct FnHistory<F> {
     load: F,
     breakpoints: Ascending,

@@ -11,11 +11,11 @@ use crate::load::Load;
 /// let ball = |at: f64| Shifted::new(Sphere::new(5.0e-3)?, [at, 0.0]);
 /// let mut contact = ViscoelasticContact::builder(Grid::new([64, 32], [8.0e-3, 4.0e-3])?)
 ///     .geometry(&ball(-2.0e-3)?)
-///     .geometry(&ball(2.0e-3)?)
+///     .another_body(&ball(2.0e-3)?)
 ///     .material(Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0)?))
 ///     .build()?;
 /// contact.step(0.1, &[Load::force(0.2), Load::approach(10.0e-6)])?;
-/// assert!((contact.bodies()[0].force - 0.2).abs() < 1.0e-12);
+/// assert!((contact.body(0).expect("the first").force - 0.2).abs() < 1.0e-12);
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone, Copy)]

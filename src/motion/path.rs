@@ -50,6 +50,7 @@ impl Path for Straight {
 /// let fretting = FnPath::new(|t| [1.0e-5 * (100.0 * t).sin(), 0.0]);
 /// assert_eq!(fretting.at(0.0), [0.0, 0.0]);
 /// ```
+#[derive(Clone)]
 pub struct FnPath<F> {
     at: F,
 }

@@ -22,6 +22,7 @@ use crate::rheology::Rheology;
 /// assert!(series.report().max_misfit() < 1.0e-4);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
+#[derive(Clone)]
 pub struct FnRheology<F>(F);
 
 impl<F: Fn(f64) -> f64 + Send + Sync> FnRheology<F> {
