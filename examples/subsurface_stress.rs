@@ -159,9 +159,8 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     for (contact, section) in sections {
         maps.push(Map::section(contact, section, Stress::von_mises, name())?);
     }
-    // one scale for all, on which the later stresses, which are smaller, are seen as well
-    let most = 0.5 * maps.iter().map(|map| map.range[1]).fold(0.0, f64::max);
-    maps.iter_mut().for_each(|map| map.range = [0.0, most]);
+    // from zero on
+    maps.iter_mut().for_each(|map| map.range[0] = 0.0);
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
     let time = || Quantity::new("time", "s");

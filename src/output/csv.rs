@@ -47,6 +47,7 @@ fn number(value: f64) -> String {
 /// `max pressure [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is
 /// empty where nothing was estimated), and additional columns of your choice.
 /// Where [ranks](crate::parallel) share out the contact, all of them make and write the history, and rank 0 has the file.
+/// [`Run::samples`](crate::contact::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```

@@ -83,7 +83,7 @@ impl History {
         History::default()
     }
 
-    /// Records the current state of a contact.
+    /// Records the current state of a contact, or of a sample within a step ([`Run::samples`](crate::contact::Run::samples)).
     pub fn add(&mut self, contact: &ViscoelasticContact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(HistoryColumn::ALL) {

@@ -204,3 +204,44 @@ mod outputs {
         assert!(matches!(error, Error::File(FileError::NotAFile { .. })), "{error}");
     }
 }
+
+/// Fields, maps and tables print in a line, however many values they have.
+#[test]
+fn many_values_are_counted_not_printed() {
+    let map = HeightMap::new([40, 50], [4.0e-5, 5.0e-5], vec![1.0e-9; 2000]).unwrap();
+    let times: Vec<f64> = (1..=100).map(f64::from).collect();
+    let table =
+        Measurements::creep(&times, &times.iter().map(|t| 1.0e-9 * (2.0 + t.ln())).collect::<Vec<_>>()).unwrap();
+    let fitted = table.fit().unwrap();
+    for text in [format!("{map:?}"), format!("{table:?}"), format!("{:?}", fitted.report())] {
+        assert!(text.contains(" values") && text.len() < 400 && !text.contains('\n'), "{text}");
+    }
+    assert_eq!(map.to_string(), "40 × 50 heights from 1.000e-9 m to 1.000e-9 m on 4.000e-5 m × 5.000e-5 m");
+}
+
+/// The description of a scene has numbers, and nothing as Rust prints it.
+#[test]
+fn metadata_are_values() {
+    use viscocontact::output::Metadata;
+
+    let polymer = Material::elastic_bulk(Zener::with_time(1.0e9, 1.0e8, 2.0).unwrap(), 3.0e9).unwrap();
+    let steel = Material::constant_poisson(Elastic::young(210.0e9, 0.3).unwrap(), 0.3).unwrap();
+    let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(polymer.against(steel))
+        .build()
+        .unwrap();
+    let json = Metadata::new("values").json(&contact);
+    for part in [
+        r#""settings": {"tolerance": 1e-6, "max_iterations": 1000, "solver": "ActiveSet""#,
+        r#""material": [{"bulk_modulus": 3000000000.0, "contact_creep": {"glassy": "#,
+        r#"{"poisson": 0.3, "contact_creep": {"glassy": "#,
+        r#""fluidity": 0.0, "terms": []}"#,
+    ] {
+        assert!(json.contains(part), "{part} in {json}");
+    }
+    // braces, brackets and quotes pair up
+    let count = |c: char| json.matches(c).count();
+    assert_eq!((count('{'), count('['), count('"') % 2), (count('}'), count(']'), 0));
+    assert!(!json.contains("Spectrum") && !json.contains("Some("), "{json}");
+}

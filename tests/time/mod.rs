@@ -1,6 +1,7 @@
 //! Does the answer depend on the steps, on the rule, or on how a load history is followed?
 
 mod adaptive;
+mod cancelled;
 mod fixed_steps;
 mod follow;
 mod honest;

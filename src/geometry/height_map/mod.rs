@@ -13,6 +13,8 @@ pub use level::Form;
 pub use resample::{ResampledMap, ResamplingError};
 pub use unit::LengthUnit;
 
+use std::fmt;
+
 use educe::Educe;
 
 use crate::Grid;
@@ -72,6 +74,31 @@ pub struct HeightMap {
     masked: bool,
     center: [f64; 2],
     periodic: bool,
+}
+
+/// One line: numbers of points, lengths, least and greatest height, missing heights.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let map = HeightMap::new([2, 2], [4e-6, 4e-6], vec![0.0, 1e-9, 3e-9, f64::NAN])?;
+/// assert_eq!(map.to_string(), "2 × 2 heights from 0.000e0 m to 3.000e-9 m on 4.000e-6 m × 4.000e-6 m, 1 missing");
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+impl fmt::Display for HeightMap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([n1, n2], [l1, l2]) = (self.cells, self.lengths());
+        write!(f, "{n1} × {n2} heights")?;
+        if self.missing < self.heights.len() {
+            let lowest = self.heights.iter().copied().fold(f64::INFINITY, f64::min);
+            write!(f, " from {lowest:.3e} m to {:.3e} m", self.highest)?;
+        }
+        write!(f, " on {l1:.3e} m × {l2:.3e} m")?;
+        if self.missing > 0 {
+            write!(f, ", {} missing", self.missing)?;
+        }
+        if self.periodic { f.write_str(", periodic") } else { Ok(()) }
+    }
 }
 
 impl HeightMap {
