@@ -133,8 +133,10 @@
 //!
 //! # Limitations
 //!
-//! Friction, adhesion, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). A [`Layer`] lies on a rigid base, or on one
+//! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
+//! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). Surfaces may
+//! attract each other ([`contact::Builder::attraction`]): one body on the whole grid, in given steps; adaptive steps, load histories whose
+//! force pulls, free tilts under a given approach or a spring, checkpoints, ranks, moving indenters and direct sums are refused there. A [`Layer`] lies on a rigid base, or on one
 //! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 //!
@@ -145,7 +147,7 @@
 //! [ContactMechanics](https://github.com/ContactEngineering/ContactMechanics) (Python) computes elastic half-spaces,
 //! periodic or not, with contact plasticity; adhesion is in a separate package.
 //! [CONTACT](https://www.kalkersoftware.org) (Fortran) computes rolling and sliding with friction, conformal and
-//! transient, also of viscoelastic bodies. Their friction, adhesion and plasticity are not available here. This crate
+//! transient, also of viscoelastic bodies. Their friction and plasticity are not available here. This crate
 //! offers any linear rheology, measured or fitted, in a recursion whose cost does not grow with the number of steps, of
 //! third order in given steps and fourth in steps chosen by their error (second at cells that join); eccentric loads
 //! that tilt; all of it as a typed library that another program drives step by step. Its accuracy is given claim by
@@ -159,6 +161,7 @@
 #[macro_use]
 mod values;
 
+pub mod adhesion;
 pub mod analytic;
 mod ascending;
 mod axis;

@@ -38,7 +38,13 @@ impl Computation {
     /// Rejects a region for which there is no memory beside this one.
     pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let Scene { kernel, settings, bodies, .. } = scene;
-        let footprint = Footprint { bodies: *bodies, settings, kernel, history: &self.state.history };
+        let footprint = Footprint {
+            bodies: *bodies,
+            settings,
+            kernel,
+            history: &self.state.history,
+            attracts: self.state.attracts,
+        };
         footprint.check(region, footprint.on(&self.state.region).total())
     }
 

@@ -54,6 +54,7 @@ pub use run::progress::{ErrorBudget, RunProgress, Stepping};
 pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
+pub use step::attraction::PassReport;
 pub use stepper::ViscoelasticContact;
 
 use builder::memory::Footprint;

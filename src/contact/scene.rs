@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
+use crate::adhesion::Attraction;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
 use crate::contact::{Clock, Settings};
@@ -19,6 +20,8 @@ pub(crate) struct Scene {
     pub(super) material: Material,
     pub(super) settings: Settings,
     pub(super) temperature: Option<TemperatureHistory>,
+    /// The attraction between the surfaces.
+    pub(super) attraction: Option<Arc<dyn Attraction>>,
     /// Number of rigid bodies.
     pub(super) bodies: usize,
     /// Fingerprint of the gap as built.
@@ -30,7 +33,8 @@ impl Scene {
     /// Inputs of the time rule.
     pub(super) fn history_inputs(&self) -> HistoryInputs<'_> {
         let least_side = self.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
-        HistoryInputs { material: &self.material, history_limit: self.settings.history_limit, least_side }
+        let (material, history_limit) = (&self.material, self.settings.history_limit);
+        HistoryInputs { material, history_limit, least_side, pulls: self.attraction.is_some() }
     }
 
     /// The reduced time at a `time` not before the clock's.

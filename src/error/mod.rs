@@ -1,5 +1,6 @@
 //! The error type of the crate, and the checks that return it.
 
+mod adhesion;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
 mod checks;
@@ -18,6 +19,7 @@ mod table;
 mod text;
 mod violation;
 
+pub use adhesion::AdhesionError;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
 pub(crate) use checks::{
@@ -194,7 +196,9 @@ pub enum Error {
     /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
     #[error(transparent)]
     Ranks(#[from] RanksError),
-
+    /// A contact of surfaces that attract each other is not covered, not resolved, or comes off.
+    #[error(transparent)]
+    Adhesion(#[from] AdhesionError),
     /// A contact on elastic states is not covered by them.
     #[error(transparent)]
     States(#[from] StatesError),

@@ -24,6 +24,8 @@ pub type Verdict = Result<(), Violation>;
 pub enum Location {
     /// A time \[s\].
     Time(f64),
+    /// A gap \[m\].
+    Gap(f64),
     /// A cell.
     Cell {
         /// Its indices \[i, j\].
@@ -37,6 +39,7 @@ impl std::fmt::Display for Location {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Location::Time(time) => write!(f, "at t = {time:e} s"),
+            Location::Gap(gap) => write!(f, "at a gap of {gap:e} m"),
             Location::Cell { cell, position } => write!(f, "on cell {cell:?} at {position:?} m"),
         }
     }

@@ -44,6 +44,8 @@ pub(crate) struct HistoryInputs<'a> {
     pub(crate) material: &'a Material,
     /// Bytes that a direct sum may fill with its past.
     pub(crate) history_limit: usize,
+    /// Whether tractions may raise the surface.
+    pub(crate) pulls: bool,
     /// The shorter side of a cell \[m\].
     pub(crate) least_side: f64,
 }
@@ -211,7 +213,8 @@ impl History {
                     return Ok((own.compliance(), convolutions));
                 }
                 // the sign of u is no criterion where pressures raise the surface
-                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || !kernel.whole.raises());
+                let sign_counts = !kernel.whole.raises() && !inputs.pulls;
+                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || sign_counts);
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }

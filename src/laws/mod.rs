@@ -1,4 +1,4 @@
-//! For tests of your own rheologies, geometries and load histories: the laws that each must obey, and random models to
+//! For tests of your own rheologies, geometries, load histories and attractions: the laws that each must obey, and random models to
 //! test with. Feature `laws`.
 //!
 //! | model | its laws | random valid models |
@@ -6,6 +6,7 @@
 //! | [`Rheology`](crate::rheology::Rheology) | [`rheology`] | [`strategies::rheologies`], [`strategies::spectra`] |
 //! | [`Geometry`](crate::geometry::Geometry) | [`geometry`] | [`strategies::geometries`], [`strategies::height_maps`] |
 //! | [`LoadHistory`](crate::load::LoadHistory) | [`load`] | [`strategies::histories`], [`strategies::loads`] |
+//! | [`Attraction`](crate::adhesion::Attraction) | [`adhesion`] | [`strategies::attractions`] |
 //! | a whole contact | | [`strategies::scenarios`] |
 //!
 //! The laws need no feature; the strategies implement [`proptest`](mod@proptest)'s trait. The models of the crate are tested
@@ -35,6 +36,7 @@
 
 pub mod strategies;
 
+pub use crate::adhesion::laws as adhesion;
 pub use crate::geometry::laws as geometry;
 pub use crate::load::laws as load;
 pub use crate::rheology::laws as rheology;

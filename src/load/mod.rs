@@ -50,7 +50,8 @@ use crate::error::{Error, Result, finite, non_negative, positive};
 pub enum Load {
     /// The normal force is prescribed, the approach follows.
     Force {
-        /// Normal force, ≥ 0 \[N\].
+        /// Normal force \[N\], ≥ 0; a step of surfaces that attract each other also takes forces that pull
+        /// ([`Builder::attraction`](crate::contact::Builder::attraction)).
         normal: f64,
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
@@ -188,8 +189,13 @@ impl Load {
 
     /// Accepts loads with finite values and a force ≥ 0.
     pub(crate) fn validate(&self) -> Result<()> {
+        self.validate_in(false)
+    }
+
+    /// Accepts loads with finite values, and a force ≥ 0 unless surfaces attract each other.
+    pub(crate) fn validate_in(&self, attracts: bool) -> Result<()> {
         let (names, values) = (self.names(), self.values());
-        if let Load::Force { normal, .. } = *self {
+        if let (Load::Force { normal, .. }, false) = (*self, attracts) {
             non_negative(names[0], normal)?;
         }
         if let Load::Spring { stiffness, .. } = *self {

@@ -37,6 +37,9 @@ pub(crate) struct Solution {
     /// v = K p \[Pa·m\], updated together with `pressure`.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) potential: Vec<f64>,
+    /// The attraction s \[Pa\] where surfaces attract each other: v of a state is then K (p − s). Empty elsewhere.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(crate) attraction: Vec<f64>,
     /// The free part of the motion of each body; on entry the motion of the last step.
     pub(crate) motions: Vec<ModeCoefficients>,
     pub(crate) counts: Counts,

@@ -1,5 +1,6 @@
 //! Does what must hold for every model, surface, load history and scene hold for each, and for random ones?
 
+mod attractions;
 mod laws;
 #[cfg(feature = "laws")]
 mod metamorphic;

@@ -1,5 +1,6 @@
 //! Does it agree with closed forms, with other formulations, and with what it promises itself?
 
+mod adhesion_theories;
 mod analytic;
 mod equations;
 mod hertz;

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::Grid;
+use crate::adhesion::Attraction;
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
@@ -11,7 +13,7 @@ use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
-use crate::error::{Error, KernelError, RanksError, Result, StepError, count_within};
+use crate::error::{AdhesionError, Error, KernelError, RanksError, Result, StepError, count_within, length, positive};
 use crate::geometry::Gap;
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
@@ -67,7 +69,8 @@ impl Builder {
 
     /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
     fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
-        let (Builder { grid, temperature, .. }, Parts { settings, material, kernel, history }) = (self, parts);
+        let Builder { grid, temperature, attraction, .. } = self;
+        let Parts { settings, material, kernel, history, .. } = parts;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
             built: Built::new(indenter.gap(), &region.of_gap()),
@@ -77,8 +80,10 @@ impl Builder {
             material,
             settings,
             temperature,
+            attraction,
         };
-        let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history));
+        let attracts = scene.attraction.is_some();
+        let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history, attracts));
         ViscoelasticContact::new(scene, computation)
     }
 
@@ -169,7 +174,24 @@ impl Builder {
         if bodies == 0 {
             return Err(Error::Missing { part: "geometry" });
         }
-        count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")
+        count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")?;
+        if self.attraction.is_some() { self.attraction_is_covered() } else { Ok(()) }
+    }
+
+    /// Rejects scenes that are not covered where surfaces attract each other.
+    fn attraction_is_covered(&self) -> Result<()> {
+        let Settings { solver, time_rule, frame, .. } = self.settings;
+        let refused = [
+            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
+            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
+            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
+            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
+            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
+        ];
+        match refused.into_iter().find(|(refused, ..)| *refused) {
+            Some((_, what, cure)) => Err(AdhesionError::NotCovered { what, cure }.into()),
+            None => Ok(()),
+        }
     }
 
     /// Material, kernel and history.
@@ -196,7 +218,11 @@ impl Builder {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
-        Ok(Parts { settings: self.settings, material, kernel, history })
+        let attracts = self.attraction.is_some();
+        if let Some(law) = self.attraction.as_deref() {
+            zone_is_resolved(law, &material, &self.grid)?;
+        }
+        Ok(Parts { settings: self.settings, material, kernel, history, attracts })
     }
 }
 
@@ -218,15 +244,18 @@ struct Parts {
     kernel: Arc<InfluenceKernel>,
     /// On no cells yet.
     history: History,
+    attracts: bool,
 }
 
 impl Parts {
     fn are_windowed(&self) -> bool {
-        windowed(&self.settings, &self.history, &self.kernel)
+        // the bound of the displacement outside a window holds for pressures alone
+        !self.attracts && windowed(&self.settings, &self.history, &self.kernel)
     }
 
     fn footprint(&self, bodies: usize) -> Footprint<'_> {
-        Footprint { bodies, settings: &self.settings, kernel: &self.kernel, history: &self.history }
+        let Parts { settings, kernel, history, attracts, .. } = self;
+        Footprint { bodies, settings, kernel, history, attracts: *attracts }
     }
 }
 
@@ -234,6 +263,28 @@ impl Parts {
 /// these alone.
 pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
     settings.window && history.has_far_field() && kernel.half_space_below() == Some(HalfSpace::LoadedOnGrid)
+}
+
+/// Fewer cells in the zone of an attraction are refused.
+const LEAST_ZONE: f64 = 2.0;
+
+/// The length of the zone in which an attraction acts at the edge of a contact, E* ρ²/w with E* = 1/`compliance`, over the longer side of a cell.
+pub(in crate::contact) fn cells_in_zone(law: &dyn Attraction, compliance: f64, grid: &Grid) -> f64 {
+    let side = grid.spacing().into_iter().fold(0.0, f64::max);
+    law.range() / side * (law.range() / law.work() / compliance)
+}
+
+/// Rejects a mesh on which even the elastic response has too short a zone.
+fn zone_is_resolved(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<()> {
+    positive("work of separation", law.work())?;
+    length("range of the attraction", law.range())?;
+    let cells = cells_in_zone(law, material.checked_compliance(0.0, (0.0, 0.0))?, grid);
+    if cells >= LEAST_ZONE {
+        return Ok(());
+    }
+    let side = grid.spacing().into_iter().fold(0.0, f64::max);
+    let (spacing, range) = (side * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
+    Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())
 }
 
 /// The history of bodies of `material` by the time rule of the settings, on no cells yet.

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::contact::indenter::even_axes;
+use crate::contact::step::attraction::Passes;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
 use crate::contact::{Indenter, Region, Settings, Solver, State, Trial};
 use crate::error::{Result, count_within};
@@ -27,6 +28,7 @@ use crate::{Grid, memory};
 /// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
+/// | attraction between surfaces | 168 |
 ///
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
@@ -87,6 +89,8 @@ pub(in crate::contact) struct Footprint<'a> {
     pub(in crate::contact) kernel: &'a InfluenceKernel,
     /// The history, whose time rule counts.
     pub(in crate::contact) history: &'a History,
+    /// Whether the surfaces attract each other.
+    pub(in crate::contact) attracts: bool,
 }
 
 impl Footprint<'_> {
@@ -101,7 +105,8 @@ impl Footprint<'_> {
         let whole = if region.is_shared() { 0 } else { gap * all };
         let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
         let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
-        let layout = State::layout(indenter, region.clone(), self.history);
+        let layout = State::layout(indenter, region.clone(), self.history, self.attracts);
+        let passes = if self.attracts { 8 * Passes::FIELDS } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
@@ -116,7 +121,7 @@ impl Footprint<'_> {
         Memory {
             computed_cells: count,
             grid: saturated(grid),
-            state: saturated((per_cell - of_history + Trial::BYTES_PER_CELL) as u128 * n),
+            state: saturated((per_cell - of_history + Trial::BYTES_PER_CELL + passes) as u128 * n),
             history: saturated(of_history as u128 * n),
             solver: saturated(solver),
             kernel: saturated(kernel),
@@ -177,7 +182,8 @@ mod tests {
             let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
             let kernel = InfluenceKernel::half_space(&grid).unwrap();
             let all = cells[0] * cells[1];
-            let footprint = Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history };
+            let footprint =
+                Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history, attracts: false };
             let refused = footprint.check(&Region::whole(&grid, [false; 2]), 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
             // a small part of them may be, in the memory of gap and pressure

@@ -42,6 +42,7 @@ impl ViscoelasticContact {
     /// grid is fixed to the indenter. The contact and its indenter are then unchanged.
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
         self.not_shared("a step along a path")?;
+        self.not_attracted("a step along a path", "keep the indenter in place")?;
         if self.settings().frame != Frame::Bodies {
             return Err(Error::WrongFrame { what: "a step along a path" });
         }

@@ -115,7 +115,7 @@ impl ViscoelasticContact {
         self.computation.state.current.motions[0].tilt
     }
 
-    /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper).
+    /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls harder than the wall presses.
     pub fn force(&self) -> f64 {
         let State { region, current, .. } = &self.computation.state;
         current.sum * region.grid().cell_area() * region.images() as f64
@@ -150,7 +150,8 @@ impl ViscoelasticContact {
         Some(BodyState { approach, tilt, force, moment, contact_cells })
     }
 
-    /// Force, moments and number of cells in contact over the cells for which `counts` holds.
+    /// Force, moments and number of cells in contact over the cells for which `counts` holds. Where surfaces attract each other, there is one
+    /// body, and all its cells pull.
     fn sums(&self, counts: impl Fn(usize) -> bool + Sync) -> (f64, [f64; 2], usize) {
         let State { region, current, .. } = &self.computation.state;
         let (grid, pressure, [_, m2]) = (region.grid(), &current.solution.pressure, region.cells());
@@ -164,6 +165,10 @@ impl ViscoelasticContact {
                 for j in (0..m2).filter(counted) {
                     let p = pressure[i * m2 + j];
                     (force, moment, sums[3]) = (force + p, moment + p * grid.coordinate(1, j), sums[3] + 1.0);
+                }
+                let pulling = current.solution.attraction.get(i * m2..(i + 1) * m2).unwrap_or_default();
+                for (j, s) in pulling.iter().enumerate() {
+                    (force, moment) = (force - s, moment - s * grid.coordinate(1, j));
                 }
                 sums = [sums[0] + force, sums[1] + force * grid.coordinate(0, i), sums[2] + moment, sums[3]];
             }

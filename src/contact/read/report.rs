@@ -207,6 +207,9 @@ bitflags! {
         /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count. Not where
         /// [ranks](crate::parallel) share out the rows.
         const STEEP = 1 << 10;
+        /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
+        /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
+        const COARSE_ZONE = 1 << 11;
     }
 }
 
@@ -220,7 +223,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 11] = [
+const MESSAGES: [(Warnings, &str); 12] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -234,6 +237,10 @@ const MESSAGES: [(Warnings, &str); 11] = [
     (
         Warnings::STEEP,
         "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
+    ),
+    (
+        Warnings::COARSE_ZONE,
+        "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
     ),
 ];
 

@@ -50,6 +50,9 @@ pub struct StressHistory {
     pressure: Vec<f64>,
 }
 
+/// The stress where surfaces attract each other.
+const STRESS_OF_TRACTION: &str = "make a SubsurfaceStress from ViscoelasticContact::traction_into";
+
 impl StressHistory {
     /// Begins the history of the body of [`Builder::material`](crate::contact::Builder::material), which must be
     /// undisturbed: call it before the first load.
@@ -71,6 +74,7 @@ impl StressHistory {
 
     fn of_body(contact: &ViscoelasticContact, body: usize) -> Result<StressHistory> {
         contact.not_shared("a history of the stress")?;
+        contact.not_attracted("a history of the stress", STRESS_OF_TRACTION)?;
         if contact.settings().frame == Frame::Indenter {
             return Err(Error::WrongFrame { what: "a history of the stress" });
         }
@@ -162,6 +166,7 @@ impl ViscoelasticContact {
 
     fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
         self.not_shared("the stress below the surface")?;
+        self.not_attracted("the stress of the pressure of the wall", STRESS_OF_TRACTION)?;
         let law = self.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
         if !law.terms.is_empty() {
             return Err(MaterialError::ChangingPoisson { body }.into());

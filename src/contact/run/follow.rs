@@ -193,6 +193,9 @@ impl<'a> Run<'a> {
 
     fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
+        if matches!(self.stepping, Stepping::Adaptive { .. }) {
+            self.contact.not_attracted("Stepping::adaptive", "take Stepping::fixed")?;
+        }
 
         let now = self.contact.time();
         let load = self.history.at(now).validated_at(now)?;

@@ -11,6 +11,7 @@ use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::{Indenter, Region};
 use crate::hereditary::{Field, History, Interpolant, Interval, Role};
 use crate::load::Load;
+use crate::parallel::Rows;
 use crate::solver::{RigidMotion, Solution};
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
@@ -31,6 +32,9 @@ pub(crate) struct State {
     pub(super) region_is_for_contact: bool,
     /// Displacement and past of the bodies.
     pub(super) history: History,
+    /// Whether the surfaces attract each other.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) attracts: bool,
     pub(super) current: Equilibrium,
     /// At the start of the last step.
     pub(super) previous: Equilibrium,
@@ -80,7 +84,7 @@ pub(crate) struct Equilibrium {
     pub(super) motions: Vec<RigidMotion>,
     /// Cells in contact on the whole grid.
     pub(super) contact_cells: usize,
-    /// Σ p over the cells that are computed, of all ranks.
+    /// Σ p over the cells that are computed, of all ranks, less Σ s where surfaces attract each other.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(super) sum: f64,
 }
@@ -103,7 +107,7 @@ pub(crate) struct StepStart {
 
 impl State {
     /// Bodies without load, where they just touch, by the time rule of a history; without values.
-    pub(super) fn layout(indenter: Arc<Indenter>, region: Region, history: &History) -> State {
+    pub(super) fn layout(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
         let motions = indenter.first_touch();
         let (loads, solution) = (vec![Load::force(0.0); motions.len()], Solution::zero(0, motions.len()));
         let current = Equilibrium { solution, motions, contact_cells: 0, sum: 0.0 };
@@ -116,6 +120,7 @@ impl State {
             history: history.layout(!region.covers()),
             region,
             region_is_for_contact: false,
+            attracts,
             previous: current.clone(),
             current,
             extrapolation: Extrapolation::default(),
@@ -124,9 +129,10 @@ impl State {
     }
 
     /// Bodies without load, where they just touch, by the time rule of a history.
-    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History) -> State {
+    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
         let cells = region.len();
-        State::layout(indenter, region.clone(), history).map(&region, &mut |field| vec![0.0; cells * field.per_cell])
+        State::layout(indenter, region.clone(), history, attracts)
+            .map(&region, &mut |field| vec![0.0; cells * field.per_cell])
     }
 
     /// How many values the state has for each cell.
@@ -139,10 +145,12 @@ impl State {
     /// A copy on `region`; `map` gives its fields, one for each field here. Its sums are to be found anew.
     pub(super) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
         let [current, previous] = [&self.current, &self.previous].map(|of| {
-            let Solution { pressure, potential, motions, .. } = &of.solution;
+            let Solution { pressure, potential, attraction, motions, .. } = &of.solution;
+            let (kept, lasting) = (usize::from(self.attracts), Role::Lasting { source: None });
             let solution = Solution {
                 pressure: map(Field::single(pressure, Role::Lasting { source: None })),
                 potential: map(Field::single(potential, Role::Lasting { source: Some(pressure) })),
+                attraction: map(Field { values: attraction, per_cell: kept, role: lasting }),
                 motions: motions.clone(),
                 ..of.solution
             };
@@ -172,7 +180,7 @@ impl State {
     pub(super) fn sum_up(&mut self) {
         let rows = self.region.rows();
         for equilibrium in [&mut self.current, &mut self.previous] {
-            equilibrium.sum = rows.sum(&equilibrium.solution.pressure);
+            equilibrium.sum = net_sum(&rows, &equilibrium.solution);
         }
     }
 
@@ -200,4 +208,10 @@ impl State {
     pub(super) fn is_undisturbed(&self) -> bool {
         self.clock.age() == 0.0 && self.current.contact_cells == 0
     }
+}
+
+/// Σ p, less Σ s where surfaces attract each other.
+pub(in crate::contact) fn net_sum(rows: &Rows, solution: &Solution) -> f64 {
+    let sum = rows.sum(&solution.pressure);
+    if solution.attraction.is_empty() { sum } else { sum - rows.sum(&solution.attraction) }
 }

@@ -1,5 +1,6 @@
 //! Acceptance of a computed step, and its warnings.
 
+use crate::contact::builder::build::cells_in_zone;
 use crate::contact::{Computation, Edge, Scene, State, Step, TimeRule, Warnings};
 use crate::extent::Extent;
 use crate::rheology::is_known;
@@ -17,7 +18,7 @@ impl Computation {
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
-        let touched = !state.is_undisturbed() || contact_cells > 0;
+        let touched = !state.is_undisturbed() || contact_cells > 0 || state.attracts;
         let (before, after) = (&state.current.solution, &trial.solution);
         let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
         state.history.commit(interval, pressed, touched);
@@ -38,7 +39,8 @@ impl Computation {
         }
         state.loads.copy_from_slice(step.loads);
         (state.indenter, state.indenter_is_new) = (step.indenter, false);
-        state.extrapolation.accept(interval.dt, sum, trial.reach);
+        let pressed = if state.attracts { state.region.rows().sum(&state.current.solution.pressure) } else { sum };
+        state.extrapolation.accept(interval.dt, pressed, trial.reach);
         (0..2).for_each(|which| state.greatest[which] = state.greatest[which].max(sizes[which]));
         state.clock.accept(interval, touched);
     }
@@ -49,6 +51,8 @@ const EDGE_MARGIN: usize = 2;
 /// Fewer cells resolve no contact: across, and in all.
 const MIN_CELLS_ACROSS: usize = 8;
 const MIN_CELLS: usize = 50;
+/// Fewer cells resolve the zone of an attraction badly.
+const COARSE_ZONE: f64 = 4.0;
 
 /// Contact moduli E* outside this range are in other units than Pa \[Pa\].
 const SOFTEST: f64 = 10.0;
@@ -85,9 +89,14 @@ pub(super) fn collect_warnings(
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = scene.settings.time_rule == TimeRule::Rectangle
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
+    let coarse = scene
+        .attraction
+        .as_deref()
+        .is_some_and(|law| cells_in_zone(law, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE);
     // a body without elastic response has no modulus at once
     let at_once = material.contact_compliance(0.0);
     let reasons = [
+        (Warnings::COARSE_ZONE, coarse),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
         (Warnings::FEW_CELLS, few),
         (Warnings::EXTRAPOLATED, has_memory && !is_known(age, until)),

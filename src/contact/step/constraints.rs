@@ -2,9 +2,10 @@
 
 use crate::Grid;
 use crate::axis::Axis;
+use crate::contact::state::net_sum;
 use crate::contact::step::needed_width::needed_lengths;
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
-use crate::error::{Convergence, Error, Result, StepError, exact_length};
+use crate::error::{AdhesionError, Convergence, Error, Result, StepError, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
@@ -15,7 +16,14 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
     let (time, loads, grid) = (step.interval.time, step.loads, &scene.grid);
     exact_length("loads of the rigid bodies", loads.len(), scene.bodies)?;
     for (body, load) in loads.iter().enumerate() {
-        load.validate()?;
+        load.validate_in(scene.attraction.is_some())?;
+        let free_below_approach = scene.attraction.is_some()
+            && !matches!(load, Load::Force { .. })
+            && load.tilt().iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
+        if free_below_approach {
+            let what = "a body that tilts freely under a given approach or a spring";
+            return Err(AdhesionError::NotCovered { what, cure: "give its tilts, or its force" }.into());
+        }
         let Freedom { translation, tilt, point, total } = freedom(load, grid);
         let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
         let tilts_of_periodic = |axis: &Axis| tilts[axis.index()] && scene.kernel.periodic_axes()[axis.index()];
@@ -123,12 +131,12 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
 /// Rejects results that overflow, and contact at the edge of the grid. Returns Σ p.
 pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
     let (Solution { pressure, motions, .. }, rows) = (&trial.solution, state.region.rows());
-    let sum_of_pressure = rows.sum(pressure);
+    let sum_of_pressure = net_sum(&rows, &trial.solution);
     let pressures = state.region.images() as f64 * sum_of_pressure;
     let force = scene.grid.cell_area() * pressures;
     // no moment is greater than the moment of the whole force at the end of the longer side
     let arm = scene.grid.lengths().into_iter().fold(0.0, f64::max);
-    let greatest_moment = arm * pressures.max(force);
+    let greatest_moment = arm * pressures.abs().max(force.abs());
     let (time, edge) = (step.interval.time, scene.settings.edge);
     let within_range = [
         (motions.iter().flat_map(|motion| motion.0).all(f64::is_finite), "the approach"),

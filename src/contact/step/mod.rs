@@ -15,6 +15,7 @@
 //! reserved for steps. The state changes when the step is accepted. A failed step has nothing to undo.
 
 mod accept;
+pub(in crate::contact) mod attraction;
 mod constraints;
 pub(in crate::contact) mod error_in_time;
 mod gap;
@@ -39,6 +40,7 @@ use crate::load::{Load, Loads};
 use crate::parallel::in_pool;
 use crate::solver::{Solution, Stop};
 use accept::collect_warnings;
+use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use constraints::{find_free_motions, validate_loads};
 use error_in_time::{StepContext, error_in_time};
@@ -270,23 +272,27 @@ impl Computation {
         let before = &state.current.solution.pressure;
         bodies.fill_gap(window.gap(&step.indenter), &state.history, before, &mut trial.gap);
         below_full_contact(window, trial, step)?;
-        guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
 
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
-        if c == 0.0 {
-            jump_without_response(state, window, trial, step)?;
-        } else {
-            initial_guess(state, window, trial, step, c);
-        }
         let cancelled = step.cancelled.filter(|_| !state.region.is_shared());
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
-        let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
-        let outcome = solve_with_springs(scene, state, step, c, trial, solve);
-        converged(outcome, scene, &trial.solution, step)?;
+        if let Some(law) = scene.attraction.as_deref() {
+            AttractedStep { scene, law, state, step, given, stop }.solve(window, trial)?;
+        } else {
+            guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
+            if c == 0.0 {
+                jump_without_response(state, window, trial, step)?;
+            } else {
+                initial_guess(state, window, trial, step, c);
+            }
+            let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
+            let outcome = solve_with_springs(scene, state, step, c, trial, solve);
+            converged(outcome, scene, &trial.solution, step)?;
+        }
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
-        let touched = state.is_undisturbed() && state.region.is_positive_anywhere(pressure);
+        let touched = state.is_undisturbed() && (state.attracts || state.region.is_positive_anywhere(pressure));
         material_is_known(scene, state, step, touched)?;
 
         // the history of the bodies

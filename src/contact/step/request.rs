@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::Indenter;
+use crate::contact::step::attraction::Passes;
 use crate::contact::step::spring::TriedSpring;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
@@ -46,6 +47,8 @@ pub(crate) struct Trial {
     pub(in crate::contact) free: Vec<Freedom>,
     /// The last force tried of each body that a spring drives.
     pub(in crate::contact) springs: Vec<TriedSpring>,
+    /// What the passes of a step work in, from the first step of surfaces that attract each other.
+    pub(in crate::contact) passes: Option<Box<Passes>>,
     /// Length of the extrapolation of the guess, in last steps.
     pub(in crate::contact) reach: f64,
     /// Cells that are likely to be in contact, and whether they were predicted.
@@ -64,6 +67,7 @@ impl Trial {
             gap: vec![0.0; cells],
             free: vec![nothing_free; bodies],
             springs: vec![TriedSpring::default(); bodies],
+            passes: None,
             reach: 0.0,
             likely: vec![false; cells],
             predicted: false,

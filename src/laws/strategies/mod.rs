@@ -9,6 +9,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
+use crate::adhesion::{Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use crate::error::Result;
 use crate::geometry::{
     Cone, Cylinder, Ellipsoid, FlatPunch, Geometry, HeightMap, Repeated, Shifted, Sphere, Sum, Wavy,
@@ -28,6 +29,8 @@ pub use scenarios::{Scenario, scenarios};
 pub type AnyRheology = Arc<dyn Rheology>;
 /// A geometry of any type.
 pub type AnyGeometry = Arc<dyn Geometry>;
+/// An attraction of any type.
+pub type AnyAttraction = Arc<dyn Attraction>;
 
 /// Values within a decade of `scale`, in its unit.
 fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
@@ -114,6 +117,25 @@ pub fn spectra(modulus: f64, time: f64) -> impl Strategy<Value = CreepSpectrum> 
     built((around(1.0 / modulus), fluidity, terms), |(glassy, fluidity, terms)| {
         CreepSpectrum::new(glassy, fluidity, &terms)
     })
+}
+
+fn law<I: std::fmt::Debug + 'static, A: Attraction + 'static>(
+    numbers: impl Strategy<Value = I> + 'static,
+    build: impl Fn(I) -> Result<A> + 'static,
+) -> BoxedStrategy<AnyAttraction> {
+    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyAttraction))
+}
+
+/// Every attraction of the crate, with works of separation around `work` \[J/m²\] and ranges around `range` \[m\].
+pub fn attractions(work: f64, range: f64) -> impl Strategy<Value = AnyAttraction> {
+    let scales = (around(work), around(range));
+    let width = (around(work), around(range), 0.01..2.0_f64);
+    Union::new([
+        law(scales.clone(), |(work, range)| ExponentialAttraction::new(work, range)),
+        law(scales.clone(), |(work, range)| LinearSoftening::new(work, range)),
+        law(scales, |(work, range)| VanDerWaals::new(work, range)),
+        law(width, |(work, range, width)| Dugdale::new(work, range)?.with_width(width)),
+    ])
 }
 
 /// Indenters with a formula, alone, superposed, shifted and repeated, that touch within `length` \[m\] of the origin.

@@ -1,0 +1,107 @@
+//! The laws that every [`Attraction`] obeys, to test implementations of the trait. [`all`] checks every law, at gaps from zero to a
+//! million ranges.
+
+use crate::adhesion::Attraction;
+pub use crate::error::{Location, Verdict, Violation};
+use crate::quadrature::GaussLegendre;
+
+/// Gaps for each decade, from a thousandth of the range on.
+const PER_DECADE: i32 = 40;
+const DECADES: i32 = 9;
+/// Points of a quadrature between two gaps.
+const POINTS: usize = 12;
+/// Difference of an integral from a difference of energies, over the work of separation.
+const SAME: f64 = 1e-7;
+/// Halvings of an interval around a corner of the law, and halvings of every interval: by itself a corner may leave the halves as the whole.
+const HALVINGS: usize = 24;
+const LEAST_HALVINGS: usize = 2;
+
+/// Gap 0, then gaps in a geometric series \[m\].
+fn gaps(attraction: &dyn Attraction) -> impl Iterator<Item = f64> {
+    let range = attraction.range();
+    let steps = 0..=DECADES * PER_DECADE;
+    std::iter::once(0.0).chain(steps.map(move |k| 1e-3 * range * 10f64.powf(f64::from(k) / f64::from(PER_DECADE))))
+}
+
+/// The integral over an interval, which is halved where two halves differ from the whole.
+fn integrate(
+    rule: &GaussLegendre,
+    [from, to]: [f64; 2],
+    accurate: f64,
+    halvings: usize,
+    value: &dyn Fn(f64) -> f64,
+) -> f64 {
+    let middle = 0.5 * (from + to);
+    let [first, second] = [[from, middle], [middle, to]].map(|[from, to]| rule.integrate(from, to, value));
+    let whole = rule.integrate(from, to, value);
+    let agree = halvings + LEAST_HALVINGS <= HALVINGS && (first + second - whole).abs() <= accurate;
+    if halvings == 0 || agree {
+        return first + second;
+    }
+    let ends = [[from, middle], [middle, to]];
+    ends.map(|ends| integrate(rule, ends, accurate, halvings - 1, value)).iter().sum()
+}
+
+fn check(law: &'static str, quantity: &'static str, gap: f64, [found, expected]: [f64; 2], holds: bool) -> Verdict {
+    if holds { Ok(()) } else { Err(Violation { law, quantity, at: Location::Gap(gap), found, expected }) }
+}
+
+/// Every law.
+///
+/// # Errors
+/// The first violation.
+pub fn all(attraction: &dyn Attraction) -> Verdict {
+    scales_are_positive(attraction)?;
+    attracts_less_with_the_gap(attraction)?;
+    energy_is_the_integral(attraction)
+}
+
+/// Work of separation, range and greatest traction are finite and positive, and fit each other.
+///
+/// # Errors
+/// The first violation.
+pub fn scales_are_positive(attraction: &dyn Attraction) -> Verdict {
+    let law = "work, range and greatest traction are finite and positive";
+    let (work, range, greatest) = (attraction.work(), attraction.range(), attraction.traction(0.0));
+    for (quantity, value) in [("work of separation", work), ("range", range), ("traction", greatest)] {
+        check(law, quantity, 0.0, [value, 0.0], value > 0.0 && value.is_finite())?;
+    }
+    let law = "the work is the energy at gap 0, and the range times the greatest traction";
+    for expected in [attraction.energy(0.0), range * greatest] {
+        check(law, "work of separation", 0.0, [work, expected], (work - expected).abs() <= 1e-12 * work)?;
+    }
+    Ok(())
+}
+
+/// The traction is never negative, and never grows with the gap.
+///
+/// # Errors
+/// The first violation.
+pub fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
+    let mut before = f64::INFINITY;
+    for gap in gaps(attraction) {
+        let traction = attraction.traction(gap);
+        check("the traction is not negative", "traction", gap, [traction, 0.0], traction >= 0.0)?;
+        check("the traction does not grow with the gap", "traction", gap, [traction, before], traction <= before)?;
+        before = traction;
+    }
+    Ok(())
+}
+
+/// The energy is the integral of the traction from the gap to infinity: its differences are integrals, and it vanishes far away.
+///
+/// # Errors
+/// The first violation.
+pub fn energy_is_the_integral(attraction: &dyn Attraction) -> Verdict {
+    let (law, rule) = ("the energy is the integral of the traction", GaussLegendre::new(POINTS));
+    let (work, mut from) = (attraction.work(), 0.0);
+    let accurate = 1e-3 * SAME * work;
+    for gap in gaps(attraction).skip(1) {
+        let lost = attraction.energy(from) - attraction.energy(gap);
+        let integral = integrate(&rule, [from, gap], accurate, HALVINGS, &|gap| attraction.traction(gap));
+        check(law, "energy", gap, [lost, integral], (lost - integral).abs() <= SAME * work)?;
+        from = gap;
+    }
+    let left = attraction.energy(from);
+    check("the energy vanishes far away", "energy", from, [left, 1e-3 * work], (0.0..=1e-3 * work).contains(&left))
+}

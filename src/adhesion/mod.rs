@@ -1,0 +1,144 @@
+//! Attraction between surfaces that are near each other.
+//!
+//! An [`Attraction`] pulls cells of gap h together with the traction s(h) ≥ 0, beside the hard wall at h = 0. It never grows with
+//! the gap, and the work of separation of a unit of area is w = ∫₀^∞ s dh.
+//!
+//! | law | s(h), with ρ = w/s(0) |
+//! |---|---|
+//! | [`ExponentialAttraction`] | (w/ρ) e^(−h/ρ) |
+//! | [`VanDerWaals`] | (w/ρ) (1 + h/2ρ)^(−3) |
+//! | [`LinearSoftening`] | (w/ρ) (1 − h/2ρ) up to h = 2ρ |
+//! | [`Dugdale`] | w/ρ up to h = ρ, with a linear end of stated width |
+//!
+//! Every law is given by w and either ρ ([`Attraction::range`]) or the greatest traction s(0). Laws of the same w and ρ differ little in
+//! the force at which they let go. A Lennard-Jones law with its repulsive branch is not offered: in place of the wall it would
+//! put a stiff spring.
+
+mod dugdale;
+mod exponential;
+pub mod laws;
+mod linear_softening;
+mod van_der_waals;
+
+pub use crate::error::AdhesionError;
+pub use dugdale::Dugdale;
+pub use exponential::ExponentialAttraction;
+pub use linear_softening::LinearSoftening;
+pub use van_der_waals::VanDerWaals;
+
+use std::fmt::Debug;
+
+use crate::error::{Result, finite, length, positive};
+
+/// A law of attraction: a traction that never grows with the gap. Implementations are tested by [`laws::all`].
+///
+/// ```
+/// use viscocontact::adhesion::{Attraction, laws};
+///
+/// /// s = (w/ρ)/(1 + h/ρ)².
+/// #[derive(Debug)]
+/// struct InverseSquare { work: f64, range: f64 }
+///
+/// impl Attraction for InverseSquare {
+///     fn traction(&self, gap: f64) -> f64 {
+///         self.work / self.range / (1.0 + gap / self.range).powi(2)
+///     }
+///     fn energy(&self, gap: f64) -> f64 {
+///         self.work / (1.0 + gap / self.range)
+///     }
+/// }
+/// let law = InverseSquare { work: 0.05, range: 20.0e-9 };
+/// assert!((law.range() - 20.0e-9).abs() < 1e-20);
+/// laws::all(&law).map_err(|violation| violation.to_string())?;
+/// # Ok::<(), String>(())
+/// ```
+pub trait Attraction: Debug + Send + Sync {
+    /// The traction s(h) that pulls a cell of `gap` h ≥ 0 \[m\] towards the other body, ≥ 0 and never growing with h \[Pa\].
+    fn traction(&self, gap: f64) -> f64;
+
+    /// The work ∫ₕ^∞ s dh that opens the `gap` from h to infinity \[J/m²\].
+    fn energy(&self, gap: f64) -> f64;
+
+    /// The work of separation w = ∫₀^∞ s dh \[J/m²\].
+    fn work(&self) -> f64 {
+        self.energy(0.0)
+    }
+
+    /// The range ρ = w/s(0) \[m\]: over this gap the greatest traction would do the work of separation.
+    fn range(&self) -> f64 {
+        self.energy(0.0) / self.traction(0.0)
+    }
+}
+
+/// Implements [`Attraction`] for a wrapper by the law inside.
+macro_rules! forward_attraction {
+    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
+        impl $(<$generic: $crate::adhesion::Attraction + ?Sized>)? $crate::adhesion::Attraction for $outer {
+            fn traction(&$self, gap: f64) -> f64 {
+                $inner.traction(gap)
+            }
+
+            fn energy(&$self, gap: f64) -> f64 {
+                $inner.energy(gap)
+            }
+
+            fn work(&$self) -> f64 {
+                $inner.work()
+            }
+
+            fn range(&$self) -> f64 {
+                $inner.range()
+            }
+        }
+    };
+}
+forward_attraction!(<T> self: &T => (**self));
+forward_attraction!(<T> self: Box<T> => (**self));
+forward_attraction!(<T> self: std::sync::Arc<T> => (**self));
+
+/// Work of separation and range of a law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Scales {
+    work: f64,
+    range: f64,
+}
+
+impl Scales {
+    fn new(work: f64, range: f64) -> Result<Scales> {
+        positive("work of adhesion", work)?;
+        length("range of the attraction", range)?;
+        positive("greatest traction of the attraction", work / range)?;
+        Ok(Scales { work, range })
+    }
+
+    fn of_traction(work: f64, greatest: f64) -> Result<Scales> {
+        positive("work of adhesion", work)?;
+        positive("greatest traction of the attraction", greatest)?;
+        Scales::new(work, finite("range of the attraction", work / greatest)?)
+    }
+
+    /// s(0).
+    fn greatest(self) -> f64 {
+        self.work / self.range
+    }
+}
+
+/// Tabor's number μ = (R w²/(E*² ρ³))^⅓ of a sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\]: where it is great, the
+/// contact lets go as [`Jkr`](crate::analytic::Jkr) has it, where it is small, as [`Dmt`](crate::analytic::Dmt).
+///
+/// ```
+/// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
+///
+/// let gel = ExponentialAttraction::new(0.05, 100.0e-9)?;
+/// assert!((tabor_number(&gel, 1.0e-3, 1.0e5)? - 63.0).abs() < 0.1);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+///
+/// # Errors
+/// If radius or modulus is not finite and positive.
+pub fn tabor_number(attraction: &dyn Attraction, radius: f64, modulus: f64) -> Result<f64> {
+    positive("radius", radius)?;
+    positive("contact modulus", modulus)?;
+    let (strain, range) = (attraction.work() / modulus, attraction.range());
+    finite("Tabor's number", (radius / range * (strain / range).powi(2)).cbrt())
+}

@@ -1,0 +1,54 @@
+use crate::rounded::{TIME, rounded};
+
+/// What goes wrong with surfaces that attract each other.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AdhesionError {
+    /// A contact with attraction cannot do this.
+    #[error("{what} is not covered where surfaces attract each other: {cure}")]
+    NotCovered {
+        /// The request.
+        what: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
+
+    /// The mesh does not resolve the zone in which the attraction acts.
+    #[error(
+        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of separation changes the force at which bodies let go by little while Tabor's number stays above 3)",
+        rounded(*.spacing, 3), rounded(*.range, 3)
+    )]
+    ZoneNotResolved {
+        /// Cells in the zone, E* ρ²/w over the side of a cell.
+        cells: f64,
+        /// Least number of cells.
+        least: f64,
+        /// Greatest side of a cell that resolves the zone \[m\].
+        spacing: f64,
+        /// Least range of the attraction that this mesh resolves \[m\].
+        range: f64,
+    },
+
+    /// The load pulls harder than the surfaces hold: no state carries it. The contact stays as it was before the step; under a given
+    /// approach ([`Load::approach`](crate::load::Load::approach)) it goes on apart.
+    #[error("at t = {} s the force of {force} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME))]
+    PulledOff {
+        /// End of the step \[s\].
+        time: f64,
+        /// The force of the load \[N\].
+        force: f64,
+    },
+
+    /// The passes of a step have not found its state.
+    #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its greatest, where {tolerance:.1e} is allowed: take a shorter step", rounded(*.time, TIME))]
+    NotConverged {
+        /// End of the step \[s\].
+        time: f64,
+        /// Passes made.
+        passes: usize,
+        /// Change of the traction in the last pass, over the greatest traction of the law.
+        change: f64,
+        /// Change allowed.
+        tolerance: f64,
+    },
+}

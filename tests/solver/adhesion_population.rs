@@ -1,0 +1,152 @@
+//! Random scenes of surfaces that attract each other: every step ends, its energy falls from pass to pass, and its state satisfies the equations,
+//! found from its fields alone. `ADHESION_SCENES` (12), `ADHESION_SEED` (1) and `ADHESION_TABOR` (12, tenths of the greatest Tabor number)
+//! choose others.
+
+use std::sync::Arc;
+
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
+use viscocontact::contact::StepError;
+use viscocontact::geometry::Sum;
+use viscocontact::prelude::*;
+
+const SIDE: f64 = 8.0;
+
+fn law(draws: &mut Draws, range: f64) -> Arc<dyn Attraction> {
+    match draws.below(4) {
+        0 | 1 => Arc::new(ExponentialAttraction::new(1.0, range).unwrap()),
+        2 => Arc::new(VanDerWaals::new(1.0, range).unwrap()),
+        _ if draws.chance(0.5) => Arc::new(LinearSoftening::new(1.0, range).unwrap()),
+        _ => Arc::new(Dugdale::new(1.0, range).unwrap().with_width(0.5).unwrap()),
+    }
+}
+
+fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
+    let sphere = || Sphere::new(1.0).unwrap();
+    match draws.below(5) {
+        0 => ("sphere", Box::new(sphere())),
+        1 => ("punch", Box::new(FlatPunch::circular(draws.between(1.0, 2.5)).unwrap())),
+        2 => {
+            let wavy = Wavy::new(draws.between(0.05, 0.5), SIDE / draws.between(3.0, 6.0)).unwrap();
+            ("wavy sphere", Box::new(Sum::new(sphere(), wavy)))
+        }
+        _ => {
+            let waves: Vec<[f64; 4]> = (0..6)
+                .map(|_| {
+                    let [a, b] = [0, 1].map(|_| draws.below(5) as f64 - 2.0);
+                    [a, b, draws.between(0.1, 0.5), draws.between(0.0, 6.0)]
+                })
+                .collect();
+            let height = move |x: f64, y: f64| {
+                let turn = std::f64::consts::TAU / SIDE;
+                waves.iter().map(|[a, b, height, phase]| height * (turn * (a * x + b * y) + phase).cos()).sum::<f64>()
+            };
+            ("rough", Box::new(FnGeometry::new(height)))
+        }
+    }
+}
+
+fn material(draws: &mut Draws) -> (bool, Material) {
+    let creeping = draws.chance(0.6);
+    let terms: Vec<_> = (0..1 + draws.below(3)).map(|_| (draws.scale(0.05, 2.0), draws.scale(0.1, 10.0))).collect();
+    let rheology: Box<dyn Rheology> = match creeping {
+        false => Box::new(Elastic::new(0.25).unwrap()),
+        true => Box::new(GeneralizedMaxwell::new(0.25, &terms).unwrap()),
+    };
+    (creeping, Material::incompressible(rheology))
+}
+
+/// The state satisfies the equations of a step.
+fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attraction, elastic: bool) {
+    let cells = contact.grid().len();
+    let (mut traction, mut gap, mut image) = (vec![0.0; cells], vec![0.0; cells], vec![0.0; cells]);
+    contact.traction_into(&mut traction).unwrap();
+    contact.gap_into(&mut gap).unwrap();
+    let (greatest, range) = (law.traction(0.0), law.range());
+    for k in (0..cells).filter(|&k| gap[k].is_finite()) {
+        let (z, h) = (contact.pressure()[k], gap[k]);
+        assert!(z >= 0.0 && h > -1e-3 * range, "{name}, cell {k}: pressure {z}, gap {h}");
+        assert!(z == 0.0 || h.abs() < 1e-3 * range, "{name}, cell {k}: pressure {z}, gap {h}");
+        let s = law.traction(if z > 0.0 { 0.0 } else { h.max(0.0) });
+        assert!((z - traction[k] - s).abs() < 1e-3 * greatest, "{name}, cell {k}: {} in place of {s}", z - traction[k]);
+    }
+    let force = traction.iter().sum::<f64>() * contact.grid().cell_area();
+    assert!((force - contact.force()).abs() < 1e-9 * (greatest * SIDE * SIDE), "{name}: {force} {}", contact.force());
+    if elastic {
+        contact.kernel().convolve(&traction, &mut image, &mut contact.kernel().workspace().unwrap()).unwrap();
+        let most = image.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+        for (v, u) in image.iter().zip(contact.displacement()) {
+            assert!((v - u).abs() < 1e-4 * most, "{name}: {v} {u}");
+        }
+    }
+}
+
+#[test]
+fn random_scenes() {
+    let scenes = from_environment("ADHESION_SCENES", 12);
+    let (seed, tabor) = (from_environment("ADHESION_SEED", 1), from_environment("ADHESION_TABOR", 12) as f64 / 10.0);
+    let (mut passes, mut most, mut worst, mut work, mut pulled, mut apart) = (0, 0, 0.0f64, Vec::new(), 0, 0);
+    for scene in 0..scenes {
+        let mut draws = Draws::new(1000 * seed + scene);
+        let mu = draws.scale(0.1, tabor);
+        let law = law(&mut draws, 1.0 / mu);
+        let ((shape_name, shape), (creeping, material)) = (shape(&mut draws), material(&mut draws));
+        let cells = (2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize;
+        let grid = Grid::square(cells, SIDE).unwrap();
+        let periodic = draws.chance(0.4);
+        let kernel =
+            if periodic { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) }.unwrap();
+        let built = ViscoelasticContact::builder(grid)
+            .geometry(&*shape)
+            .material(material)
+            .kernel(kernel)
+            .attraction(Arc::clone(&law))
+            .settings(Settings::default().with_edge(Edge::Allow))
+            .build();
+        let mut contact = built.unwrap();
+        let (kind, step) = (draws.below(3), draws.scale(0.05, 5.0));
+        let name = format!(
+            "scene {scene}: {shape_name}, {cells}², μ = {mu:.2}, {law:?}, load {kind}, {}{}",
+            if creeping { "creeping" } else { "elastic" },
+            if periodic { ", periodic" } else { "" }
+        );
+        let touch = contact.approach();
+        for k in 0..16 {
+            let course = f64::from(k) / 15.0;
+            let down = if course < 0.3 { course / 0.3 } else { 1.0 - 2.5 * (course - 0.3) };
+            let load = match kind {
+                0 => Load::approach(touch + 0.8 * down - 0.2),
+                1 => Load::spring(5.0, touch + 1.5 * down - 0.3),
+                _ => Load::force(4.0 * down),
+            };
+            match contact.step(step, load) {
+                Ok(report) => {
+                    let own = contact.passes().unwrap();
+                    check(&format!("{name}, step {k}"), &contact, &*law, !creeping);
+                    (passes, most, worst) = (passes + own.passes, most.max(own.passes), worst.max(own.rise));
+                    work.push(report.convolution_equivalents());
+                    apart += usize::from(report.contact_cells == 0);
+                    assert!(own.rise < 1e-6, "{name}, step {k}: {own:?}");
+                }
+                Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if kind == 2 && down < 0.0 => {
+                    pulled += 1;
+                    break;
+                }
+                // full contact of a periodic body has no greater approach
+                Err(Error::Step(StepError::BeyondFullContact { .. })) if periodic => break,
+                Err(error) => panic!("{name}, step {k}: {error}"),
+            }
+        }
+    }
+    work.sort_by(f64::total_cmp);
+    let quantile = |part: f64| work[(part * (work.len() - 1) as f64) as usize];
+    println!(
+        "{scenes} scenes, {} steps, {apart} apart, {pulled} pulled off; {passes} passes, at most {most} in a step; energy rises {worst:.1e}; \
+         convolution equivalents of a step: median {}, 90 % {}, most {}",
+        work.len(),
+        quantile(0.5),
+        quantile(0.9),
+        quantile(1.0)
+    );
+}
