@@ -167,5 +167,5 @@ fn reading_errors_are_reported() {
         }
     }
     let error = HeightMap::from_sdf(Broken).unwrap_err();
-    assert_eq!(error.to_string(), "SDF file: the disk is on fire");
+    assert_eq!(error.to_string(), "SDF file cannot be read: the disk is on fire");
 }
