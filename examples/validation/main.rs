@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release --features plot --example validation`
 
+mod adhesion;
 mod claim;
 mod creep;
 mod elastic;
@@ -56,7 +57,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 27] = [
+const SCENES: [fn() -> Outcome; 30] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -84,6 +85,9 @@ const SCENES: [fn() -> Outcome; 27] = [
     sliding::wave,
     layers::punch,
     layers::ball,
+    adhesion::exponential,
+    adhesion::dugdale,
+    adhesion::creeping,
 ];
 
 /// The table, in Markdown.
