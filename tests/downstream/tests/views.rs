@@ -20,9 +20,9 @@ fn fields_are_viewed_as_arrays_and_matrices() -> Result<(), Box<dyn std::error::
         assert!(pressure[[i, j]] == p && matrix[(i, j)] == p);
     }
     let page = include_str!("../../../docs/guide/results.md");
-    for line in include_str!("views.rs").lines().map(str::trim).filter(|line| line.starts_with("let ") && line.ends_with(';')) {
-        let shown = line.contains("n1, n2");
-        assert!(!shown || page.contains(line), "the guide does not show {line}");
+    let own = include_str!("views.rs").lines().take_while(|line| !line.contains("include_str"));
+    for line in own.map(str::trim).filter(|line| line.starts_with("let ") && line.contains("n1, n2")) {
+        assert!(page.contains(line), "the guide does not show {line}");
     }
     Ok(())
 }
