@@ -95,6 +95,7 @@ impl StatesContact {
     /// [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also under a given
     /// approach, in area to the cell. Without it, the approach and the level under a given approach err by the
     /// interpolation of the sweep; the level under a given force does not err.
+    /// Such a step allocates the state that it adds.
     ///
     /// # Errors
     /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
