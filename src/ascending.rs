@@ -58,7 +58,8 @@ impl Schedule {
         Ok(())
     }
 
-    /// Adds the time `first` after `origin`, and `per_decade` times in each decade beyond. Errors name `first` and `per_decade` by the names given.
+    /// Adds the time `first` after `origin`, and `per_decade` times in each decade beyond. Errors name both numbers by the
+    /// names given.
     pub(crate) fn add_decades(
         &mut self,
         [first_name, count_name]: [&'static str; 2],
