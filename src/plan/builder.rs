@@ -4,13 +4,13 @@ use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
 
 use crate::axis::Axis;
-use crate::contact::Stepping;
+use crate::contact::{Builder, Stepping};
 use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
 use crate::plan::convergence::{ConvergedRun, converge};
-use crate::plan::domain::{Body, ContactSize, Side};
+use crate::plan::domain::{Body, Side};
 use crate::plan::error_law::ErrorLaw;
 use crate::plan::trial_runs::TrialScene;
 use crate::plan::{Accuracy, Plan};
@@ -53,17 +53,20 @@ pub struct PlanBuilder<'a> {
     body: Body<'a>,
 }
 
-/// How far planning has come: the state of a coarse run.
+/// How far planning has come: the state of a coarse mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PlanProgress {
-    /// Number of steps of all coarse runs so far.
+    /// Number of steps and elastic contacts of all coarse meshes so far.
     pub steps: usize,
-    /// Cells of the run.
+    /// Cells of the mesh.
     pub cells: [usize; 2],
-    /// Time of the run \[s\].
+    /// Time of the run \[s\]; 0 for an elastic contact.
     pub time: f64,
+    /// Convolution equivalents so far, each times the cells of its mesh: compare with [`Plan::convolutions`] times the
+    /// cells of the plan.
+    pub work: f64,
 }
 
 impl Plan {
@@ -144,38 +147,27 @@ impl<'a> PlanBuilder<'a> {
     pub fn build_with(self, progress: impl FnMut(PlanProgress) -> ControlFlow<()>) -> Result<Plan> {
         let PlanBuilder { geometry, material, history, until, accuracy, temperature, area, body } = self;
         positive("end of the run", until)?;
-        let (steps, progress) = (Cell::new(0), RefCell::new(progress));
-        let progress = |cells: [usize; 2], time: f64| {
-            steps.set(steps.get() + 1);
-            let progressed = PlanProgress { steps: steps.get(), cells, time };
-            match progress.borrow_mut()(progressed) {
+        let (counts, progress) = (Cell::new((0, 0.0)), RefCell::new(progress));
+        let progress = |cells: [usize; 2], convolutions: f64, time: f64| {
+            let (steps, work) = counts.get();
+            counts.set((steps + 1, work + convolutions * (cells[0] * cells[1]) as f64));
+            let (steps, work) = counts.get();
+            match progress.borrow_mut()(PlanProgress { steps, cells, time, work }) {
                 ControlFlow::Continue(()) => Ok(()),
                 ControlFlow::Break(()) => Err(Error::Cancelled { what: "a plan" }),
             }
         };
-        let (tolerance, progress) = (accuracy.step_tolerance(), &progress);
-        let (whole, kernels) = (until, &RefCell::default());
-        let scene = TrialScene {
-            geometry,
-            material,
-            temperature,
-            history,
-            until,
-            whole,
-            accuracy,
-            tolerance,
-            progress,
-            body,
-            kernels,
-        };
-        let size = ContactSize::of(&scene)?;
-        let converged = size.on_growing_domain(|size| converge(&scene, size, area))?;
-        let ConvergedRun { steps, meshes, mut pressure, reach } = converged;
-        let size = ContactSize { reach, ..size };
+        let (tolerance, progress, kernels) = (accuracy.step_tolerance(), &progress, &RefCell::default());
+        let fitted = &Builder::material_of_run(material, history, until, temperature, &accuracy.settings())?;
+        let scene =
+            TrialScene { geometry, material: fitted, temperature, history, until, accuracy, tolerance, progress, body, kernels };
+        let converged = converge(&scene, area)?;
+        let size = &converged.size;
         let needed = |pressure: ErrorLaw| {
-            let across = meshes.across_for(pressure, steps.left_for_mesh(accuracy), accuracy, area).max(FEWEST_ACROSS);
+            let across = converged.across_for(pressure, accuracy, area).max(FEWEST_ACROSS);
             (across, size.cells(across))
         };
+        let mut pressure = converged.pressure;
         let (mut across, mut sides) = needed(pressure);
         if sides[0].max(sides[1]) > MOST_PLANNED_CELLS as f64 {
             pressure = ErrorLaw::NONE;
@@ -188,28 +180,31 @@ impl<'a> PlanBuilder<'a> {
         }
         let grid = size.grid(across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
+        let ConvergedRun { steps, main, singular, radius, work, .. } = &converged;
         let converges = pressure.converges && steps.resolve_pressure(accuracy);
         let mesh_error = MeshError {
-            approach: meshes.main().at(across).max(meshes.singular().at(across)),
+            approach: main.at(across).max(singular.at(across)),
             max_pressure: converges.then(|| pressure.at(across)),
-            area: 2.0 * meshes.radius().at(across),
-            singular: meshes.singular().at(across),
+            area: 2.0 * radius.at(across),
+            singular: singular.at(across),
         };
-        let builder = scene.builder(grid.clone())?;
+        let builder = scene.builder(grid.clone())?.material(material.clone()).times_of(history, until);
         let memory = builder.memory()?;
+        let excess = steps.trace.map_or(0.0, |trace| trace.excess);
         Ok(Plan {
             builder,
             stepping: Stepping::adaptive(steps.tolerance),
             grid,
             accuracy,
-            reach,
+            reach: size.reach,
             steps: steps.run.steps.len(),
-            convolutions: meshes.work().at(across),
+            convolutions: work.at(across),
             // adaptive steps keep the rate of the displacement
             bytes: memory.total() + 8 * memory.computed_cells as u64,
             time_error: steps.error.map(|error| error.main),
             mesh_error,
-            pressure_error_at_all_times: meshes.pressure_over_time().at(across)
+            pressure_error_at_all_times: excess
+                + converged.pressure_over_time.at(across)
                 + steps.error.map_or(0.0, |error| error.pressure_over_time),
         })
     }

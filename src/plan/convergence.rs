@@ -1,45 +1,49 @@
-//! How the states of a run converge with the mesh.
+//! How the elastic states of a run, or its own states, converge with the mesh.
 
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::plan::Accuracy;
 use crate::plan::domain::{ContactSize, Side};
 use crate::plan::error_law::{ErrorLaw, ORDERS};
+use crate::plan::levels::{Curve, Trace};
+use crate::plan::loads::Loads;
 use crate::plan::steps::{Differences, Steps, relative};
-use crate::plan::trial_runs::{Run, StepState, TrialScene, greatest};
+use crate::plan::trial_runs::{Probe, Run, StepState, TrialScene, greatest};
 
-/// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
+/// Cells across the widest contact on the coarsest mesh, where the steps are found, and on the finest that a plan computes.
 const LEAST_ACROSS: f64 = 16.0;
 const MOST_ACROSS: f64 = 128.0;
-/// Cells across the widest contact where the steps are found.
-const STEPS_ACROSS: f64 = 32.0;
 /// Most cells along a side of a domain in which the contact is small, for example far off the centre.
 const MOST_TRIAL_CELLS: usize = 2048;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
-/// Most domains for ever smaller contacts.
-const MAX_ZOOMS: usize = 12;
 /// Greatest difference of the greatest pressure that counts as second order, over the estimate from the neighbours of
 /// the peak. A difference of second order is three times the error on the finer mesh.
 const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
 /// Upper limit of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
-/// Fewest cells of an elastic contact whose greatest pressure serves as a bound, and the margin for its error.
-const BOUNDING_CELLS: usize = 12;
-const BOUNDING_MARGIN: f64 = 1.25;
 /// Least width of the contact on a finer mesh, as a fraction of the width on a coarse one.
 const MIN_NARROWING: f64 = 0.25;
+/// Levels below the greatest at which elastic states are compared, and their depths over the greatest, as of a paraboloid.
+const LEVELS: [f64; 3] = [1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0];
+const DEPTHS: [f64; 3] = [0.4, 0.16, 0.064];
+/// A contact of greatest pressure narrower than this fraction of the largest contact gets a separate domain.
+const SMALL_CONTACT: f64 = 1.0 / 3.0;
+/// Levels nearer than this fraction are one.
+const SAME_LEVEL: f64 = 1e-2;
+/// Least width of the contact of a trial run, as a fraction of the expected width.
+const MIN_WIDTH: f64 = 0.75;
 
 impl ContactSize {
-    /// Size of the contact on a mesh that resolves it: a contact far off the middle is only a few cells wide on the
-    /// coarsest mesh.
-    pub(super) fn of(scene: &TrialScene<'_>) -> Result<ContactSize> {
-        let size = scene.size()?;
+    /// Size of the elastic contacts under these loads on a mesh that resolves them: a contact far off the middle is only a
+    /// few cells wide on the coarsest mesh.
+    fn of(scene: &TrialScene<'_>, loads: &[Load]) -> Result<ContactSize> {
+        let size = scene.size(loads)?;
         if [0, 1].iter().all(|&axis| size.sides[axis] != Side::Found || size.width[axis] > size.reach[axis]) {
             return Ok(size);
         }
         size.on_growing_domain(|size| {
-            let finer = scene.follow(size.grid(LEAST_ACROSS)?, &[])?.size;
+            let finer = scene.elastic(size.grid(LEAST_ACROSS)?, loads)?.size;
             // a contact may be a few cells wide on any mesh
             let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * size.width[axis]));
             Ok(ContactSize { width, ..finer })
@@ -47,7 +51,7 @@ impl ContactSize {
     }
 }
 
-/// Runs on successive meshes, each twice as fine as the last. Cells are counted across the widest contact of the whole run.
+/// States on successive meshes, each twice as fine as the last. Cells are counted across the widest contact of the whole run.
 pub(super) struct Meshes {
     /// Whether the shape has an edge, as a punch.
     punch: bool,
@@ -55,6 +59,8 @@ pub(super) struct Meshes {
     /// Differences between each mesh and the one before.
     differences: Vec<Differences>,
     finest: Run,
+    /// Index of the state with the greatest pressure, if it is known.
+    highest: Option<usize>,
     /// Power of the cells across with which the convolutions grow.
     work_order: f64,
 }
@@ -64,16 +70,18 @@ impl Meshes {
     fn refine(
         scene: &TrialScene<'_>,
         size: &ContactSize,
-        (base, punch): (Run, bool),
+        (base, punch, highest): (Run, bool, Option<usize>),
+        probe: &Probe<'_>,
         needed: impl Fn(&Meshes) -> f64,
     ) -> Result<Meshes> {
-        let mut meshes = Meshes { punch, across: LEAST_ACROSS, differences: Vec::new(), finest: base, work_order: 0.0 };
+        let (across, differences) = (LEAST_ACROSS, Vec::new());
+        let mut meshes = Meshes { punch, across, differences, finest: base, highest, work_order: 0.0 };
         loop {
             meshes.across *= 2.0;
             let grid = size.grid(meshes.across)?;
             let [n1, n2] = grid.cells();
-            let finer = scene.repeat(grid, &meshes.finest.steps)?;
-            meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states));
+            let finer = scene.probe(grid, probe)?;
+            meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states, highest));
             let growth = relative(finer.convolutions, meshes.finest.convolutions);
             meshes.work_order = growth.max(1.0).log2().min(MAX_WORK_ORDER);
             meshes.finest = finer;
@@ -91,14 +99,14 @@ impl Meshes {
     }
 
     /// Convergence of approach and force; for a punch, whose rim is resolved to a cell, by fractions of a cell.
-    pub(super) fn main(&self) -> ErrorLaw {
+    fn main(&self) -> ErrorLaw {
         let law = if self.punch { ErrorLaw::by_cells } else { ErrorLaw::smooth };
         law(&self.each(|differences| differences.main), self.across)
     }
 
     /// First-order part of the error, estimated from the rim. Creep raises the pressure at a growing rim too, but at
     /// edges of the shape the pressure is raised from the start.
-    pub(super) fn singular(&self) -> ErrorLaw {
+    fn singular(&self) -> ErrorLaw {
         let states = &self.finest.states;
         let deepest = greatest(states, |state| state.approach);
         let shares = states.iter().map(|state| state.singular * relative(state.approach.abs(), deepest));
@@ -109,28 +117,26 @@ impl Meshes {
     }
 
     /// Convergence of the greatest pressure at any time.
-    pub(super) fn pressure_over_time(&self) -> ErrorLaw {
+    fn pressure_over_time(&self) -> ErrorLaw {
         ErrorLaw::smooth(&self.each(|differences| differences.pressure_over_time), self.across)
     }
 
     /// Convergence of the contact radius at any time.
-    pub(super) fn radius(&self) -> ErrorLaw {
+    fn radius(&self) -> ErrorLaw {
         ErrorLaw::by_cells(&self.each(|differences| differences.radius), self.across)
     }
 
-    /// Convolution equivalents of the run, which grow with the cells.
-    pub(super) fn work(&self) -> ErrorLaw {
-        let (error, order) = (self.finest.convolutions, -self.work_order);
-        ErrorLaw { error, order, across: self.across, converges: true }
-    }
-
-    /// Convergence of the greatest pressure of the run, which requires that the finest mesh resolves the peak.
-    /// Differences of a single number may be small or large by chance: where they agree with the estimate from the
-    /// neighbours of the peak, the pressure is as smooth as in an elastic contact.
+    /// Convergence of the greatest pressure, which requires that the finest mesh resolves the peak. Differences of a
+    /// single number may be small or large by chance: where they agree with the estimate from the neighbours of the peak,
+    /// the pressure is as smooth as in an elastic contact.
     fn pressure(&self) -> ErrorLaw {
         let pressure = self.each(|differences| differences.pressure);
         let law = ErrorLaw::smooth(&pressure, self.across);
-        let Some(peak) = self.highest().and_then(|state| state.peak) else {
+        let highest = match self.highest {
+            Some(highest) => self.finest.states.get(highest),
+            None => self.finest.highest_resolved(),
+        };
+        let Some(peak) = highest.and_then(|state| state.peak) else {
             return ErrorLaw { converges: false, ..law };
         };
         if pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
@@ -139,121 +145,189 @@ impl Meshes {
         }
         law
     }
+}
 
-    /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body
-    /// that creeps fast. The pressure on elastic bodies under the same loads is an upper bound.
-    fn bounds_small_contacts(&self, scene: &TrialScene<'_>, size: &ContactSize) -> Result<bool> {
-        let Run { states, steps, .. } = &self.finest;
-        let Some(highest) = self.highest() else { return Ok(false) };
-        let small = |state: &StepState| !state.resolved || state.radius == 0.0;
-        let starts = std::iter::once(true).chain(states.iter().map(small));
-        let ends =
-            starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
-        let normal = |load: &Load| match *load {
-            Load::Approach { approach, .. } | Load::Spring { drive: approach, .. } => (false, approach),
-            Load::Force { normal, .. } => (true, normal),
-        };
-        for by_force in [true, false] {
-            let loads = ends.clone().map(|(_, (_, load))| load).filter(|load| normal(load).0 == by_force);
-            let Some(&load) = loads.max_by(|a, b| normal(a).1.total_cmp(&normal(b).1)) else { continue };
-            let mut elastic = scene.builder(size.grid(self.across)?)?.build()?;
-            let resolved = elastic.step(0.0, load).is_ok() && elastic.contact_cells() >= BOUNDING_CELLS;
-            if !resolved || BOUNDING_MARGIN * elastic.max_pressure() > highest.pressure {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-
-    /// Cells across for an `accuracy` of which `left` is allowed as error of approach and force.
-    pub(super) fn across_for(&self, pressure: ErrorLaw, left: f64, accuracy: Accuracy, area: bool) -> f64 {
-        let main = self.main().across_for(left).max(self.singular().across_for(left));
-        let others = [Some(pressure).filter(|law| law.converges), area.then(|| self.radius())];
-        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
-    }
-
-    /// The state with the greatest pressure.
-    fn highest(&self) -> Option<&StepState> {
-        self.finest.states.iter().max_by(|a, b| a.pressure.total_cmp(&b.pressure))
+impl Run {
+    /// The state with the greatest pressure of a run, if the contact was resolved from the start until then.
+    fn highest_resolved(&self) -> Option<&StepState> {
+        let highest = self.states.iter().enumerate().max_by(|a, b| a.1.pressure.total_cmp(&b.1.pressure));
+        highest.filter(|(k, _)| self.states[..=*k].iter().all(|state| state.resolved)).map(|(_, state)| state)
     }
 }
 
-/// A run whose steps are short enough, on meshes that show how it converges.
+/// How the errors of a run fall with its mesh.
 pub(super) struct ConvergedRun {
     pub(super) steps: Steps,
-    pub(super) meshes: Meshes,
-    /// Convergence of the greatest pressure of the run.
+    /// Convergence of approach and force, and the first-order part of it.
+    pub(super) main: ErrorLaw,
+    pub(super) singular: ErrorLaw,
+    /// Convergence of the greatest pressure of the run, and of that at any time.
     pub(super) pressure: ErrorLaw,
-    /// Half sides of the rectangle about the origin that contained the contact.
-    pub(super) reach: [f64; 2],
+    pub(super) pressure_over_time: ErrorLaw,
+    pub(super) radius: ErrorLaw,
+    /// Convolution equivalents of the run, which grow with the cells.
+    pub(super) work: ErrorLaw,
+    /// Size of the contact.
+    pub(super) size: ContactSize,
 }
 
-/// Finds the steps and the meshes; `area` states whether the contact radius has to be resolved.
-pub(super) fn converge(scene: &TrialScene<'_>, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
-    let mut first = size.grid(STEPS_ACROSS)?;
-    if first.cells().into_iter().any(|cells| cells > MOST_TRIAL_CELLS) {
-        first = size.grid(LEAST_ACROSS)?;
+impl ConvergedRun {
+    /// Cells across for an `accuracy` of which the steps leave a part as error of approach and force.
+    pub(super) fn across_for(&self, pressure: ErrorLaw, accuracy: Accuracy, area: bool) -> f64 {
+        let left = self.steps.left_for_mesh(accuracy);
+        across_for([self.main, self.singular].map(|law| (law, left)), pressure, self.radius, accuracy, area)
     }
-    let punch = scene.has_edge(&first);
-    let steps = Steps::find(scene, &first)?;
-    let scene = &TrialScene { tolerance: steps.tolerance, ..*scene };
-    // a period holds all of its contacts
-    let is_period = size.sides.iter().any(|side| matches!(side, Side::Period(_)));
-    let zoomed =
-        match scene.before_growth(&steps.run).filter(|_| !is_period).map(|until| small_contact(scene, until, size)) {
-            Some(Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. }))) => return Err(error),
-            // the run succeeds without a separate domain for this part
-            Some(law) => Some(law.unwrap_or(ErrorLaw::NONE)),
-            None => None,
-        };
-    let base = scene.repeat(size.grid(LEAST_ACROSS)?, &steps.run.steps)?;
-    let left = steps.left_for_mesh(scene.accuracy);
-    let meshes = Meshes::refine(scene, size, (base, punch), |meshes| {
-        // a pressure on a separate domain does not determine the cells of these meshes
-        let pressure = if zoomed.is_some() { ErrorLaw::NONE } else { meshes.pressure() };
-        meshes.across_for(pressure, left, scene.accuracy, area)
-    })?;
-    let mut pressure = zoomed.unwrap_or_else(|| meshes.pressure());
-    if zoomed.is_none() && pressure.converges && !meshes.bounds_small_contacts(scene, size)? {
-        pressure = ErrorLaw::NONE;
-    }
-    let reach = [0, 1].map(|axis| size.reach[axis].max(meshes.finest.size.reach[axis]));
-    Ok(ConvergedRun { steps, meshes, pressure, reach })
 }
 
-/// Convergence of a greatest pressure that occurs before the contact grows much: from the run to `until` on a separate
-/// domain.
-fn small_contact(scene: &TrialScene<'_>, until: f64, whole: &ContactSize) -> Result<ErrorLaw> {
-    let (mut until, mut zooms) = (until, 0);
-    let (part, size, base) = loop {
-        let part = TrialScene { until, ..*scene };
-        let (size, base) = ContactSize::of(&part)?
-            .on_growing_domain(|size| Ok((*size, part.follow(size.grid(LEAST_ACROSS)?, &[])?)))?;
-        zooms += 1;
-        match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
-            Some(earlier) => until = earlier,
-            None => break (part, size, base),
-        }
-    };
-    let (meshes, bounded) = size.on_growing_domain(|size| {
-        let base = part.repeat(size.grid(LEAST_ACROSS)?, &base.steps)?;
-        let meshes = Meshes::refine(&part, size, (base, false), |meshes| {
-            let pressure = meshes.pressure();
-            if pressure.converges {
-                pressure.across_for(scene.accuracy.space())
-            } else if meshes.highest().is_some_and(|state| state.resolved) {
-                0.0
-            } else {
-                f64::INFINITY
-            }
+fn across_for(main: [(ErrorLaw, f64); 2], pressure: ErrorLaw, radius: ErrorLaw, accuracy: Accuracy, area: bool) -> f64 {
+    let main = main.into_iter().map(|(law, left)| law.across_for(left)).fold(0.0, f64::max);
+    let others = [Some(pressure).filter(|law| law.converges), area.then_some(radius)];
+    others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
+}
+
+/// Finds domain, steps and meshes; `area` states whether the contact radius has to be resolved.
+pub(super) fn converge(scene: &TrialScene<'_>, area: bool) -> Result<ConvergedRun> {
+    let loads = Loads::of(scene)?;
+    ContactSize::of(scene, &loads.largest)?.on_growing_domain(|size| converge_on(scene, &loads, size, area))
+}
+
+fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
+    let grid = size.grid(LEAST_ACROSS)?;
+    let states = loads.on_states.then(|| States::of(scene, loads, grid.clone())).transpose()?;
+    let steps = Steps::find(scene, &grid, states.as_ref().and_then(|states| states.curve.as_ref()))?;
+    // an upper bound of the level is larger than the contact
+    let is_found = |axis: usize| size.sides[axis] == Side::Found;
+    let is_narrow = |axis: usize| is_found(axis) && steps.run.size.width[axis] < MIN_WIDTH * size.width[axis];
+    if steps.run.size.width != [0.0; 2] && [0, 1].into_iter().any(is_narrow) && steps.run.size != *size {
+        return converge_on(scene, loads, &steps.run.size, area);
+    }
+    let (punch, left) = (scene.has_edge(&grid), steps.left_for_mesh(scene.accuracy));
+    let Some((mut states, trace)) = states.zip(steps.trace) else {
+        let probe = Probe::Steps(&steps.run.steps);
+        let meshes = Meshes::refine(scene, size, (steps.run.clone(), punch, None), &probe, |meshes| {
+            let main = [meshes.main(), meshes.singular()].map(|law| (law, left));
+            across_for(main, meshes.pressure(), meshes.radius(), scene.accuracy, area)
         })?;
-        let bounded = meshes.bounds_small_contacts(&part, size)?;
-        Ok((meshes, bounded))
+        let pressure = meshes.pressure();
+        return Ok(converged(steps, &meshes, meshes.main(), pressure, size));
+    };
+    let peak = states.peak(scene, &trace, grid)?;
+    let (at_peak, probe) = (matches!(peak, Peak::At(_)), Probe::Elastic(&states.loads));
+    let highest = if let Peak::At(highest) = peak { Some(highest) } else { Some(0) };
+    let main = |meshes: &Meshes| meshes.main().times(trace.force_amplification);
+    let pressure = |meshes: &Meshes| match at_peak {
+        true => meshes.pressure().times(trace.pressure_amplification),
+        // a pressure on a separate domain does not determine the cells of these meshes
+        false => ErrorLaw::NONE,
+    };
+    let meshes = Meshes::refine(scene, size, (states.base.clone(), punch, highest), &probe, |meshes| {
+        let main = [main(meshes), meshes.singular()].map(|law| (law, left));
+        across_for(main, pressure(meshes), meshes.radius(), scene.accuracy, area)
     })?;
-    if !bounded {
-        return Ok(ErrorLaw::NONE);
+    let pressure = match peak {
+        Peak::Small(load) => match small_contact(scene, load, size) {
+            Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. })) => return Err(error),
+            // the run succeeds without a separate domain for this part
+            law => law.map_or(ErrorLaw::NONE, |law| law.times(trace.pressure_amplification)),
+        },
+        _ => pressure(&meshes),
+    };
+    Ok(converged(steps, &meshes, main(&meshes), pressure, size))
+}
+
+fn converged(steps: Steps, meshes: &Meshes, main: ErrorLaw, pressure: ErrorLaw, size: &ContactSize) -> ConvergedRun {
+    let reaches = [size.reach, steps.run.size.reach, meshes.finest.size.reach];
+    let reach = [0, 1].map(|axis| reaches.map(|reach| reach[axis]).into_iter().fold(0.0, f64::max));
+    let (error, order) = (steps.run.convolutions, -meshes.work_order);
+    let work = ErrorLaw { error, order, across: LEAST_ACROSS, converges: true };
+    ConvergedRun {
+        steps,
+        main,
+        singular: meshes.singular(),
+        pressure,
+        pressure_over_time: meshes.pressure_over_time(),
+        radius: meshes.radius(),
+        work,
+        size: ContactSize { reach, ..*size },
     }
+}
+
+/// Elastic states of a run on the coarsest mesh.
+struct States {
+    loads: Vec<Load>,
+    base: Run,
+    /// `None` where the states do not ascend.
+    curve: Option<Curve>,
+}
+
+/// Where the pressure of a run is greatest.
+enum Peak {
+    /// Aside of the middle of the contact, or nowhere.
+    Unknown,
+    /// In the elastic state of this index.
+    At(usize),
+    /// In an elastic contact much smaller than the largest.
+    Small(Load),
+}
+
+impl States {
+    fn of(scene: &TrialScene<'_>, Loads { largest, .. }: &Loads, grid: crate::Grid) -> Result<States> {
+        let mut loads = largest.clone();
+        loads.dedup();
+        let top = scene.elastic(grid.clone(), &loads)?;
+        let depth = greatest(&top.states, |state| state.depth - top.rest);
+        let lower = largest.iter().take(1).flat_map(|load| {
+            (0..LEVELS.len()).map(|k| match *load {
+                Load::Force { normal, tilt } => Load::Force { normal: LEVELS[k] * normal, tilt },
+                _ => Load::Approach { approach: top.rest + DEPTHS[k] * depth, tilt: load.tilt() },
+            })
+        });
+        loads.extend(lower);
+        let base = scene.elastic(grid, &loads)?;
+        let line = scene.body.sides.iter().any(|side| matches!(side, Side::Uniform(_)));
+        let curve = Curve::through(&base, loads[0].tilt(), line).ok();
+        Ok(States { loads, base, curve })
+    }
+
+    /// Finds the peak, and adds its state where it is not there.
+    fn peak(&mut self, scene: &TrialScene<'_>, trace: &Trace, grid: crate::Grid) -> Result<Peak> {
+        let Some(curve) = self.curve.as_ref().filter(|_| trace.excess == 0.0 && trace.level > 0.0) else {
+            return Ok(Peak::Unknown);
+        };
+        let is_there = |state: &StepState| (state.force / trace.level - 1.0).abs() < SAME_LEVEL;
+        if let Some(index) = self.base.states.iter().position(is_there) {
+            return Ok(Peak::At(index));
+        }
+        let load = match self.loads[0] {
+            Load::Force { tilt, .. } => Load::Force { normal: trace.level, tilt },
+            other => Load::Approach { approach: curve.approach(trace.level), tilt: other.tilt() },
+        };
+        let largest = greatest(&self.base.states, |state| state.force);
+        let is_period = self.base.size.sides.iter().any(|side| matches!(side, Side::Period(_)));
+        // a period holds all of its contacts
+        if !is_period && curve.radius(trace.level) < SMALL_CONTACT * curve.radius(largest) {
+            return Ok(Peak::Small(load));
+        }
+        let state = scene.elastic(grid, &[load])?;
+        self.base.convolutions += state.convolutions;
+        self.base.states.extend(state.states);
+        self.loads.push(load);
+        Ok(Peak::At(self.loads.len() - 1))
+    }
+}
+
+/// Convergence of the greatest pressure of an elastic contact on a separate domain.
+fn small_contact(scene: &TrialScene<'_>, load: Load, whole: &ContactSize) -> Result<ErrorLaw> {
+    let (loads, size) = ([load], ContactSize::of(scene, &[load])?);
+    let (size, meshes) = size.on_growing_domain(|size| {
+        let base = scene.elastic(size.grid(LEAST_ACROSS)?, &loads)?;
+        let meshes = Meshes::refine(scene, size, (base, false, Some(0)), &Probe::Elastic(&loads), |meshes| {
+            let pressure = meshes.pressure();
+            if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
+        })?;
+        Ok((*size, meshes))
+    })?;
     let larger = [0, 1].map(|axis| whole.width[axis] / size.width[axis]);
-    let across = meshes.across * larger[0].max(larger[1]);
-    Ok(ErrorLaw { across, ..meshes.pressure() })
+    let law = meshes.pressure();
+    Ok(ErrorLaw { across: meshes.across * larger[0].max(larger[1]), ..law })
 }

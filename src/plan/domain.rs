@@ -41,7 +41,7 @@ impl fmt::Debug for Body<'_> {
 }
 
 /// Size of the contact during a run.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct ContactSize {
     pub(super) sides: [Side; 2],
     /// Half sides of the rectangle about the origin that contained the contact.

@@ -54,6 +54,11 @@ impl ErrorLaw {
         ErrorLaw { error: last / DIFFERENCE_OVER_ERROR, order: 1.0, across, converges: true }
     }
 
+    /// The law of an error that is `factor` times this one.
+    pub(super) fn times(self, factor: f64) -> ErrorLaw {
+        ErrorLaw { error: factor * self.error, ..self }
+    }
+
     /// The error with `across` cells across.
     pub(super) fn at(&self, across: f64) -> f64 {
         self.error * (self.across / across).powf(self.order)

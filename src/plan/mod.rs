@@ -5,6 +5,8 @@ mod builder;
 mod convergence;
 mod domain;
 mod error_law;
+mod levels;
+mod loads;
 mod steps;
 mod trial_runs;
 

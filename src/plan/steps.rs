@@ -1,8 +1,9 @@
-//! The steps of a trial run and their error in time, from the differences between runs.
+//! The steps of a trial run and their error in time, from its levels or from the difference to a run with shorter steps.
 
 use crate::Grid;
 use crate::error::{Error, Result, StepError};
 use crate::plan::Accuracy;
+use crate::plan::levels::{Curve, Trace};
 use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, StepState, TrialScene, greatest};
 
 /// Shares of the accuracy: greatest of the error in time, of the errors in time and of the mesh together, and least of
@@ -26,6 +27,8 @@ pub(super) struct Steps {
     pub(super) run: Run,
     /// `None` where steps short enough for a comparison do not exist.
     pub(super) error: Option<Differences>,
+    /// The run on levels, where it is made of elastic states.
+    pub(super) trace: Option<Trace>,
 }
 
 impl Steps {
@@ -43,16 +46,16 @@ impl Steps {
 
     /// Shortens the steps while the error of approach, force or greatest pressure exceeds its share and falls with the
     /// steps.
-    pub(super) fn find(scene: &TrialScene<'_>, grid: &Grid) -> Result<Steps> {
+    pub(super) fn find(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
         let target = scene.accuracy.target();
-        let mut steps = Steps::with_tolerance(scene, grid)?;
+        let mut steps = Steps::with_tolerance(scene, grid, curve)?;
         for _ in 0..MAX_STEP_TRIES {
             let worst = steps.worst();
             if worst <= MAX_TIME_SHARE * target {
                 break;
             }
             let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
-            match Steps::with_tolerance(&TrialScene { tolerance, ..*scene }, grid) {
+            match Steps::with_tolerance(&TrialScene { tolerance, ..*scene }, grid, curve) {
                 Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
                 Err(
                     error @ (Error::Step(StepError::ContactAtEdge { .. })
@@ -73,20 +76,24 @@ impl Steps {
         self.error.map_or(0.0, |error| error.main.max(error.pressure))
     }
 
-    fn with_tolerance(scene: &TrialScene<'_>, grid: &Grid) -> Result<Steps> {
-        let run = scene.follow(grid.clone(), &[])?;
+    fn with_tolerance(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
+        let (run, tolerance) = (scene.follow(grid.clone(), &[])?, scene.tolerance);
+        // a trace fails where levels leave their order, as if there were no states
+        if let Some(trace) = curve.and_then(|curve| curve.trace(scene, &run).ok()) {
+            return Ok(Steps { tolerance, run, error: Some(trace.error), trace: Some(trace) });
+        }
         let finer = scene.with_shorter_steps(&run, grid.clone())?;
-        let error = finer.map(|finer| Differences::between(&run.states, &finer));
-        Ok(Steps { tolerance: scene.tolerance, run, error })
+        let error = finer.map(|finer| Differences::between(&run.states, &finer, None));
+        Ok(Steps { tolerance, run, error, trace: None })
     }
 }
 
-/// Differences between two runs of the same steps or times, relative to the greatest values of the finer run.
-#[derive(Clone, Copy)]
+/// Differences between two runs of the same steps or times, or of two lists of elastic states, relative to the greatest values of the finer run.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Differences {
     /// Of approach or force at any time.
     pub(super) main: f64,
-    /// Of the greatest pressure of the run.
+    /// Of the greatest pressure of the run, or of one state.
     pub(super) pressure: f64,
     /// Of the greatest pressure at any time at which the coarse run resolves the contact.
     pub(super) pressure_over_time: f64,
@@ -95,9 +102,13 @@ pub(super) struct Differences {
 }
 
 impl Differences {
-    pub(super) fn between(coarse: &[StepState], fine: &[StepState]) -> Differences {
+    /// The pressure is compared in the state with the index `highest`, or between the greatest ones of all states.
+    pub(super) fn between(coarse: &[StepState], fine: &[StepState], highest: Option<usize>) -> Differences {
         let over = |of: fn(&StepState) -> f64, all: bool| difference(coarse, fine, of, all);
-        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
+        let [before, now] = [coarse, fine].map(|states| {
+            let of_one = highest.and_then(|highest| states.get(highest)).map(|state| state.pressure);
+            of_one.unwrap_or_else(|| greatest(states, |state| state.pressure))
+        });
         Differences {
             main: over(|state| state.approach, true).max(over(|state| state.force, true)),
             pressure: relative((before - now).abs(), now),

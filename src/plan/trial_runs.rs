@@ -1,4 +1,4 @@
-//! The scene on coarse meshes: its domain, its steps, and its states.
+//! The scene on coarse meshes: its domain, its elastic states, and runs.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -6,10 +6,11 @@ use std::sync::Arc;
 use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
 use crate::error::{Error, Result, StepError};
 use crate::geometry::Geometry;
-use crate::load::{Load, LoadHistory};
+use crate::load::{Load, LoadHistory, Tilt};
 use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
-use crate::rheology::{Material, TemperatureHistory};
+use crate::plan::loads::Loads;
+use crate::rheology::{Elastic, Material, TemperatureHistory};
 use crate::{Grid, InfluenceKernel};
 
 /// Cells along a side of the runs that find the domain.
@@ -21,10 +22,6 @@ const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
 /// Greatest number of halvings of a step in which the solver does not converge.
 const MAX_HALVINGS: u32 = 5;
 
-/// A greatest pressure in a contact smaller than the first fraction of the largest contact gets a separate domain,
-/// which contains the contact until it has grown to the second fraction.
-const SMALL_CONTACT: [f64; 2] = [1.0 / 3.0, 0.4];
-
 /// Ratio of the tolerances of two runs whose difference estimates the error in time of the first, and the smallest
 /// tolerance of a run.
 const SHORTER: f64 = 0.125;
@@ -34,27 +31,29 @@ pub(super) const LEAST_TOLERANCE: f64 = 1e-9;
 #[derive(Clone, Copy)]
 pub(super) struct TrialScene<'a> {
     pub(super) geometry: &'a dyn Geometry,
+    /// With a series over the times of the run.
     pub(super) material: &'a Material,
     pub(super) temperature: Option<&'a TemperatureHistory>,
     pub(super) history: &'a dyn LoadHistory,
     pub(super) until: f64,
-    /// End of the run for which the material is fitted.
-    pub(super) whole: f64,
     pub(super) accuracy: Accuracy,
     /// Tolerance of the steps.
     pub(super) tolerance: f64,
-    /// Called with the cells and the time after each step, and after each elastic state; its error ends the planning.
-    pub(super) progress: &'a dyn Fn([usize; 2], f64) -> Result<()>,
+    /// Called with the cells, the convolution equivalents and the time of each step, and of each elastic state at the
+    /// time 0; its error ends the planning.
+    pub(super) progress: &'a dyn Fn([usize; 2], f64, f64) -> Result<()>,
     pub(super) body: Body<'a>,
     /// Kernels made so far.
     pub(super) kernels: &'a RefCell<Vec<Arc<InfluenceKernel>>>,
 }
 
-/// A state at the end of a step.
+/// A state at the end of a step, or an elastic state, whose force is its level.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepState {
     pub(super) time: f64,
     pub(super) approach: f64,
+    /// Approach of the point about which the body tilts.
+    pub(super) depth: f64,
     pub(super) force: f64,
     pub(super) radius: f64,
     pub(super) pressure: f64,
@@ -66,6 +65,12 @@ pub(super) struct StepState {
     pub(super) resolved: bool,
 }
 
+/// What shows the error of the mesh: the elastic states of a run, or a run itself where it is not made of them.
+pub(super) enum Probe<'a> {
+    Elastic(&'a [Load]),
+    Steps(&'a [(f64, Load)]),
+}
+
 /// A run on a coarse mesh.
 #[derive(Clone, Default)]
 pub(super) struct Run {
@@ -74,21 +79,25 @@ pub(super) struct Run {
     pub(super) steps: Vec<(f64, Load)>,
     pub(super) states: Vec<StepState>,
     pub(super) convolutions: f64,
+    /// Approach of the undisturbed contact at the first touch.
+    pub(super) rest: f64,
 }
 
 impl Run {
-    /// No steps yet, on a domain with these sides.
-    pub(super) fn on(sides: [Side; 2]) -> Run {
-        Run { size: ContactSize::none(sides), ..Run::default() }
+    /// No steps yet.
+    fn of(contact: &ViscoelasticContact, sides: [Side; 2]) -> Run {
+        Run { size: ContactSize::none(sides), rest: contact.approach(), ..Run::default() }
     }
 
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
         let mesh = contact.mesh_error().unwrap_or_default();
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
+        let at = contact.load().tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
         self.states.push(StepState {
             time: report.time,
             approach: report.approach,
+            depth: report.approach + contact.tilt()[0] * at[0] + contact.tilt()[1] * at[1],
             force: report.force,
             radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
             pressure: contact.max_pressure(),
@@ -104,13 +113,47 @@ impl Run {
 
 impl TrialScene<'_> {
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
-        let kernel = self.kernel(&grid)?;
-        let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
-        let builder = builder.kernel(kernel).settings(self.accuracy.settings()).times_of(self.history, self.whole);
+        let builder = self.builder_of(grid, self.material.clone())?;
         Ok(match self.temperature {
             Some(temperature) => builder.temperature(temperature.clone()),
             None => builder,
         })
+    }
+
+    fn builder_of(&self, grid: Grid, material: Material) -> Result<Builder> {
+        let kernel = self.kernel(&grid)?;
+        let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(material);
+        Ok(builder.kernel(kernel).settings(self.accuracy.settings()))
+    }
+
+    /// The elastic contacts of unit compliance under these loads, on a mesh.
+    pub(super) fn elastic(&self, grid: Grid, loads: &[Load]) -> Result<Run> {
+        let nu = self.material.poisson_ratios().flatten().next().unwrap_or(0.5);
+        // C = (1 − ν) J/2 = 1 Pa⁻¹
+        let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
+        let mut contact = self.builder_of(grid, unit)?.build()?;
+        let mut run = Run::of(&contact, self.body.sides);
+        for &load in loads {
+            let report = contact.step(0.0, load)?;
+            run.add(&contact, &report);
+            (self.progress)(contact.grid().cells(), report.convolution_equivalents(), 0.0)?;
+        }
+        Ok(run)
+    }
+
+    /// What is computed on each mesh.
+    pub(super) fn probe(&self, grid: Grid, probe: &Probe<'_>) -> Result<Run> {
+        match *probe {
+            Probe::Elastic(loads) => self.elastic(grid, loads),
+            Probe::Steps(steps) => self.repeat(grid, steps),
+        }
+    }
+
+    /// The compliance at the end of the run, at its start where it is infinite then.
+    pub(super) fn softest_compliance(&self) -> Result<f64> {
+        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
+        let softest = self.material.contact_compliance(creeping.min(self.material.known_until()));
+        Ok(if softest.is_finite() { softest } else { self.material.contact_compliance(0.0) })
     }
 
     /// The kernel on a grid, made once.
@@ -126,17 +169,18 @@ impl TrialScene<'_> {
         Ok(kernel)
     }
 
-    /// Finds the contact on domains of several sizes until it fills one well; returns the size of the contact.
-    pub(super) fn size(&self) -> Result<ContactSize> {
+    /// Finds the elastic contacts under these loads on domains of several sizes until they fill one well; returns their
+    /// size.
+    pub(super) fn size(&self, loads: &[Load]) -> Result<ContactSize> {
         let sides = self.body.sides;
-        let (is_found, first) = (sides.map(|side| side == Side::Found), self.first_length()?);
+        let (is_found, first) = (sides.map(|side| side == Side::Found), Loads::first_length(self, loads)?);
         let mut lengths = sides.map(|side| match side {
             Side::Found => first,
             Side::Period(length) | Side::Uniform(length) => length,
         });
         let cells = sides.map(|side| if matches!(side, Side::Uniform(_)) { 1 } else { DOMAIN_CELLS });
         for _ in 0..MAX_DOMAINS {
-            let factors = match self.follow(Grid::new(cells, lengths)?, &[]).map(|run| run.size) {
+            let factors = match self.elastic(Grid::new(cells, lengths)?, loads).map(|run| run.size) {
                 Err(Error::Step(StepError::ContactAtEdge { .. })) => [1.7; 2],
                 Err(Error::NothingToTouch { .. }) => [0.3; 2],
                 Err(error) => return Err(error),
@@ -162,10 +206,10 @@ impl TrialScene<'_> {
     pub(super) fn follow(&self, grid: Grid, stops: &[f64]) -> Result<Run> {
         let mut contact = self.builder(grid)?.build()?;
         let mut follow = contact.follow(self.history, Stepping::adaptive(self.tolerance), self.until).stop_at(stops)?;
-        let mut run = Run::on(self.body.sides);
+        let mut run = Run::of(follow.contact(), self.body.sides);
         while let Some(report) = follow.next_step()? {
             run.add(follow.contact(), &report);
-            (self.progress)(follow.contact().grid().cells(), report.time)?;
+            (self.progress)(follow.contact().grid().cells(), report.convolution_equivalents(), report.time)?;
         }
         Ok(run)
     }
@@ -190,11 +234,11 @@ impl TrialScene<'_> {
     /// The run in given steps.
     pub(super) fn repeat(&self, grid: Grid, steps: &[(f64, Load)]) -> Result<Run> {
         let mut contact = self.builder(grid)?.build()?;
-        let mut run = Run::on(self.body.sides);
+        let mut run = Run::of(&contact, self.body.sides);
         for &(dt, load) in steps {
             let report = advance(&mut contact, dt, load, MAX_HALVINGS)?;
             run.add(&contact, &report);
-            (self.progress)(contact.grid().cells(), report.time)?;
+            (self.progress)(contact.grid().cells(), report.convolution_equivalents(), report.time)?;
         }
         Ok(run)
     }
@@ -204,58 +248,6 @@ impl TrialScene<'_> {
         let [n1, n2] = grid.cells();
         let mut cells = (0..n1 * n2).map(|k| grid.center(k / n2, k % n2));
         cells.any(|[x1, x2]| self.geometry.initial_gap(x1, x2) == f64::INFINITY)
-    }
-
-    /// The time until which the contact stays small, if the pressure is greatest in a contact much smaller than the
-    /// later one.
-    pub(super) fn before_growth(&self, run: &Run) -> Option<f64> {
-        let largest = greatest(&run.states, |state| state.radius);
-        let highest = greatest(&run.states, |state| state.pressure);
-        let peak = run.states.iter().position(|state| state.pressure == highest)?;
-        let small = run.states.iter().take_while(|state| state.radius <= SMALL_CONTACT[1] * largest).count();
-        if peak >= small || run.states[peak].radius > SMALL_CONTACT[0] * largest {
-            return None;
-        }
-        let last = run.states[small - 1].time;
-        let next = run.states.get(small).map_or(self.until, |state| state.time);
-        let until = if last > 0.0 { last } else { 0.1 * next };
-        (until < self.until).then_some(until)
-    }
-
-    /// Initial length L of the domain: a contact of half width L/4 is indented by the gap at its edge, under a force of
-    /// about E* L times this gap.
-    fn first_length(&self) -> Result<f64> {
-        let (mut force, mut approach) = (0.0_f64, 0.0_f64);
-        for k in 0..=64 {
-            let time = self.until * f64::from(k) / 64.0;
-            match self.history.at(time).validated_at(time)? {
-                Load::Force { normal, .. } => force = force.max(normal),
-                Load::Approach { approach: depth, .. } => approach = approach.max(depth),
-                // either is a bound
-                Load::Spring { drive: depth, .. } => approach = approach.max(depth),
-            }
-        }
-        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
-        let mut compliance = self.material.contact_compliance(creeping.min(self.material.known_until()));
-        if !compliance.is_finite() {
-            compliance = self.material.contact_compliance(0.0);
-        }
-        if let Some(Side::Uniform(length)) = self.body.sides.iter().find(|side| matches!(side, Side::Uniform(_))) {
-            force /= length;
-        }
-        let lowest = self.geometry.initial_gap(0.0, 0.0);
-        let rise = |length: f64| {
-            let around = [(0, [1.0, 0.0]), (1, [0.0, 1.0]), (0, [-1.0, 0.0]), (1, [0.0, -1.0])];
-            let found = around.into_iter().filter(|(axis, _)| self.body.sides[*axis] == Side::Found);
-            let gaps = found.map(|(_, [x1, x2])| self.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
-            gaps.fold(f64::INFINITY, f64::min) - lowest
-        };
-        let depth = |length: f64| {
-            let rise = rise(length);
-            rise >= approach.max(force * compliance / length) || rise.is_nan() || rise == f64::INFINITY
-        };
-        let lengths = (-48..=36).map(|k| 10f64.powf(0.25 * f64::from(k)));
-        lengths.into_iter().find(|&length| depth(length)).ok_or(Error::NoDomain { length: 1e9 })
     }
 }
 

@@ -85,8 +85,12 @@ impl StatesContact {
 
     /// With steps that are linear and stay so, as [`TimeRule::ExponentialLinear`](crate::contact::TimeRule::ExponentialLinear).
     #[must_use]
-    pub fn with_linear_steps(mut self) -> StatesContact {
-        Arc::make_mut(&mut self.scene).interpolant = Interpolant::Linear;
+    pub fn with_linear_steps(self) -> StatesContact {
+        self.with_interpolant(Interpolant::Linear)
+    }
+
+    pub(crate) fn with_interpolant(mut self, interpolant: Interpolant) -> StatesContact {
+        Arc::make_mut(&mut self.scene).interpolant = interpolant;
         self
     }
 
@@ -117,7 +121,7 @@ impl StatesContact {
     }
 
     /// Advances by `dt` to `time`.
-    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
+    pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
         non_negative("time step", dt)?;
         load.validate()?;
         let length = match &self.scene.temperature {
@@ -197,17 +201,17 @@ impl StatesContact {
         (self.time, self.reduced_time) = (other.time, other.reduced_time);
     }
 
-    pub(super) fn reset_differences(&mut self) {
+    pub(crate) fn reset_differences(&mut self) {
         self.levels.reset_differences();
     }
 
     /// The first corner of the temperature after a time; infinite where there is none.
-    pub(super) fn next_temperature_corner(&self, after: f64) -> f64 {
+    pub(crate) fn next_temperature_corner(&self, after: f64) -> f64 {
         self.scene.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
     }
 
     /// Depth of the load point \[m\].
-    pub(super) fn depth(&self) -> f64 {
+    pub(crate) fn depth(&self) -> f64 {
         self.levels.motions.depth
     }
 

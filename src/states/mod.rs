@@ -52,7 +52,6 @@ mod sweep;
 
 pub use crate::error::StatesError;
 pub use contact::{StatesContact, StatesReport};
-#[cfg(feature = "npy")]
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;

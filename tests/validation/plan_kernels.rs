@@ -2,6 +2,7 @@
 //! sines of force and approach, compared with a run on finer cells in shorter steps. `PLANS_KERNELS` and `PLANS_SEED`
 //! choose how many and which, `PLANS_CELLS` the side of the largest mesh that is run.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use viscocontact::Axis;
@@ -10,6 +11,10 @@ use viscocontact::prelude::*;
 
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::ratios::Ratios;
+
+/// Greatest work of planning over the work of the run, in the median, in convolutions times cells.
+const MOST_PLANNING: f64 = 3.0;
 
 type Kernel = Box<dyn Fn(&Grid) -> viscocontact::Result<InfluenceKernel>>;
 
@@ -113,7 +118,7 @@ fn run(scene: &Scene, builder: Builder, stepping: Stepping, times: &[f64]) -> (V
 #[test]
 fn plans_on_all_bodies_keep_their_promises() {
     let (seed, most) = (from_environment("PLANS_SEED", 1), from_environment("PLANS_CELLS", 220) as usize);
-    let (mut worst, mut peak, mut ratios, mut larger, mut promised) = (0.0f64, 0.0f64, Vec::new(), 0, 0);
+    let (mut worst, mut peak, mut ratios, mut larger, mut promised) = (0.0f64, 0.0f64, Ratios::default(), 0, 0);
     let mut refused = Vec::new();
     for number in 0..from_environment("PLANS_KERNELS", 8) {
         let scene = scene(seed, number);
@@ -126,7 +131,12 @@ fn plans_on_all_bodies_keep_their_promises() {
         if let Some(length) = scene.line {
             builder = builder.line(length);
         }
-        let plan = match builder.build() {
+        let mut work = 0.0;
+        let plan = builder.build_with(|progress| {
+            work = progress.work;
+            ControlFlow::Continue(())
+        });
+        let plan = match plan {
             Ok(plan) => plan,
             Err(error) => {
                 println!("{}: {error}", scene.name);
@@ -136,6 +146,8 @@ fn plans_on_all_bodies_keep_their_promises() {
         };
         let planning = started.elapsed();
         let [n1, n2] = plan.grid.cells();
+        let ratio = work / (plan.convolutions * plan.grid.len() as f64);
+        ratios.push(ratio, &scene.name);
         if n1 * n2 > most * most {
             larger += 1;
             continue;
@@ -163,22 +175,20 @@ fn plans_on_all_bodies_keep_their_promises() {
             off_peak = (highest / exact_highest - 1.0).abs() / scene.accuracy.target();
             peak = peak.max(off_peak);
         }
-        ratios.push(planning.as_secs_f64() / running.as_secs_f64());
         println!(
-            "{}: {n1} × {n2}, {off:.2}, {off_peak:.2}, planned in {:.2} of the run",
+            "{}: {n1} × {n2}, {off:.2}, {off_peak:.2}, planned in {:.2} of the work of the run, {:.2} of its time",
             scene.name,
-            ratios.last().unwrap()
+            ratio,
+            planning.as_secs_f64() / running.as_secs_f64()
         );
     }
-    ratios.sort_by(f64::total_cmp);
-    let median = ratios.get(ratios.len() / 2).copied().unwrap_or_default();
-    let last = ratios.last().copied().unwrap_or_default();
     println!(
-        "{} runs, {larger} larger, {} refused; worst error over the accuracy {worst:.2}, of {promised} peaks {peak:.2}; planning over \
-         run {median:.1} in the median, {last:.1} at most",
-        ratios.len(),
+        "{} plans, {larger} larger, {} refused; worst error over the accuracy {worst:.2}, of {promised} peaks {peak:.2}",
+        ratios.count(),
         refused.len()
     );
+    ratios.print("planning over the run", 3);
     assert!(refused.is_empty(), "{refused:?}");
     assert!(worst < 2.0 && peak < 2.0, "{worst} {peak}");
+    assert!(ratios.quantile(0.5) <= MOST_PLANNING, "{}", ratios.quantile(0.5));
 }

@@ -3,17 +3,21 @@
 //! `PLANS` and `PLANS_SEED` choose how many scenes and which, `PLANS_CELLS` the side of the largest mesh that is run.
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
 use viscocontact::prelude::*;
 
+use crate::common::ratios::Ratios;
 use crate::common::{Draws, RADIUS, builder_of, from_environment};
 
 const SLOPE: f64 = 0.05;
 const PUNCH: f64 = 1.0e-3;
 /// Modulus at once [Pa]: E* is four times that.
 const MODULUS: f64 = 1.0e6;
+/// Greatest work of planning over the work of the run, in the median, in convolutions times cells.
+const MOST_PLANNING: f64 = 3.0;
 /// Elements of a foundation.
 const ELEMENTS: usize = 3000;
 
@@ -252,18 +256,26 @@ fn observed(scene: &Scene, contact: &ViscoelasticContact) -> [Option<f64>; 2] {
 /// promised.
 struct Outcome {
     over: [Option<f64>; 3],
+    /// Work of planning over the work of the run.
+    ratio: f64,
     note: String,
 }
 
 fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     let Scene { geometry, material, history, until, accuracy, .. } = scene;
     let started = Instant::now();
-    let plan = Plan::builder(geometry, material, history, *until).accuracy(*accuracy).area(scene.area).build()?;
+    let mut work = 0.0;
+    let plan = Plan::builder(geometry, material, history, *until).accuracy(*accuracy).area(scene.area);
+    let plan = plan.build_with(|progress| {
+        work = progress.work;
+        ControlFlow::Continue(())
+    })?;
+    let ratio = work / (plan.convolutions * plan.grid.len() as f64);
     let planning = started.elapsed().as_secs_f64();
     let limit = from_environment("PLANS_CELLS", 150) as usize;
-    let note = format!("{plan}; planned in {planning:.2} s");
+    let note = format!("{plan}; planned in {planning:.2} s, {ratio:.2} of the work of the run");
     if plan.grid.len() > limit * limit {
-        return Ok(Outcome { over: [None; 3], note });
+        return Ok(Outcome { over: [None; 3], ratio, note });
     }
     let mut contact = plan.builder.clone().build()?;
     let mut run = contact.follow(history, plan.stepping, *until);
@@ -297,14 +309,14 @@ fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     let [main, radius, promised] = [error(0), error(1), pressure.filter(|_| plan.pressure_converges())];
     let show = |value: Option<f64>| value.map_or("-".into(), |over| format!("{over:.2}"));
     let note = format!("main {}, radius {}, pressure {}; {note}", show(main), show(radius), show(pressure));
-    Ok(Outcome { over: [main, radius, promised], note })
+    Ok(Outcome { over: [main, radius, promised], ratio, note })
 }
 
 #[test]
 fn plans_of_random_scenes_keep_their_promise() {
     let (seed, first, count) =
         (from_environment("PLANS_SEED", 1), from_environment("PLANS_FIRST", 0), from_environment("PLANS", 8));
-    let (mut failed, mut delivered) = (vec![], [0; 3]);
+    let (mut failed, mut delivered, mut ratios) = (vec![], [0; 3], Ratios::default());
     let scenes = (first..first + count).flat_map(|number| {
         [Some(scene(seed, number)), (number % 4 == 0).then(|| tilting(seed, number))].into_iter().flatten()
     });
@@ -313,7 +325,8 @@ fn plans_of_random_scenes_keep_their_promise() {
             // a tilting punch needs more cells than a plan allows
             Err(Error::CountOutOfRange { .. }) if scene.shape.is_none() && scene.by_force => {}
             Err(error) => failed.push(format!("{}: {error}", scene.name)),
-            Ok(Outcome { over, note }) => {
+            Ok(Outcome { over, ratio, note }) => {
+                ratios.push(ratio, &scene.name);
                 println!("{}: {note}", scene.name);
                 delivered.iter_mut().zip(over).for_each(|(count, over)| *count += usize::from(over.is_some()));
                 if over.iter().flatten().any(|&over| over > 2.0) {
@@ -326,5 +339,7 @@ fn plans_of_random_scenes_keep_their_promise() {
     println!(
         "{run} of {count} plans run, {radius} with a contact radius, {pressure} with the greatest pressure promised"
     );
+    ratios.print("planning over the run", 3);
     assert!(failed.is_empty(), "{} of {count} plans:\n{}", failed.len(), failed.join("\n"));
+    assert!(ratios.quantile(0.5) <= MOST_PLANNING, "{}", ratios.quantile(0.5));
 }

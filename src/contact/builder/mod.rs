@@ -135,6 +135,17 @@ impl Builder {
         Builder { times: Some(Times::of_run(history, until)), ..self }
     }
 
+    /// The material of a run with [`Builder::times_of`], with its series.
+    pub(crate) fn material_of_run(
+        material: &Material,
+        history: &dyn LoadHistory,
+        until: f64,
+        temperature: Option<&TemperatureHistory>,
+        settings: &Settings,
+    ) -> Result<Material> {
+        Times::of_run(history, until).fit(material, temperature, settings.series_tolerance)
+    }
+
     /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
     /// temperature of the law. The times of [`Builder::times`] and [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial) are
     /// reduced times; [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
