@@ -5,7 +5,7 @@ use crate::load::Load;
 use crate::plan::Accuracy;
 use crate::plan::domain::{ContactSize, Side};
 use crate::plan::error_law::{ErrorLaw, ORDERS};
-use crate::plan::levels::{Curve, Trace};
+use crate::plan::levels::Curve;
 use crate::plan::loads::Loads;
 use crate::plan::steps::{Differences, Steps, relative};
 use crate::plan::trial_runs::{Probe, Run, StepState, TrialScene, greatest};
@@ -24,9 +24,13 @@ const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
 const MAX_WORK_ORDER: f64 = 0.4;
 /// Least width of the contact on a finer mesh, as a fraction of the width on a coarse one.
 const MIN_NARROWING: f64 = 0.25;
-/// Levels below the greatest at which elastic states are compared, and their depths over the greatest, as of a paraboloid.
+/// Levels of the states of a curve over the greatest, and their depths over the greatest, as of a paraboloid.
 const LEVELS: [f64; 3] = [1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0];
 const DEPTHS: [f64; 3] = [0.4, 0.16, 0.064];
+/// Ratio of the levels at which meshes are compared, and the most of them.
+const RATIO: f64 = 1.6;
+const MAX_LEVELS: usize = 8;
+const LARGEST_RATIO: f64 = 2.5;
 /// A contact of greatest pressure narrower than this fraction of the largest contact gets a separate domain.
 const SMALL_CONTACT: f64 = 1.0 / 3.0;
 /// Levels nearer than this fraction are one.
@@ -61,34 +65,41 @@ pub(super) struct Meshes {
     finest: Run,
     /// Index of the state with the greatest pressure, if it is known.
     highest: Option<usize>,
+    /// Error of the contact radius due to creep at the rim.
+    rim: ErrorLaw,
     /// Power of the cells across with which the convolutions grow.
     work_order: f64,
 }
 
 impl Meshes {
+    /// The coarsest mesh.
+    fn coarsest(finest: Run, punch: bool) -> Meshes {
+        let (across, differences, work_order) = (LEAST_ACROSS, Vec::new(), 0.0);
+        Meshes { punch, across, differences, finest, highest: None, rim: ErrorLaw::NONE.times(0.0), work_order }
+    }
+
     /// Refines until the needed number of cells across is within the range of extrapolation.
     fn refine(
+        mut self,
         scene: &TrialScene<'_>,
         size: &ContactSize,
-        (base, punch, highest): (Run, bool, Option<usize>),
         probe: &Probe<'_>,
         needed: impl Fn(&Meshes) -> f64,
     ) -> Result<Meshes> {
-        let (across, differences) = (LEAST_ACROSS, Vec::new());
-        let mut meshes = Meshes { punch, across, differences, finest: base, highest, work_order: 0.0 };
+        let meshes = &mut self;
         loop {
             meshes.across *= 2.0;
             let grid = size.grid(meshes.across)?;
             let [n1, n2] = grid.cells();
             let finer = scene.probe(grid, probe)?;
-            meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states, highest));
+            meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states, meshes.highest));
             let growth = relative(finer.convolutions, meshes.finest.convolutions);
             meshes.work_order = growth.max(1.0).log2().min(MAX_WORK_ORDER);
             meshes.finest = finer;
             let reach = if meshes.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
             let last = meshes.across >= MOST_ACROSS || 2 * n1.max(n2) > MOST_TRIAL_CELLS;
-            if last || needed(&meshes) <= reach * meshes.across {
-                return Ok(meshes);
+            if last || needed(meshes) <= reach * meshes.across {
+                return Ok(self);
             }
         }
     }
@@ -123,7 +134,8 @@ impl Meshes {
 
     /// Convergence of the contact radius at any time.
     fn radius(&self) -> ErrorLaw {
-        ErrorLaw::by_cells(&self.each(|differences| differences.radius), self.across)
+        let law = ErrorLaw::by_cells(&self.each(|differences| differences.radius), self.across);
+        ErrorLaw { error: law.error.max(self.rim.at(self.across)), ..law }
     }
 
     /// Convergence of the greatest pressure, which requires that the finest mesh resolves the peak. Differences of a
@@ -193,8 +205,8 @@ pub(super) fn converge(scene: &TrialScene<'_>, area: bool) -> Result<ConvergedRu
 
 fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
     let grid = size.grid(LEAST_ACROSS)?;
-    let states = loads.on_states.then(|| States::of(scene, loads, grid.clone())).transpose()?;
-    let steps = Steps::find(scene, &grid, states.as_ref().and_then(|states| states.curve.as_ref()))?;
+    let curve = if loads.on_states { curve(scene, &loads.largest, grid.clone())? } else { None };
+    let steps = Steps::find(scene, &grid, curve.as_ref())?;
     // an upper bound of the level is larger than the contact
     let is_found = |axis: usize| size.sides[axis] == Side::Found;
     let is_narrow = |axis: usize| is_found(axis) && steps.run.size.width[axis] < MIN_WIDTH * size.width[axis];
@@ -202,37 +214,79 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
         return converge_on(scene, loads, &steps.run.size, area);
     }
     let (punch, left) = (scene.has_edge(&grid), steps.left_for_mesh(scene.accuracy));
-    let Some((mut states, trace)) = states.zip(steps.trace) else {
+    let Some((curve, trace)) = curve.zip(steps.trace) else {
         let probe = Probe::Steps(&steps.run.steps);
-        let meshes = Meshes::refine(scene, size, (steps.run.clone(), punch, None), &probe, |meshes| {
+        let meshes = Meshes::coarsest(steps.run.clone(), punch).refine(scene, size, &probe, |meshes| {
             let main = [meshes.main(), meshes.singular()].map(|law| (law, left));
             across_for(main, meshes.pressure(), meshes.radius(), scene.accuracy, area)
         })?;
         let pressure = meshes.pressure();
         return Ok(converged(steps, &meshes, meshes.main(), pressure, size));
     };
-    let peak = states.peak(scene, &trace, grid)?;
-    let (at_peak, probe) = (matches!(peak, Peak::At(_)), Probe::Elastic(&states.loads));
-    let highest = if let Peak::At(highest) = peak { Some(highest) } else { Some(0) };
+    let load = |level: f64| match loads.largest[0] {
+        Load::Force { tilt, .. } => Load::Force { normal: level, tilt },
+        other => Load::Approach { approach: curve.approach(level), tilt: other.tilt() },
+    };
+    let (mut levels, peak) = (levels(trace.levels), trace.level);
+    let is_period = size.sides.iter().any(|side| matches!(side, Side::Period(_)));
+    // a period holds all of its contacts
+    let is_small = !is_period && curve.radius(peak) < SMALL_CONTACT * curve.radius(trace.levels[1]);
+    let is_at = |level: &f64| (peak / level - 1.0).abs() < SAME_LEVEL;
+    let highest = levels.iter().position(is_at).unwrap_or(levels.len());
+    if highest == levels.len() && peak > 0.0 && !is_small {
+        levels.push(peak);
+    }
+    let states: Vec<Load> = levels.into_iter().map(load).collect();
     let main = |meshes: &Meshes| meshes.main().times(trace.force_amplification);
-    let pressure = |meshes: &Meshes| match at_peak {
+    // a pressure on a separate domain does not determine the cells of these meshes
+    let pressure = |meshes: &Meshes| match trace.excess == 0.0 && peak > 0.0 && !is_small {
         true => meshes.pressure().times(trace.pressure_amplification),
-        // a pressure on a separate domain does not determine the cells of these meshes
         false => ErrorLaw::NONE,
     };
-    let meshes = Meshes::refine(scene, size, (states.base.clone(), punch, highest), &probe, |meshes| {
+    let (base, probe) = (scene.elastic(grid, &states)?, Probe::Elastic(&states));
+    let rim = ErrorLaw { error: trace.rim, order: 1.0, across: LEAST_ACROSS, converges: true };
+    let coarsest = Meshes { highest: Some(highest), rim, ..Meshes::coarsest(base, punch) };
+    let meshes = coarsest.refine(scene, size, &probe, |meshes| {
         let main = [main(meshes), meshes.singular()].map(|law| (law, left));
         across_for(main, pressure(meshes), meshes.radius(), scene.accuracy, area)
     })?;
-    let pressure = match peak {
-        Peak::Small(load) => match small_contact(scene, load, size) {
+    let pressure = if is_small && trace.excess == 0.0 && peak > 0.0 {
+        match small_contact(scene, load(peak), size) {
             Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. })) => return Err(error),
             // the run succeeds without a separate domain for this part
             law => law.map_or(ErrorLaw::NONE, |law| law.times(trace.pressure_amplification)),
-        },
-        _ => pressure(&meshes),
+        }
+    } else {
+        pressure(&meshes)
     };
     Ok(converged(steps, &meshes, main(&meshes), pressure, size))
+}
+
+/// The levels at which meshes are compared, the greatest first: the run is made of the states between its least level
+/// and its greatest.
+fn levels([least, greatest]: [f64; 2]) -> Vec<f64> {
+    let parts = ((greatest / least).ln() / RATIO.ln()).ceil().clamp(0.0, (MAX_LEVELS - 1) as f64);
+    let ratio = if parts > 0.0 { (greatest / least).powf(1.0 / parts).min(LARGEST_RATIO) } else { 1.0 };
+    let mut levels: Vec<f64> = (0..=parts as usize).map(|k| greatest / ratio.powf(k as f64)).collect();
+    levels.extend(levels.last().filter(|last| least < (1.0 - SAME_LEVEL) * **last).map(|_| least));
+    levels
+}
+
+/// A curve through elastic states on a mesh; `None` where they do not ascend.
+fn curve(scene: &TrialScene<'_>, largest: &[Load], grid: crate::Grid) -> Result<Option<Curve>> {
+    let mut loads = largest.to_vec();
+    loads.dedup();
+    let top = scene.elastic(grid.clone(), &loads)?;
+    let depth = greatest(&top.states, |state| state.depth - top.rest);
+    loads.extend(largest.iter().take(1).flat_map(|load| {
+        (0..LEVELS.len()).map(|k| match *load {
+            Load::Force { normal, tilt } => Load::Force { normal: LEVELS[k] * normal, tilt },
+            _ => Load::Approach { approach: top.rest + DEPTHS[k] * depth, tilt: load.tilt() },
+        })
+    }));
+    let base = scene.elastic(grid, &loads)?;
+    let line = scene.body.sides.iter().any(|side| matches!(side, Side::Uniform(_)));
+    Ok(Curve::through(&base, loads[0].tilt(), line).ok())
 }
 
 fn converged(steps: Steps, meshes: &Meshes, main: ErrorLaw, pressure: ErrorLaw, size: &ContactSize) -> ConvergedRun {
@@ -252,76 +306,13 @@ fn converged(steps: Steps, meshes: &Meshes, main: ErrorLaw, pressure: ErrorLaw, 
     }
 }
 
-/// Elastic states of a run on the coarsest mesh.
-struct States {
-    loads: Vec<Load>,
-    base: Run,
-    /// `None` where the states do not ascend.
-    curve: Option<Curve>,
-}
-
-/// Where the pressure of a run is greatest.
-enum Peak {
-    /// Aside of the middle of the contact, or nowhere.
-    Unknown,
-    /// In the elastic state of this index.
-    At(usize),
-    /// In an elastic contact much smaller than the largest.
-    Small(Load),
-}
-
-impl States {
-    fn of(scene: &TrialScene<'_>, Loads { largest, .. }: &Loads, grid: crate::Grid) -> Result<States> {
-        let mut loads = largest.clone();
-        loads.dedup();
-        let top = scene.elastic(grid.clone(), &loads)?;
-        let depth = greatest(&top.states, |state| state.depth - top.rest);
-        let lower = largest.iter().take(1).flat_map(|load| {
-            (0..LEVELS.len()).map(|k| match *load {
-                Load::Force { normal, tilt } => Load::Force { normal: LEVELS[k] * normal, tilt },
-                _ => Load::Approach { approach: top.rest + DEPTHS[k] * depth, tilt: load.tilt() },
-            })
-        });
-        loads.extend(lower);
-        let base = scene.elastic(grid, &loads)?;
-        let line = scene.body.sides.iter().any(|side| matches!(side, Side::Uniform(_)));
-        let curve = Curve::through(&base, loads[0].tilt(), line).ok();
-        Ok(States { loads, base, curve })
-    }
-
-    /// Finds the peak, and adds its state where it is not there.
-    fn peak(&mut self, scene: &TrialScene<'_>, trace: &Trace, grid: crate::Grid) -> Result<Peak> {
-        let Some(curve) = self.curve.as_ref().filter(|_| trace.excess == 0.0 && trace.level > 0.0) else {
-            return Ok(Peak::Unknown);
-        };
-        let is_there = |state: &StepState| (state.force / trace.level - 1.0).abs() < SAME_LEVEL;
-        if let Some(index) = self.base.states.iter().position(is_there) {
-            return Ok(Peak::At(index));
-        }
-        let load = match self.loads[0] {
-            Load::Force { tilt, .. } => Load::Force { normal: trace.level, tilt },
-            other => Load::Approach { approach: curve.approach(trace.level), tilt: other.tilt() },
-        };
-        let largest = greatest(&self.base.states, |state| state.force);
-        let is_period = self.base.size.sides.iter().any(|side| matches!(side, Side::Period(_)));
-        // a period holds all of its contacts
-        if !is_period && curve.radius(trace.level) < SMALL_CONTACT * curve.radius(largest) {
-            return Ok(Peak::Small(load));
-        }
-        let state = scene.elastic(grid, &[load])?;
-        self.base.convolutions += state.convolutions;
-        self.base.states.extend(state.states);
-        self.loads.push(load);
-        Ok(Peak::At(self.loads.len() - 1))
-    }
-}
-
 /// Convergence of the greatest pressure of an elastic contact on a separate domain.
 fn small_contact(scene: &TrialScene<'_>, load: Load, whole: &ContactSize) -> Result<ErrorLaw> {
     let (loads, size) = ([load], ContactSize::of(scene, &[load])?);
     let (size, meshes) = size.on_growing_domain(|size| {
         let base = scene.elastic(size.grid(LEAST_ACROSS)?, &loads)?;
-        let meshes = Meshes::refine(scene, size, (base, false, Some(0)), &Probe::Elastic(&loads), |meshes| {
+        let coarsest = Meshes { highest: Some(0), ..Meshes::coarsest(base, false) };
+        let meshes = coarsest.refine(scene, size, &Probe::Elastic(&loads), |meshes| {
             let pressure = meshes.pressure();
             if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
         })?;

@@ -95,7 +95,7 @@ impl Curve {
         self.states.approach(level)
     }
 
-    /// Contact radius √(A/π) of a point contact at a level, or what is proportional to the half width of a line [m].
+    /// Contact radius √(A/π) at a level [m].
     pub(super) fn radius(&self, level: f64) -> f64 {
         if level <= 0.0 {
             return 0.0;
@@ -103,8 +103,12 @@ impl Curve {
         let level = level.ln();
         let upper = self.areas.partition_point(|[other, _]| *other < level).clamp(1, self.areas.len() - 1);
         let [[l0, a0], [l1, a1]] = [self.areas[upper - 1], self.areas[upper]];
-        let area = (a0 + (a1 - a0) / (l1 - l0) * (level - l0)).exp();
-        if self.line { area } else { area.sqrt() }
+        (0.5 * (a0 + (a1 - a0) / (l1 - l0) * (level - l0))).exp()
+    }
+
+    /// What is proportional to the radius of the contact, or to its half width on a line.
+    fn edge(&self, level: f64) -> f64 {
+        self.radius(level).powi(if self.line { 2 } else { 1 })
     }
 
     /// A pressure at a distance √(`share` a²) from the middle of the contact, in a unit of its own: Σ w ∫ q dl, with q =
@@ -113,7 +117,7 @@ impl Curve {
         let (place, power) = (share * edge * edge, if self.line { 2 } else { 3 });
         let (mut bottom, mut inner, mut pressure) = (0.0, 0.0_f64, 0.0);
         for (level, traction) in levels {
-            let outer = self.radius(level);
+            let outer = self.edge(level);
             let width = outer.powi(power) - inner.powi(power);
             if width > 0.0 {
                 let [near, far] = [inner, outer].map(|radius| (radius * radius - place).max(0.0).sqrt());
@@ -132,7 +136,8 @@ impl Curve {
         for &(dt, load) in steps {
             let start = time;
             time += dt;
-            for part in 1..=if dt > 0.0 { parts } else { 1 } {
+            let parts = if dt > 0.0 { parts } else { 1 };
+            for part in 1..=parts {
                 let end = if part == parts { time } else { start + dt * f64::from(part) / f64::from(parts) };
                 let load = if part == parts { load } else { scene.history.before(end).validated_at(end)? };
                 match contact.step_to(end, end - contact.time(), load) {
@@ -154,7 +159,7 @@ impl Curve {
     }
 
     fn state(&self, contact: &StatesContact) -> LevelState {
-        let (level, edge) = (contact.level(), self.radius(contact.level()));
+        let (level, edge) = (contact.level(), self.edge(contact.level()));
         let at = |share: f64| self.pressure(contact.tractions(), edge, share);
         let (centre, traction) = (at(0.0), contact.tractions().map(|(_, traction)| traction).fold(0.0, f64::max));
         let elastic = self.pressure([(level, 1.0)].into_iter(), edge, 0.0);
@@ -162,7 +167,7 @@ impl Curve {
             level,
             depth: contact.depth(),
             force: contact.force(),
-            radius: edge,
+            radius: self.radius(level),
             centre,
             aside: PLACES.into_iter().map(at).fold(0.0, f64::max),
             traction,
@@ -183,6 +188,9 @@ impl Curve {
         let (centre, force) = (greatest(&exact), exact.iter().map(|state| state.force).fold(0.0, f64::max));
         let aside = exact.iter().map(|state| state.aside).fold(0.0, f64::max);
         let highest = exact.iter().find(|state| state.centre == centre);
+        let widest = exact.iter().map(|state| state.radius).fold(0.0, f64::max);
+        let resolved = run.states.iter().zip(&taken).filter(|(state, _)| state.resolved);
+        let rim = resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
         let loads = exact.iter().zip(&run.steps).filter(|(_, (_, load))| !matches!(load, Load::Force { .. }));
         let error = Differences {
             main: over(|state| state.depth).max(over(|state| state.force)),
@@ -193,8 +201,12 @@ impl Curve {
         Ok(Trace {
             error,
             level: highest.map_or(0.0, |state| state.level),
+            levels: exact.iter().filter(|state| state.level > 0.0).fold([f64::INFINITY, 0.0], |[least, greatest], state| {
+                [least.min(state.level), greatest.max(state.level)]
+            }),
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
             force_amplification: loads.map(|(state, _)| relative(state.traction * state.level, force)).fold(1.0, f64::max),
+            rim: relative(rim, widest),
             excess: relative((aside - centre).max(0.0), aside),
         })
     }
@@ -219,12 +231,16 @@ struct LevelState {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trace {
     pub(super) error: Differences,
-    /// The level at which the pressure is greatest.
+    /// The level at which the pressure is greatest, and the least and the greatest level of a contact.
     pub(super) level: f64,
+    pub(super) levels: [f64; 2],
     /// p = w(c) p_e(c) − ∫ p_e dw: errors of the elastic pressure and the elastic force, relative to their values, times
     /// these factors at most are those of the pressure and the force of the run.
     pub(super) pressure_amplification: f64,
     pub(super) force_amplification: f64,
+    /// Difference of the contact radius between the run on cells and its elastic states, over the greatest: the pressures
+    /// at a growing rim, which give the fractions of cells, are others than elastic ones.
+    pub(super) rim: f64,
     /// By which share of itself the greatest pressure aside of the middle of the contact exceeds the greatest in the
     /// middle, as under moving edges of bodies that creep fast.
     pub(super) excess: f64,
