@@ -133,14 +133,14 @@ impl<'a> PlanBuilder<'a> {
     /// Plans the run.
     ///
     /// # Errors
-    /// If the end of the run is not finite and positive, a part is invalid, no domain holds the contact, the coarse
-    /// runs fail, or approach and force need more than 8192 cells along a side; for a temperature of the run as
+    /// If the end of the run is not finite and positive, a part is invalid, no domain holds the contact, a contact problem
+    /// on a coarse mesh fails, or approach and force need more than 8192 cells along a side; for a temperature of the run as
     /// [`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor).
     pub fn build(self) -> Result<Plan> {
         self.build_with(|_| ControlFlow::Continue(()))
     }
 
-    /// As [`PlanBuilder::build`], calling `progress` after each step of a coarse run; it may end the planning.
+    /// As [`PlanBuilder::build`], calling `progress` after each contact problem on a coarse mesh; it may end the planning.
     ///
     /// # Errors
     /// As [`PlanBuilder::build`]; [`Error::Cancelled`] if `progress` ends it.
@@ -158,9 +158,23 @@ impl<'a> PlanBuilder<'a> {
             }
         };
         let (tolerance, progress, kernels) = (accuracy.step_tolerance(), &progress, &RefCell::default());
+        if let Some(temperature) = temperature {
+            // before the fit, whose error would name a shift factor
+            temperature.reduced_time(0.0, until)?;
+        }
         let fitted = &Builder::material_of_run(material, history, until, temperature, &accuracy.settings())?;
-        let scene =
-            TrialScene { geometry, material: fitted, temperature, history, until, accuracy, tolerance, progress, body, kernels };
+        let scene = TrialScene {
+            geometry,
+            material: fitted,
+            temperature,
+            history,
+            until,
+            accuracy,
+            tolerance,
+            progress,
+            body,
+            kernels,
+        };
         let converged = converge(&scene, area)?;
         let size = &converged.size;
         let needed = |pressure: ErrorLaw| {

@@ -309,15 +309,20 @@ fn converged(steps: Steps, meshes: &Meshes, main: ErrorLaw, pressure: ErrorLaw, 
 /// Convergence of the greatest pressure of an elastic contact on a separate domain.
 fn small_contact(scene: &TrialScene<'_>, load: Load, whole: &ContactSize) -> Result<ErrorLaw> {
     let (loads, size) = ([load], ContactSize::of(scene, &[load])?);
-    let (size, meshes) = size.on_growing_domain(|size| {
+    let converged = size.on_growing_domain(|size| {
         let base = scene.elastic(size.grid(LEAST_ACROSS)?, &loads)?;
+        // a tip
+        if base.states[0].peak.is_none() {
+            return Ok(None);
+        }
         let coarsest = Meshes { highest: Some(0), ..Meshes::coarsest(base, false) };
         let meshes = coarsest.refine(scene, size, &Probe::Elastic(&loads), |meshes| {
             let pressure = meshes.pressure();
             if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
         })?;
-        Ok((*size, meshes))
+        Ok(Some((*size, meshes)))
     })?;
+    let Some((size, meshes)) = converged else { return Ok(ErrorLaw::NONE) };
     let larger = [0, 1].map(|axis| whole.width[axis] / size.width[axis]);
     let law = meshes.pressure();
     Ok(ErrorLaw { across: meshes.across * larger[0].max(larger[1]), ..law })

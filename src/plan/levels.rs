@@ -9,17 +9,25 @@ use std::sync::Arc;
 use crate::error::{Error, Result, StepError};
 use crate::load::{Load, Tilt};
 use crate::plan::steps::{Differences, relative};
-use crate::plan::trial_runs::{Run, TrialScene};
+use crate::plan::trial_runs::{Run, StepState, TrialScene};
 use crate::states::{ElasticState, ElasticStates, Rest, StatesContact};
 
-/// Number of parts of a step of the run that is taken as exact.
-const PARTS: u32 = 16;
+/// Number of parts of a step of the run that is taken as exact, fewer where all parts would be more than so many: their
+/// groups of levels are as many.
+const PARTS: usize = 16;
+const MAX_PARTS: usize = 4096;
+const MIN_PARTS: usize = 2;
 /// Level of a curve beyond its last state, over the level of that state.
 const BEYOND: f64 = 16.0;
 /// Levels of a curve for any shape [m²].
 const ANY_LEVELS: [f64; 2] = [1e-150, 1e150];
 /// δ ∝ l^(2/3), A ∝ l^(2/3) of a paraboloid.
 const PARABOLOID: f64 = 2.0 / 3.0;
+/// Least force at which the radii of the contact on cells and on levels are compared, over the greatest force: less
+/// does not determine an area.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Greatest error of the radius at a growing rim over the greatest difference on the coarsest mesh, which has few states.
+const RIM_MARGIN: f64 = 1.5;
 /// Squared distances from the middle of the contact at which the pressure is compared, over the squared radius.
 const PLACES: [f64; 7] = [0.1, 0.3, 0.6, 0.85, 0.95, 0.99, 0.999];
 
@@ -177,7 +185,8 @@ impl Curve {
 
     /// Error in time of a trial run, and what its pressures are made of.
     pub(super) fn trace(&self, scene: &TrialScene<'_>, run: &Run) -> Result<Trace> {
-        let [taken, exact] = [1, PARTS].map(|parts| self.follow(scene, &run.steps, parts));
+        let parts = (MAX_PARTS / run.steps.len().max(1)).clamp(MIN_PARTS, PARTS);
+        let [taken, exact] = [1, parts as u32].map(|parts| self.follow(scene, &run.steps, parts));
         let (taken, exact) = (taken?, exact?);
         let over = |of: fn(&LevelState) -> f64| {
             let most = exact.iter().map(|state| of(state).abs()).fold(0.0, f64::max);
@@ -189,8 +198,9 @@ impl Curve {
         let aside = exact.iter().map(|state| state.aside).fold(0.0, f64::max);
         let highest = exact.iter().find(|state| state.centre == centre);
         let widest = exact.iter().map(|state| state.radius).fold(0.0, f64::max);
-        let resolved = run.states.iter().zip(&taken).filter(|(state, _)| state.resolved);
-        let rim = resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
+        let counts = |(state, level): &(&StepState, &LevelState)| state.resolved && level.force > NEGLIGIBLE * force;
+        let resolved = run.states.iter().zip(&taken).filter(counts);
+        let rim = RIM_MARGIN * resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
         let loads = exact.iter().zip(&run.steps).filter(|(_, (_, load))| !matches!(load, Load::Force { .. }));
         let error = Differences {
             main: over(|state| state.depth).max(over(|state| state.force)),
@@ -201,11 +211,16 @@ impl Curve {
         Ok(Trace {
             error,
             level: highest.map_or(0.0, |state| state.level),
-            levels: exact.iter().filter(|state| state.level > 0.0).fold([f64::INFINITY, 0.0], |[least, greatest], state| {
-                [least.min(state.level), greatest.max(state.level)]
-            }),
+            levels: exact
+                .iter()
+                .filter(|state| state.level > 0.0)
+                .fold([f64::INFINITY, 0.0], |[least, greatest], state| {
+                    [least.min(state.level), greatest.max(state.level)]
+                }),
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
-            force_amplification: loads.map(|(state, _)| relative(state.traction * state.level, force)).fold(1.0, f64::max),
+            force_amplification: loads
+                .map(|(state, _)| relative(state.traction * state.level, force))
+                .fold(1.0, f64::max),
             rim: relative(rim, widest),
             excess: relative((aside - centre).max(0.0), aside),
         })

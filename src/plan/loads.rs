@@ -36,10 +36,11 @@ impl Loads {
             Load::Approach { approach, .. } => (1, approach),
             Load::Spring { drive, .. } => (2, drive),
         };
-        if on_states && all.iter().all(|load| kind(load).0 == 0) {
-            if let Ok(normal) = greatest_level(scene) {
-                return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
-            }
+        if on_states
+            && all.iter().all(|load| kind(load).0 == 0)
+            && let Ok(normal) = greatest_level(scene)
+        {
+            return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
         }
         let compliance = scene.softest_compliance()?;
         let of_kind = |which| all.iter().filter(move |load| kind(load).0 == which);

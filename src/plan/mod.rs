@@ -19,28 +19,32 @@ use crate::observe::mesh_error::MeshError;
 
 /// A run planned for an accuracy: the extent of the contact, the required cells and steps, and their cost.
 ///
-/// The plan runs the scene on coarse meshes, on each with the same steps. The differences between successive meshes,
-/// each twice as fine as the last, give the required fineness of the mesh: they are extrapolated at most threefold, and
-/// further only beyond 128 cells across the contact. The difference from a run with shorter steps gives the error in
-/// time; where it exceeds its share, the steps are shortened. Where the pressure is greatest while the contact is
-/// small, as under a constant force on a body that creeps much, this part of the run gets coarse runs on a separate
-/// domain. The domain reaches from the origin as far as the contact does; the cells are elongated like the contact.
+/// The plan solves a few elastic contacts: as the contact is a superposition of its elastic states
+/// ([`states`](crate::states)), the error that a mesh leaves in the states between the least and the greatest level of
+/// the run bounds its error in the run. The differences between successive meshes, each twice as fine as the last, give
+/// the required fineness: they are extrapolated at most threefold, and further only beyond 128 cells across the contact.
+/// One coarse run, 16 cells across, gives the steps. The same steps on levels, and sixteenths of them, give the error in
+/// time without a contact problem; where it exceeds its share, the steps are shortened. Where the pressure is greatest
+/// while the contact is small, as under a constant force on a body that creeps much, this contact gets a separate domain.
+/// Where the tilt or the load point changes, the contact is no superposition: then the coarse run is repeated with
+/// shorter steps and on finer meshes. The domain reaches from the origin as far as the contact does; the cells are
+/// elongated like the contact.
 ///
 /// # Promised accuracy
 /// Errors of at most twice the accuracy, relative to the greatest value of the run, of
 /// * approach and force at all times,
-/// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
+/// * the greatest pressure of the run, if it converges and the coarse meshes resolve its peak ([`Plan::pressure_converges`]),
 /// * with [`PlanBuilder::area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// Other errors are estimated, not promised: [`Plan::mesh_error`] estimates the error of the area,
 /// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve
 /// less well at growing edges, and [`Plan::time_error`] the error in time, which exceeds the accuracy if shorter steps
-/// do not lower it. The plan does not include details that the coarse runs do not resolve, such as roughness finer than
-/// their cells or loads shorter than their steps. A contact far from the origin takes many cells without contact: shift
+/// do not lower it. The plan does not include details that the coarse meshes do not resolve, such as roughness finer
+/// than their cells, or loads shorter than the steps. A contact far from the origin takes many cells without contact: shift
 /// the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
-/// Planning takes as long as several runs on up to 128 cells across the contact. The plan does not include changes to its
-/// builder. Other bodies than half-spaces are planned with [`PlanBuilder::kernel`], periodic ones with
+/// Planning takes less work than the planned run in the median ([`PlanProgress::work`]), and several times as much
+/// where the planned mesh is as coarse as the meshes of the plan. The plan does not include changes to its builder. Other bodies than half-spaces are planned with [`PlanBuilder::kernel`], periodic ones with
 /// [`PlanBuilder::period`] and line contacts with
 /// [`PlanBuilder::line`].
 ///
@@ -79,8 +83,8 @@ pub struct Plan {
     pub convolutions: f64,
     /// Approximate memory of the contact \[bytes\]: [`Builder::memory`], and the fields of adaptive steps.
     pub bytes: u64,
-    /// Expected error in time of approach and force, relative to their greatest values: the difference from a run with
-    /// shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
+    /// Expected error in time of approach and force, relative to their greatest values: the difference from sixteenths of
+    /// the steps on elastic states, or from a run with shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
     pub time_error: Option<f64>,
     /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
     /// at all times, and of the greatest pressure of the run, if it converges.
@@ -94,8 +98,8 @@ pub struct Plan {
 impl Plan {
     /// Whether the greatest pressure of the run is promised. There are three exceptions: the pressure does not converge
     /// with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and under moving
-    /// edges of bodies that creep fast; it may have been greater while the contact was too small for the coarse runs,
-    /// as under ramps on bodies that creep fast; or it would require more than 8192 cells along a side.
+    /// edges of bodies that creep fast; the tilt or the load point changes, and the contact was small before; or it would
+    /// require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.mesh_error.max_pressure.is_some()
     }

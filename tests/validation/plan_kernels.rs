@@ -1,6 +1,6 @@
 //! Plans on all bodies: random shapes on layers, periodic bodies, lines and half-spaces, under steps, ramps, holds and
-//! sines of force and approach, compared with a run on finer cells in shorter steps. `PLANS_KERNELS` and `PLANS_SEED`
-//! choose how many and which, `PLANS_CELLS` the side of the largest mesh that is run.
+//! sines of force and approach, compared with a run on finer cells in shorter steps. `PLANS_KERNELS`, `PLANS_FIRST` and
+//! `PLANS_SEED` choose how many and which, `PLANS_CELLS` the side of the largest mesh that is run.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -191,5 +191,6 @@ fn plans_on_all_bodies_keep_their_promises() {
     ratios.print("planning over the run", 3);
     assert!(refused.is_empty(), "{refused:?}");
     assert!(worst < 2.0 && peak < 2.0, "{worst} {peak}");
-    assert!(ratios.quantile(0.5) <= MOST_PLANNING, "{}", ratios.quantile(0.5));
+    // a few scenes have no median to speak of
+    assert!(ratios.count() < 8 || ratios.quantile(0.5) <= MOST_PLANNING, "{}", ratios.quantile(0.5));
 }
