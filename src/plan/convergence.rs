@@ -237,7 +237,9 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
         levels.push(peak);
     }
     let states: Vec<Load> = levels.into_iter().map(load).collect();
-    let main = |meshes: &Meshes| meshes.main().times(trace.force_amplification);
+    // the levels of a punch are alike: their errors are in proportion to themselves, and so is the error of the run
+    let amplification = if punch { 1.0 } else { trace.force_amplification };
+    let main = |meshes: &Meshes| meshes.main().times(amplification);
     // a pressure on a separate domain does not determine the cells of these meshes
     let pressure = |meshes: &Meshes| match trace.excess == 0.0 && peak > 0.0 && !is_small {
         true => meshes.pressure().times(trace.pressure_amplification),

@@ -70,10 +70,11 @@ impl Steps {
         Ok(steps)
     }
 
-    /// The greater of the errors of approach or force and of the greatest pressure of the run; 0 where nothing was
-    /// estimated.
+    /// The greater of the errors of approach or force and of the greatest pressure of the run, if that may be promised; 0
+    /// where nothing was estimated.
     fn worst(&self) -> f64 {
-        self.error.map_or(0.0, |error| error.main.max(error.pressure))
+        let promised = self.trace.is_none_or(|trace| trace.excess == 0.0);
+        self.error.map_or(0.0, |error| if promised { error.main.max(error.pressure) } else { error.main })
     }
 
     fn with_tolerance(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
