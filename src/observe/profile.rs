@@ -1,4 +1,4 @@
-//! Pressure, displacement and gap along a line of cells.
+//! Pressure, displacement, gap and net traction along a line of cells.
 
 use educe::Educe;
 
@@ -14,7 +14,7 @@ pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static st
     Ok((((at + half) / grid.spacing()[across]) as usize).min(grid.cells()[across] - 1))
 }
 
-/// Pressure, displacement and gap along a line of cells, see
+/// Pressure, displacement, gap and net traction along a line of cells, see
 /// [`ViscoelasticContact::profile`](crate::ViscoelasticContact::profile).
 #[derive(Clone, PartialEq, Educe)]
 #[educe(Debug)]
@@ -35,6 +35,9 @@ pub struct LineProfile {
     /// Gap \[m\]; +∞ where there is nothing to touch.
     #[educe(Debug(method(counted)))]
     pub gap: Vec<f64>,
+    /// Net traction \[Pa\]: the pressure less the [attraction](crate::adhesion).
+    #[educe(Debug(method(counted)))]
+    pub traction: Vec<f64>,
 }
 
 #[cfg(test)]

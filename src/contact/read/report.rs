@@ -209,7 +209,8 @@ bitflags! {
         /// [ranks](crate::parallel) share out the rows.
         const STEEP = 1 << 10;
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
-        /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
+        /// reached: the force of a slow pull-off errs by a percent or more. A fast pull finds a stiffer body, and a longer zone. Refine the mesh,
+        /// or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
     }
 }
