@@ -204,12 +204,14 @@ bitflags! {
         const MODULUS = 1 << 9;
         /// The undeformed bodies are steeper than 0.5 somewhere in contact ([`StepReport::max_slope`](crate::contact::StepReport::max_slope)):
         /// slopes and strains are not small, and half-spaces are no model of the bodies. Heights in µm that are read as metres are that steep.
-        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count. Not where
-        /// [ranks](crate::parallel) share out the rows.
+        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count.
         const STEEP = 1 << 10;
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
         /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
+        /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:
+        /// sides of a map or a grid in µm that are read as metres are that long for their heights.
+        const FLAT = 1 << 12;
     }
 }
 
@@ -223,7 +225,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 12] = [
+const MESSAGES: [(Warnings, &str); 13] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -238,6 +240,7 @@ const MESSAGES: [(Warnings, &str); 12] = [
         Warnings::STEEP,
         "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
     ),
+    (Warnings::FLAT, "the bodies are flatter than 1e-6 everywhere, as no real ones are: heights and lengths are in m"),
     (
         Warnings::COARSE_ZONE,
         "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
