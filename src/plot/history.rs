@@ -61,7 +61,7 @@ impl HistoryColumn {
 /// let mut history = History::new();
 /// for dt in [0.0, 0.1, 0.2] {
 ///     contact.step(dt, Load::force(0.5))?;
-///     history.add(&contact);
+///     history.record(&contact);
 /// }
 /// assert_eq!(history.column(HistoryColumn::Approach)[2], contact.approach());
 /// let mut chart = history.chart(HistoryColumn::Approach)?;
@@ -84,7 +84,7 @@ impl History {
     }
 
     /// Records the current state of a contact, or of a sample within a step ([`Run::samples`](crate::contact::Run::samples)).
-    pub fn add(&mut self, contact: &ViscoelasticContact) {
+    pub fn record(&mut self, contact: &ViscoelasticContact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(HistoryColumn::ALL) {
             column.push(observed.definition().2(contact));
