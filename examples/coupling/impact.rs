@@ -24,7 +24,6 @@ use clap::Parser;
 use indicatif::ProgressBar;
 use ode_solvers::{Rk4, System, Vector2};
 use viscocontact::Result;
-use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::output::Field;
 use viscocontact::plot::{Animation, COLORS, Chart, Legend, Quantity, Scale, Style};
 use viscocontact::prelude::*;
@@ -78,10 +77,9 @@ impl Foundation for ViscoelasticContact {
     }
 }
 
-impl Foundation for AxisymmetricContact {
+impl Foundation for StatesContact {
     fn indent(&mut self, dt: f64, approach: f64) -> Result<f64> {
-        AxisymmetricContact::indent(self, dt, approach)?;
-        Ok(self.force())
+        Ok(self.step(dt, Load::approach(approach))?.force)
     }
 }
 
@@ -158,9 +156,8 @@ impl Args {
         [depth, 2.943_275 * depth / self.velocity]
     }
 
-    fn foundation(&self, material: &Material) -> Result<AxisymmetricContact> {
-        let reach = 4.0 * (self.radius * self.elastic()[0]).sqrt();
-        AxisymmetricContact::new(&Profile::sphere(self.radius)?, material, 4000, reach)
+    fn foundation(&self, material: &Material) -> Result<StatesContact> {
+        StatesContact::new(&ElasticStates::sphere(self.radius)?, material)
     }
 
     /// The whole contact, on a grid that holds a contact of the radius `widest`.
@@ -223,7 +220,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         };
         let mut widest: f64 = 0.0;
         let reference = strike(args, args.foundation(&material)?, 0.25 * dt, |_, foundation| {
-            widest = widest.max(foundation.contact_radius());
+            widest = widest.max((foundation.contact_area() / std::f64::consts::PI).sqrt());
             Ok(())
         })?;
         let shown = body == "Maxwell" && ratio == 1.0;

@@ -279,6 +279,17 @@ impl StatesContact {
         self.states.stiffness(self.levels.level)
     }
 
+    /// A quantity of the pressure, as its value in a cell, by the one of the elastic contact of unit compliance, q(l): Σ w_i
+    /// (q(l_i) − q(l_i−1)), with the levels and tractions of [`StatesContact::tractions`], and q = 0 at the level 0.
+    pub fn superposed(&self, elastic: impl Fn(f64) -> f64) -> f64 {
+        let mut below = 0.0;
+        let part = |(level, traction)| {
+            let before = std::mem::replace(&mut below, elastic(level));
+            traction * (below - before)
+        };
+        self.tractions().map(part).sum()
+    }
+
     /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its
     /// traction w_i \[Pa\]. With p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) −
     /// p_e(l_i−1)), l_0 = 0.

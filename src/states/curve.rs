@@ -1,7 +1,6 @@
 //! The elastic states of a contact, and what lies between them.
 
 use std::fmt;
-use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::Builder;
@@ -37,8 +36,8 @@ pub struct ElasticState {
 
 /// The elastic states of one contact, by ascending level, from a [`Sweep`](crate::states::Sweep).
 ///
-/// Between states the logarithm of the approach is a cubic of the logarithm of the level, and area and tilt are linear
-/// in it; below the first state the approach is a power of the level.
+/// Between states the logarithm of the approach is a cubic of the logarithm of the level, area and stiffness are powers
+/// of the level, and tilts are linear in its logarithm; below the first state all are powers of the level.
 #[derive(Clone)]
 pub struct ElasticStates {
     pub(crate) states: Vec<ElasticState>,
@@ -103,42 +102,6 @@ impl ElasticStates {
             ElasticStates { states, rest, tilt, poisson, error, first_level, pressures, grid, scene, nodes };
         elastic.nodes = elastic.nodes();
         elastic
-    }
-
-    /// States of an upright body from a table of (level \[m²\], approach \[m\], stiffness over the modulus \[m\],
-    /// contact area \[m²\]), as of a closed form or of another program. The approach is measured from the first touch,
-    /// and the contact is taken to grow only.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    /// use viscocontact::states::{ElasticStates, StatesContact};
-    ///
-    /// // Hertz: l = 4/3 √R δ^(3/2), S/E* = 2 a, A = π a², a² = R δ; powers are interpolated exactly
-    /// let hertz = |depth: f64| {
-    ///     let radius = (10.0e-3 * depth).sqrt();
-    ///     (4.0 / 3.0 * radius * depth, depth, 2.0 * radius, std::f64::consts::PI * radius * radius)
-    /// };
-    /// let states = ElasticStates::from_table(&[hertz(1.0e-9), hertz(1.0e-3)])?;
-    /// let mut contact = StatesContact::new(&states, &Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))?;
-    /// let report = contact.step(0.0, Load::force(1.0))?;
-    /// assert!((report.approach / (9.0 / (16.0 * 10.0e-3 * 4.0e6_f64.powi(2))).cbrt() - 1.0).abs() < 1e-12);
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If there are fewer than two states, a number is not finite and positive, or levels and approaches do not ascend.
-    pub fn from_table(table: &[(f64, f64, f64, f64)]) -> Result<Arc<ElasticStates>> {
-        let states = table.iter().map(|&(level, approach, stiffness, area)| ElasticState {
-            level,
-            approach,
-            tilt: [0.0; 2],
-            stiffness,
-            area,
-            cells: 0,
-            patches: 0,
-        });
-        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
-        ElasticStates::new(states.collect(), rest, [Tilt::Fixed(0.0); 2]).validated().map(Arc::new)
     }
 
     /// Accepts states that a contact can be made of.
@@ -311,17 +274,30 @@ impl ElasticStates {
         (a.level + root([0.0, 1.0], at) * length).exp()
     }
 
-    /// A quantity of the states that is linear in ln l; that of the first state below it, but for `below` times (l/l₁)^`power`.
-    fn linear(&self, level: f64, of: impl Fn(&ElasticState) -> f64, power: Option<f64>) -> f64 {
-        let Some(first) = self.states.first().filter(|_| level > 0.0) else { return 0.0 };
-        match self.between(level.ln()) {
-            Some((k, s)) => (1.0 - s) * of(&self.states[k]) + s * of(&self.states[k + 1]),
-            None => of(first) * power.map_or(1.0, |power| (level / first.level).powf(power)),
+    /// A quantity of the states that is a power of the level between two of them; below the first one, it falls as the power
+    /// `of_radius` of the contact radius does where the depth is a power of the radius.
+    fn power_law(&self, level: f64, of: impl Fn(&ElasticState) -> f64, of_radius: f64) -> f64 {
+        let Some(first) = self.nodes.first().filter(|_| level > 0.0) else { return 0.0 };
+        let level = level.ln();
+        match self.between(level) {
+            Some((k, s)) => {
+                let [a, b] = [k, k + 1].map(|k| of(&self.states[k]));
+                if a == b { a } else { a * (b / a).powf(s) }
+            }
+            None => of(&self.states[0]) * (of_radius * (1.0 - first.slope).max(0.0) * (level - first.level)).exp(),
         }
     }
 
+    /// δ(l), and the tilts, which are linear in ln l, and below the first state in l.
     pub(super) fn motions(&self, level: f64) -> Motions {
-        let tilt = |axis: usize| self.linear(level, |state| state.tilt[axis] - self.rest.tilt[axis], Some(1.0));
+        let at = if level > 0.0 { self.between(level.ln()) } else { None };
+        let tilt = |axis: usize| {
+            let turned = |k: usize| self.states[k].tilt[axis] - self.rest.tilt[axis];
+            at.map_or_else(
+                || turned(0) * level / self.states[0].level,
+                |(k, s)| (1.0 - s) * turned(k) + s * turned(k + 1),
+            )
+        };
         Motions { depth: self.depth(level), tilt: [tilt(0), tilt(1)] }
     }
 
@@ -336,14 +312,14 @@ impl ElasticStates {
         self.level_where(0.0, approach - self.rest.approach)
     }
 
-    /// Contact area at a level \[m²\]. Below the first state it falls as the square of the contact radius does under a ball.
+    /// Contact area at a level \[m²\].
     pub fn area(&self, level: f64) -> f64 {
-        self.linear(level, |state| state.area, Some(2.0 / 3.0))
+        self.power_law(level, |state| state.area, 2.0)
     }
 
     /// Stiffness over the contact modulus at a level \[m\], see [`ElasticState::stiffness`].
     pub fn stiffness(&self, level: f64) -> f64 {
-        self.linear(level, |state| state.stiffness, Some(1.0 / 3.0))
+        self.power_law(level, |state| state.stiffness, 1.0)
     }
 
     /// Conductance of the contact of two conductors of resistivities ρ₁ and ρ₂, electrical \[Ω m → S\] or thermal \[m

@@ -121,6 +121,9 @@ impl Levels {
         if compliance == 0.0 {
             return Err(Error::Step(StepError::NoElasticResponse { time, what: "a jump of the load" }));
         }
+        if !compliance.is_finite() || self.trial.iter().any(|w| !w.is_finite()) {
+            return Err(Error::Step(StepError::Overflow { time, what: "the displacement" }));
+        }
         if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {
             return Err(StatesError::OutOfOrder { time, displacement }.into());
         }

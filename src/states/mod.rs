@@ -38,6 +38,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
+mod closed_forms;
 mod contact;
 mod curve;
 mod elastic;
