@@ -102,7 +102,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             .times(1.0e-2..=1.0e12)
             .build()?;
         // the curves go through states within the steps, which are as long as their error allows
-        let mut follow = contact.follow(&load, Stepping::adaptive(args.tolerance), until).sample_every(until / 60.0)?;
+        let mut follow =
+            contact.follow(&load, Stepping::adaptive(args.tolerance), until).sample_at(Times::every(until / 60.0))?;
         let (mut area, mut depth, mut course, mut collapsed) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut steps, mut error) = (0, 0.0);
         while let Some(report) = follow.next_step()? {

@@ -19,6 +19,7 @@ pub struct StepReport {
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
     /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
+    /// On elastic states the cells of the state at or below the level, 0 where they were not swept on cells.
     pub contact_cells: usize,
     /// Tilt (α1, α2) of the first body \[rad\].
     pub tilt: [f64; 2],
@@ -63,7 +64,7 @@ pub enum Estimated {
 
 impl Estimated {
     /// What these loads leave free.
-    pub(in crate::contact) fn under(loads: &[Load]) -> Estimated {
+    pub(crate) fn under(loads: &[Load]) -> Estimated {
         let any = |is: fn(&Load) -> bool| loads.iter().any(is);
         match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !matches!(load, Load::Force { .. }))) {
             (false, true) => Estimated::Force,
