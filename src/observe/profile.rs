@@ -29,14 +29,13 @@ pub struct LineProfile {
     /// Gap \[m\]; +∞ where there is nothing to touch.
     pub gap: Vec<f64>,
     /// Net traction \[Pa\]: the pressure less the [attraction](crate::adhesion).
-    #[educe(Debug(method(counted)))]
     pub traction: Vec<f64>,
 }
 
 debug_by! {
     self: LineProfile =>
     at: self.at, positions: Counted(&self.positions), pressure: Counted(&self.pressure),
-    displacement: Counted(&self.displacement), gap: Counted(&self.gap)
+    displacement: Counted(&self.displacement), gap: Counted(&self.gap), traction: Counted(&self.traction)
 }
 
 #[cfg(test)]
