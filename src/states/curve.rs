@@ -13,6 +13,9 @@ use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-12;
+/// Least dln δ/dln l of the power below the first state: far below that of any shape that contacts are made of.
+const LEAST_SLOPE: f64 = 0.01;
+
 /// An elastic contact of unit compliance at one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -186,12 +189,23 @@ impl ElasticStates {
         approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach
     }
 
+    /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times those of the chords beside them, so that
+    /// cubics rise (Fritsch & Carlson 1980) whatever a table holds.
     fn nodes(&self) -> Vec<Node> {
         let node = |state: &ElasticState| {
             let depth = self.depth_of(state);
             Node { level: state.level.ln(), depth: depth.ln(), slope: state.level / (depth * state.load_stiffness) }
         };
-        self.states.iter().map(node).collect()
+        let mut nodes: Vec<Node> = self.states.iter().map(node).collect();
+        for k in 1..nodes.len() {
+            let [a, b] = [nodes[k - 1], nodes[k]];
+            let most = 3.0 * (b.depth - a.depth) / (b.level - a.level);
+            (nodes[k - 1].slope, nodes[k].slope) = (a.slope.min(most), b.slope.min(most));
+        }
+        if let Some(first) = nodes.first_mut() {
+            first.slope = first.slope.clamp(LEAST_SLOPE, 1.0);
+        }
+        nodes
     }
 
     /// The greatest level of the sweep \[m²\].
@@ -223,9 +237,10 @@ impl ElasticStates {
         hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
     }
 
-    /// Error of the interpolation at a state, relative to the depth: of the depth, of what the tilts lift at the edge of the contact
-    /// and at the origin, or an eighth of the slope's over the interval. A kink between two states shows in the slope where the depth
-    /// happens to agree.
+    /// Error of the interpolation at a state in the middle, in ln l, of two others, relative to the depth: of the depth, of what the
+    /// tilts lift at the edge of the contact and at the origin, or of what the slopes contribute. Each cell that joins is a kink of δ(l),
+    /// and slopes scatter by as much; depths may then agree in the middle alone. So each slope is compared with the slope of the parabola
+    /// through the three depths. A cubic over half of the interval errs by 4/27 of its length times the error of a slope.
     pub(super) fn error_at(&self, state: &ElasticState) -> f64 {
         let (level, depth) = (state.level.ln(), self.depth_of(state));
         let (found, at) = (self.motions(state.level), self.load_point());
@@ -234,11 +249,13 @@ impl ElasticStates {
             (found.tilt[axis] - (state.tilt[axis] - self.rest.tilt[axis])).abs() * (at[axis].abs() + reach) / depth
         };
         let value = (found.depth / depth).ln().abs().max(lift(0)).max(lift(1));
-        let Some((k, s)) = self.between(level) else { return value };
+        let Some((k, _)) = self.between(level) else { return value };
         let [a, b] = [self.nodes[k], self.nodes[k + 1]];
-        let length = b.level - a.level;
-        let slope = hermite_slope([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * length), s);
-        value.max(0.125 * (slope - length * state.level / (depth * state.load_stiffness)).abs())
+        let (length, [first, second]) = (b.level - a.level, [depth.ln() - a.depth, b.depth - depth.ln()]);
+        let parabola = [3.0 * first - second, first + second, 3.0 * second - first];
+        let slopes = [a.slope, state.level / (depth * state.load_stiffness), b.slope];
+        let scatter = parabola.iter().zip(slopes).map(|(parabola, slope)| (parabola - length * slope).abs());
+        value.max(2.0 / 27.0 * scatter.sum::<f64>())
     }
 
     /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, NaN beyond the last state.

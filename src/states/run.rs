@@ -19,8 +19,11 @@ const MIN_GROWTH: f64 = 0.1;
 /// Shares of the tolerance that the error of a step aims at, and that it may have: errors of several steps add up.
 const AIM: f64 = 0.1;
 const ALLOWED: f64 = 0.3;
-/// Order of a corrected step, so that two halves err by a seventh of their difference to the whole.
+/// Order of a corrected step, by which its length is chosen.
 const ORDER: f64 = 3.0;
+/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
+/// curvature.
+const OF_HALVES: f64 = 1.0 / 3.0;
 
 /// A run of a [`StatesContact`] along a load history, made by [`StatesContact::follow`]. Each call of
 /// [`StatesRun::next_step`] takes one step.
@@ -270,7 +273,7 @@ impl<'a> StatesRun<'a> {
                     return Err(error);
                 }
             };
-            let error = difference / (2f64.powf(ORDER) - 1.0);
+            let error = OF_HALVES * difference;
             let growth = (AIM * tolerance / error).powf(1.0 / ORDER).clamp(MIN_GROWTH, MAX_GROWTH);
             if error <= ALLOWED * tolerance {
                 self.next = growth.max(0.5) * (end - now).max(length.min(stop - now));
