@@ -218,7 +218,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let computed = strike(args, args.contact(&material, widest)?, dt, |_, contact| {
             count += 1;
             match &mut animation {
-                Some(animation) if count % (args.steps / 25).max(1) == 0 => Ok(animation.add(contact)?),
+                Some(animation) if count % (args.steps / 25).max(1) == 0 => Ok(animation.record(contact)?),
                 _ => Ok(()),
             }
         })?;

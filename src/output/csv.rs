@@ -69,7 +69,7 @@ fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A run as a CSV file with one row per step, each passed to the operating system when its `write` returns.
+/// A run as a CSV file with one row per step, each passed to the operating system when its `record` returns.
 ///
 /// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
@@ -93,7 +93,7 @@ fn number(value: f64) -> String {
 /// # let path = folder.join("history.csv");
 /// let mut history = CsvHistory::create(&path, &Metadata::new("Ball on rubber"), &contact, &["energy [J]"])?;
 /// let report = contact.step(0.0, Load::force(0.5))?;
-/// history.write(&contact, &report, &[0.5 * report.force * report.approach])?;
+/// history.record(&contact, &report, &[0.5 * report.force * report.approach])?;
 /// # std::fs::remove_dir_all(&folder).unwrap();
 /// # Ok::<(), Error>(())
 /// ```
@@ -169,7 +169,7 @@ impl CsvHistory {
     /// # Errors
     /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is
     /// in the file, and writing can be repeated once there is space again.
-    pub fn write(&mut self, contact: &impl Contact, report: &StepReport, additional: &[f64]) -> Result<()> {
+    pub fn record(&mut self, contact: &impl Contact, report: &StepReport, additional: &[f64]) -> Result<()> {
         agreed(contact, exact_length("additional columns", additional.len(), self.additional))?;
         let cells: Vec<String> =
             cells(contact, report).into_iter().chain(additional.iter().copied().map(number)).collect();

@@ -68,7 +68,7 @@ impl HistoryColumn {
 /// let mut history = History::new();
 /// for dt in [0.0, 0.1, 0.2] {
 ///     contact.step(dt, Load::force(0.5))?;
-///     history.add(&contact);
+///     history.record(&contact);
 /// }
 /// assert_eq!(history.column(HistoryColumn::Approach)[2], contact.approach());
 /// let mut chart = history.chart(HistoryColumn::Approach)?;
@@ -92,7 +92,7 @@ impl History {
 
     /// Records the current state of a contact, in space or on elastic states, or of a sample within a step
     /// ([`Run::samples`](crate::contact::Run::samples)).
-    pub fn add(&mut self, contact: &impl Contact) {
+    pub fn record(&mut self, contact: &impl Contact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(HistoryColumn::ALL) {
             column.extend(observed.value(contact));

@@ -182,8 +182,8 @@ fn histories_of_states_are_written_and_drawn() {
         let (dt, load) = load(step);
         let report = contact.step(dt, load).unwrap();
         assert!((report.contact_cells > 0) == (report.force > 0.0) && report.dt == dt);
-        table.write(&contact, &report, &[contact.level()]).unwrap();
-        history.add(&contact);
+        table.record(&contact, &report, &[contact.level()]).unwrap();
+        history.record(&contact);
     }
     let text = std::fs::read_to_string(&path).unwrap();
     let (names, row) = (text.lines().nth(1).unwrap(), text.lines().last().unwrap());
