@@ -121,7 +121,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let took = start.elapsed().as_secs_f64();
         (spent, longest) = (spent + took, longest.max(took));
         if let Some(report) = lowest.filter(|_| step % 10 == 0) {
-            table.write(&contacts[0], &report, &[])?;
+            table.record(&contacts[0], &report, &[])?;
         }
         for (curve, force) in curves.iter_mut().zip(&forces) {
             curve.push((step as f64 * args.dt, *force));
