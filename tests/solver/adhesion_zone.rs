@@ -33,8 +33,9 @@ fn greatest_pull(contact: &mut ViscoelasticContact, start: f64, by: f64, speed: 
     greatest
 }
 
-/// Laws, and the length of their zones: E* over the steepest slope, at most E* ρ²/w.
-const LAWS: [(&str, f64, fn() -> Arc<dyn Attraction>); 5] = [
+/// A law, and the length of its zone: E* over the steepest slope, at most E* ρ²/w.
+type Named = (&'static str, f64, fn() -> Arc<dyn Attraction>);
+const LAWS: [Named; 5] = [
     ("exponential", 1.0, || Arc::new(ExponentialAttraction::new(1.0, 1.0).unwrap())),
     ("van der Waals", 2.0 / 3.0, || Arc::new(VanDerWaals::new(1.0, 1.0).unwrap())),
     ("linear softening", 1.0, || Arc::new(LinearSoftening::new(1.0, 1.0).unwrap())),
