@@ -108,6 +108,7 @@ pub(super) fn collect_warnings(
         (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
         (Warnings::MODULUS, at_once * SOFTEST > 1.0 || (at_once > 0.0 && at_once * STIFFEST < 1.0)),
         (Warnings::STEEP, max_slope.is_some()),
+        (Warnings::FLAT, state.indenter.is_too_flat(&scene.grid)),
     ];
     reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
 }
