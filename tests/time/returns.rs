@@ -76,7 +76,8 @@ fn errors_are_honest_on_random_returns() {
 /// `STEPS_SCENES=250 cargo test --release --test suite time::returns::step_loads -- --nocapture`, with `STEPS_SEED=3`.
 #[test]
 fn step_loads_and_short_ramps_are_honest() {
-    let [wanted, seed] = [("STEPS_SCENES", 6), ("STEPS_SEED", 2)].map(|(name, default)| from_environment(name, default));
+    let [wanted, seed] =
+        [("STEPS_SCENES", 6), ("STEPS_SEED", 2)].map(|(name, default)| from_environment(name, default));
     let mut ratios: [Ratios; 4] = Default::default();
     let is_step = |scene: &RandomScene| {
         let creep = scene.body.material.contact_spectrum().unwrap().unwrap();
@@ -102,7 +103,8 @@ fn step_loads_and_short_ramps_are_honest() {
             break;
         }
     }
-    let names = ["steps, over 1e-4", "pressure over its budget", "ramps, over the tolerance", "pressure over its budget"];
+    let names =
+        ["steps, over 1e-4", "pressure over its budget", "ramps, over the tolerance", "pressure over its budget"];
     for (ratios, name) in ratios.iter().zip(names) {
         ratios.print(name, 3);
         assert!(ratios.quantile(0.99) <= 2.0, "{name}");
