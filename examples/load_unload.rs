@@ -11,7 +11,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::plot::{COLORS, Chart, Legend, Style};
 use viscocontact::prelude::*;
 
@@ -72,7 +71,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .geometry(&Sphere::new(args.radius)?)
         .material(material.clone())
         .build()?;
-    let mut reference = AxisymmetricContact::new(&Profile::sphere(args.radius)?, &material, 8000, 1.1 * widest)?;
+    let mut reference = StatesContact::new(&ElasticStates::sphere(args.radius)?, &material)?;
 
     let mut table = csv::Writer::from_path(args.output.join("history.csv"))?;
     table.write_record([
@@ -94,11 +93,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let start = reference.time();
         for k in 1..=16 {
             let t = start + (report.time - start) * f64::from(k) / 16.0;
-            let Load::Force { normal, .. } = history.at(t) else { unreachable!("the table holds forces") };
-            reference.press(t - reference.time(), normal)?;
+            reference.step(t - reference.time(), history.at(t))?;
         }
-        let radius = (run.contact().contact_area() / std::f64::consts::PI).sqrt();
-        let exact = [reference.approach(), reference.contact_radius()];
+        let radius_of = |area: f64| (area / std::f64::consts::PI).sqrt();
+        let radius = radius_of(run.contact().contact_area());
+        let exact = [reference.approach(), radius_of(reference.contact_area())];
         table.serialize((
             report.time,
             report.force,

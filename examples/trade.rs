@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use viscocontact::Result;
-use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
+use viscocontact::analytic::GrowingSphere;
 use viscocontact::contact::Builder;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
@@ -137,12 +137,9 @@ fn scenes() -> Result<Vec<Scene>> {
 
 /// The approach by the method of dimensionality reduction, tabulated.
 fn foundation(material: &Material, history: &dyn LoadHistory, until: f64) -> Result<Box<dyn Fn(f64) -> f64>> {
-    let reach = 1.2 * (0.75 * RADIUS * material.contact_compliance(until)).cbrt();
-    let mut contact = AxisymmetricContact::new(&Profile::sphere(RADIUS)?, material, 4000, reach)?;
+    let mut contact = StatesContact::new(&ElasticStates::sphere(RADIUS)?, material)?;
     // between corners of the load, closer together towards both ends, where the approach has roots
-    if let Load::Force { normal, .. } = history.at(0.0) {
-        contact.press(0.0, normal)?;
-    }
+    contact.step(0.0, history.at(0.0))?;
     let (mut table, mut from) = (vec![(0.0, contact.approach())], 0.0);
     while from < until {
         let to = history.next_breakpoint(from).unwrap_or(until).min(until);
@@ -150,9 +147,7 @@ fn foundation(material: &Material, history: &dyn LoadHistory, until: f64) -> Res
         for k in 1..=count as u32 {
             let x = f64::from(k) / count;
             let t = if x == 1.0 { to } else { from + (to - from) * x * x * (3.0 - 2.0 * x) };
-            if let Load::Force { normal, .. } = history.before(t) {
-                contact.press(t - contact.time(), normal)?;
-            }
+            contact.step(t - contact.time(), history.before(t))?;
             table.push((t, contact.approach()));
         }
         from = to;
@@ -356,10 +351,11 @@ fn plot(args: &Args, scene: &str, cells: usize, rows: &[Row]) -> Result<(), Box<
 /// For every scene and method the least work that reaches an error.
 fn page(scenes: &[Scene], meshes: &[usize], rows: &[Row], failures: &[(&str, Method, usize, f64)]) -> String {
     let mut page = String::from(
-        "## Work to reach an error\n\nLeast convolution equivalents over all step counts or tolerances of the sweep for which the error of \
-         the approach (greatest over the run, relative to its greatest value; mesh included; for the held sphere on a Maxwell body of the central \
-         pressure too) is below 1e-2, 1e-3 and 1e-4; in brackets \
-         the steps. A dash: not reached in the sweep.\n",
+        "## Work to reach an error\n\n\
+         Least convolution equivalents over all step counts or tolerances of the sweep for which the error of the approach\n\
+         (greatest over the run, relative to its greatest value; mesh included; for the held sphere on a Maxwell body of the\n\
+         central pressure too) is below 1e-2, 1e-3 and 1e-4; in brackets the steps. A dash: not reached in the sweep.\n\
+         Memory is that of `Builder::memory` and what the steps add.\n",
     );
     let cells = meshes[meshes.len() - 1];
     for scene in scenes {

@@ -5,21 +5,21 @@
 //! | [`Hertz`], [`HertzEllipse`] | sphere, paraboloid with two radii; elastic |
 //! | [`RigidPunch`] | flat circular punch, centred or eccentric; elastic |
 //! | [`GrowingSphere`] | sphere under a step load (Ting) or any load that never lets the contact shrink (Lee & Radok); viscoelastic |
-//! | [`AxisymmetricContact`] | sphere, cone or other profile under any load history, loading and unloading; viscoelastic |
 //! | [`Jkr`], [`MaugisDugdale`], [`Dmt`] | sphere that sticks, by an attraction of short, any and long range; elastic |
 //! | [`AdhesivePunch`], [`AdhesiveCylinder`], [`AdhesiveWave`] | other shapes that stick, by an attraction of short range; elastic |
+//!
+//! Sphere, cone, punch and other axisymmetric bodies under any load history, loading and unloading, are contacts on
+//! closed elastic states: [`ElasticStates::sphere`](crate::states::ElasticStates::sphere) and its neighbours.
 //!
 //! Contact modulus E* is 1/C of an elastic body: E* = 2G/(1 − ν), 4G if incompressible.
 
 mod adhesion;
-mod axisymmetric;
 mod growing_sphere;
 mod hertz;
 mod hertz_ellipse;
 mod rigid_punch;
 
 pub use adhesion::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Jkr, MaugisDugdale};
-pub use axisymmetric::{AxisymmetricContact, Profile};
 pub use growing_sphere::GrowingSphere;
 pub use hertz::Hertz;
 pub use hertz_ellipse::HertzEllipse;

@@ -157,16 +157,6 @@ pub enum StepError {
         /// Relative change allowed.
         tolerance: f64,
     },
-
-    /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its
-    /// foundation: make it longer.
-    #[error("at t = {time} s the contact reaches the end of the foundation, {:e} m from the axis: make it longer", rounded(*.reach, 5), time = rounded(*.time, TIME))]
-    BeyondReach {
-        /// End of the step \[s\].
-        time: f64,
-        /// Length of the foundation \[m\].
-        reach: f64,
-    },
 }
 
 /// How wide the grid is, and how wide it should be.

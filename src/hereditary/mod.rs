@@ -44,5 +44,4 @@ pub(crate) use group_history::GroupHistory;
 pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
 pub(crate) use lasting_error::LastingError;
-pub(crate) use remembered_field::RememberedField;
 pub(crate) use time_error::{ErrorMeasure, TimeError};

@@ -47,7 +47,7 @@ type Steps = [[f64; BLOCK]; 3];
 
 impl RememberedField {
     /// The undisturbed field of bodies with so many relaxation times.
-    pub(crate) fn new(branches: usize, cells: usize) -> RememberedField {
+    pub(super) fn new(branches: usize, cells: usize) -> RememberedField {
         let [now, trial, relaxing] = [1, 1, branches].map(|per_cell| vec![0.0; cells * per_cell]);
         RememberedField { branches, relaxing, now, trial, ..RememberedField::default() }
     }
@@ -99,8 +99,9 @@ impl RememberedField {
         self.branches == other.branches && self.kept <= 2 && (self.kept >= kept || self.waiting)
     }
 
-    /// The field at the end of the step being tried; between steps the field before the last one.
-    pub(crate) fn trial(&self) -> &[f64] {
+    /// The field at the end of the step being tried.
+    #[cfg(test)]
+    pub(super) fn trial(&self) -> &[f64] {
         &self.trial
     }
 
@@ -111,7 +112,7 @@ impl RememberedField {
 
     /// Writes u_old of the step whose weights were computed last to the trial. After a commit the trial must still be the field
     /// before that step.
-    pub(crate) fn predict(&mut self, rule: &ExponentialRule) {
+    pub(super) fn predict(&mut self, rule: &ExponentialRule) {
         self.advance(rule, Some(&rule.tried));
     }
 
@@ -161,7 +162,7 @@ impl RememberedField {
 
     /// Predicts the end of the step whose weights were computed last. No pressure has pulled the surface up yet: if the field
     /// would fall below zero, and `sign_counts`, a polynomial of lower degree is taken. `side` \[m\] is the width of a cell.
-    pub(crate) fn predict_non_negative(
+    pub(super) fn predict_non_negative(
         &mut self,
         rule: &mut ExponentialRule,
         side: f64,
@@ -184,12 +185,12 @@ impl RememberedField {
     }
 
     /// Adds c times a source to the trial.
-    pub(crate) fn add(&mut self, c: f64, source: &[f64]) {
+    pub(super) fn add(&mut self, c: f64, source: &[f64]) {
         self.trial.iter_mut().zip(source).for_each(|(value, &source)| *value += c * source);
     }
 
     /// Accepts the step predicted last.
-    pub(crate) fn commit(&mut self) {
+    pub(super) fn commit(&mut self) {
         self.waiting = true;
         std::mem::swap(&mut self.now, &mut self.trial);
     }

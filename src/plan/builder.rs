@@ -140,7 +140,8 @@ impl<'a> PlanBuilder<'a> {
         self.build_with(|_| ControlFlow::Continue(()))
     }
 
-    /// As [`PlanBuilder::build`], calling `progress` after each contact problem on a coarse mesh; it may end the planning.
+    /// As [`PlanBuilder::build`], calling `progress` after each contact problem on a coarse mesh; it may end the planning. A contact
+    /// problem under way is not interrupted: coarse meshes have few cells.
     ///
     /// # Errors
     /// As [`PlanBuilder::build`]; [`Error::Cancelled`] if `progress` ends it.

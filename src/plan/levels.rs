@@ -46,11 +46,15 @@ impl Curve {
             let [before, next] = [&points[k.saturating_sub(1)], &points[(k + 1).min(points.len() - 1)]];
             (next[1] / before[1]).ln() / (next[0] / before[0]).ln()
         };
+        // dl/dδ of a power l ∝ δ^(1/n)
+        let stiffness = |k: usize, level: f64, depth: f64| level / (depth * exponent(k));
         let state = |(k, &[level, depth, area]): (usize, &[f64; 3])| ElasticState {
             level,
             approach: rest + depth,
             tilt: [0.0; 2],
-            stiffness: level / (depth * exponent(k)),
+            stiffness: stiffness(k, level, depth),
+            load_stiffness: stiffness(k, level, depth),
+            tilt_rate: [0.0; 2],
             area,
             cells: 0,
             patches: 0,

@@ -111,8 +111,8 @@ fn greatest_level(scene: &TrialScene<'_>) -> Result<f64> {
     let mut contact = Curve::of_any_shape(scene.history.at(0.0).tilt())?.contact(scene)?;
     let mut run = contact.follow(scene.history, Stepping::adaptive(LEVEL_TOLERANCE), scene.until);
     let mut greatest = 0.0_f64;
-    while let Some(report) = run.next_step()? {
-        greatest = greatest.max(report.level);
+    while run.next_step()?.is_some() {
+        greatest = greatest.max(run.contact().level());
     }
     Ok(greatest)
 }

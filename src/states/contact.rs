@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::ViscoelasticContact;
+use crate::contact::{Contact, Estimated, StepReport, Warnings};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -35,27 +37,6 @@ struct Scene {
     temperature: Option<TemperatureHistory>,
     known_until: f64,
     interpolant: Interpolant,
-}
-
-/// The state after a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct StatesReport {
-    /// Time \[s\].
-    pub time: f64,
-    /// Normal force \[N\].
-    pub force: f64,
-    /// Approach of the origin \[m\].
-    pub approach: f64,
-    /// Tilt along x1 and x2 \[rad\].
-    pub tilt: [f64; 2],
-    /// Level c(t) of the elastic contact with the same area \[m²\]; 0 without contact.
-    pub level: f64,
-    /// Contact area \[m²\].
-    pub area: f64,
-    /// Number of groups of levels.
-    pub groups: usize,
 }
 
 impl StatesContact {
@@ -116,12 +97,12 @@ impl StatesContact {
     /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
     /// load point than the sweep, needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the
     /// body has no elastic response, or the time is beyond the material's. A step that fails changes nothing.
-    pub fn step(&mut self, dt: f64, load: Load) -> Result<StatesReport> {
+    pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_to(self.time + dt, dt, load)
     }
 
-    /// Advances by `dt` to `time`.
-    pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
+    /// The demand of a load, the level that the end of a step to it has, and the reduced time there.
+    fn predict(&mut self, time: f64, dt: f64, load: Load) -> Result<(Demand, Wanted, f64)> {
         non_negative("time step", dt)?;
         load.validate()?;
         let length = match &self.scene.temperature {
@@ -142,9 +123,37 @@ impl StatesContact {
             self.solve(wanted)?;
             wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
         }
+        Ok((demand, wanted, reduced))
+    }
+
+    /// Depth and force that a step to `time` ends with; takes no step.
+    pub(super) fn outcome(&mut self, time: f64, load: Load) -> Result<[f64; 2]> {
+        let (demand, wanted, _) = self.predict(time, time - self.time, load)?;
+        Ok(self.levels.outcome(&self.states, demand, wanted.level))
+    }
+
+    /// Advances by `dt` to `time`.
+    pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
+        let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted.level);
         (self.time, self.reduced_time) = (time, reduced);
-        Ok(self.report())
+        Ok(StepReport {
+            time,
+            force: self.force(),
+            approach: self.approach(),
+            contact_cells: self.states.cells(self.level()),
+            tilt: self.tilt(),
+            dt,
+            time_error: (dt == 0.0).then_some(0.0),
+            estimated: Estimated::under(&[load]),
+            warnings: Warnings::empty(),
+            max_slope: None,
+            iterations: 0,
+            fallback_iterations: 0,
+            convolutions: 0,
+            preconditioner_applications: 0,
+            residual: 0.0,
+        })
     }
 
     /// Adds the elastic state at a level to the states of this contact.
@@ -228,19 +237,6 @@ impl StatesContact {
         }
     }
 
-    /// The state.
-    pub fn report(&self) -> StatesReport {
-        StatesReport {
-            time: self.time,
-            force: self.force(),
-            approach: self.approach(),
-            tilt: self.tilt(),
-            level: self.levels.level,
-            area: self.contact_area(),
-            groups: self.levels.count(),
-        }
-    }
-
     /// The elastic states that it is made of.
     pub fn states(&self) -> &Arc<ElasticStates> {
         &self.states
@@ -273,6 +269,11 @@ impl StatesContact {
         self.levels.level
     }
 
+    /// Number of groups of levels, each with its own past.
+    pub fn groups(&self) -> usize {
+        self.levels.count()
+    }
+
     /// Contact area \[m²\].
     pub fn contact_area(&self) -> f64 {
         self.states.area(self.levels.level)
@@ -283,6 +284,17 @@ impl StatesContact {
         self.states.stiffness(self.levels.level)
     }
 
+    /// A quantity of the pressure, as its value in a cell, by the one of the elastic contact of unit compliance, q(l): Σ w_i
+    /// (q(l_i) − q(l_i−1)), with the levels and tractions of [`StatesContact::tractions`], and q = 0 at the level 0.
+    pub fn superposed(&self, elastic: impl Fn(f64) -> f64) -> f64 {
+        let mut below = 0.0;
+        let part = |(level, traction)| {
+            let before = std::mem::replace(&mut below, elastic(level));
+            traction * (below - before)
+        };
+        self.tractions().map(part).sum()
+    }
+
     /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its
     /// traction w_i \[Pa\]. With p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) −
     /// p_e(l_i−1)), l_0 = 0.
@@ -291,8 +303,45 @@ impl StatesContact {
     }
 }
 
+impl Contact for StatesContact {
+    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
+        StatesContact::step(self, dt, load)
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn force(&self) -> f64 {
+        StatesContact::force(self)
+    }
+
+    fn approach(&self) -> f64 {
+        StatesContact::approach(self)
+    }
+
+    fn tilt(&self) -> [f64; 2] {
+        StatesContact::tilt(self)
+    }
+
+    fn contact_area(&self) -> f64 {
+        StatesContact::contact_area(self)
+    }
+
+    fn in_space(&self) -> Option<&ViscoelasticContact> {
+        None
+    }
+}
+
 impl fmt::Debug for StatesContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("StatesContact").field("report", &self.report()).finish_non_exhaustive()
+        f.debug_struct("StatesContact")
+            .field("time", &self.time)
+            .field("force", &self.force())
+            .field("approach", &self.approach())
+            .field("tilt", &self.tilt())
+            .field("level", &self.level())
+            .field("groups", &self.groups())
+            .finish_non_exhaustive()
     }
 }

@@ -1,6 +1,6 @@
 //! Constructors of models, shapes, histories and reference solutions, with any numbers.
 
-use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Hertz, HertzEllipse, Profile, RigidPunch};
+use viscocontact::analytic::{GrowingSphere, Hertz, HertzEllipse, RigidPunch};
 use viscocontact::geometry::Roughness;
 use viscocontact::motion::Path;
 use viscocontact::prelude::*;
@@ -183,27 +183,27 @@ fn analytic(source: &mut Source) -> Verdict {
         }
         _ => {
             let Ok(material) = models::material(source, false) else { return Ok(Outcome::Refused) };
-            let profile = match source.below(3) {
-                0 => Profile::sphere(radius),
-                1 => Profile::cone(r),
-                _ => Profile::punch(radius),
+            let states = match source.below(4) {
+                0 => ElasticStates::sphere(radius),
+                1 => ElasticStates::cone(r),
+                2 => ElasticStates::power(r, s),
+                _ => ElasticStates::punch(radius),
             };
-            let Ok(profile) = profile else { return Ok(Outcome::Refused) };
-            let reach = radius * source.scale(0.1, 1.0);
-            let Ok(mut foundation) = AxisymmetricContact::new(&profile, &material, source.count(0, 30), reach) else {
+            let Ok(mut foundation) = states.and_then(|states| StatesContact::new(&states, &material)) else {
                 return Ok(Outcome::Refused);
             };
             for _ in 0..3 {
                 let dt = if source.chance(0.3) { 0.0 } else { source.scale(1e-3, 1e3) };
-                let result = if source.chance(0.5) {
-                    foundation.press(dt, force * source.scale(1e-3, 1.0))
-                } else {
-                    foundation.indent(dt, radius * source.between(-1e-3, 1e-2))
+                let load = match source.below(3) {
+                    0 => Load::force(force * source.scale(1e-3, 1.0)),
+                    1 => Load::approach(radius * source.between(-1e-3, 1e-2)),
+                    _ => Load::spring(modulus * radius, radius * source.between(-1e-3, 1e-2)),
                 };
-                if result.is_ok() {
-                    let state =
-                        [foundation.time(), foundation.approach(), foundation.force(), foundation.contact_radius()];
-                    known("foundation", state)?;
+                if let Ok(report) = foundation.step(dt, load) {
+                    known(
+                        "states",
+                        [report.time, report.approach, report.force, foundation.contact_area(), foundation.level()],
+                    )?;
                 }
             }
             Ok(Outcome::Accepted)

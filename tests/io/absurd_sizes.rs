@@ -7,7 +7,6 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use viscocontact::Result;
-use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -137,8 +136,6 @@ fn surfaces_are_refused_before_they_are_filled() {
                 refused(Rough::windowed(&part, spec, [1.0, 1.0]), &grid, 1, "a part of a rough surface");
             }
         }
-        let profile = Profile::new(|_| panic!("a profile was asked for"));
-        refused(AxisymmetricContact::new(&profile, &maxwell(), grid.len(), 1.0), &grid, 1, "a foundation");
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::common::refused::field;
 use crate::common::watched_runs::seen;
 use crate::common::{builder_on, maxwell, sphere, sphere_on};
-use approx::assert_abs_diff_eq;
 use std::process::Command;
 use std::sync::Arc;
 
@@ -240,24 +239,6 @@ fn corners_in_the_past_are_refused() {
         }
     };
     assert_eq!(error, LoadError::InvalidBreakpoint { after: 0.25, breakpoint: 0.25 }.into());
-}
-
-#[test]
-fn failures_leave_the_foundation_as_it_was() {
-    use viscocontact::analytic::{AxisymmetricContact, Profile};
-    let profile = Profile::sphere(10.0e-3).unwrap();
-    let mut foundation = AxisymmetricContact::new(&profile, &maxwell(), 500, 2.0e-3).unwrap();
-    foundation.press(0.0, 0.5).unwrap();
-    let see = |f: &AxisymmetricContact| (f.time(), f.approach(), f.force(), f.contact_radius(), f.pressure(1e-4));
-    let before = see(&foundation);
-    assert!(matches!(foundation.press(1.0, 1e6), Err(Error::Step(StepError::BeyondReach { .. }))));
-    assert!(matches!(foundation.indent(1.0, 1.0), Err(Error::Step(StepError::BeyondReach { .. }))));
-    assert_eq!(see(&foundation), before);
-    let nothing = AxisymmetricContact::new(&Profile::new(|_| f64::INFINITY), &maxwell(), 10, 1.0).unwrap_err();
-    assert!(matches!(nothing, Error::NothingToTouch { .. }));
-    let mut narrow = AxisymmetricContact::new(&Profile::punch(1e-4).unwrap(), &maxwell(), 30, 3e-4).unwrap();
-    narrow.press(0.0, 1.0).unwrap();
-    assert_abs_diff_eq!(narrow.force(), 1.0, epsilon = 1e-12);
 }
 
 /// Messages print twice the length of a shape: lengths whose double overflows are refused.

@@ -153,7 +153,7 @@ macro_rules! items {
 fn items_of_the_page_exist() {
     let known = items!(
         import
-            analytic::AxisymmetricContact, analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
+            analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
             contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle, load::Loads,
             geometry::Geometry, load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
         functions
@@ -163,7 +163,8 @@ fn items_of_the_page_exist() {
             ViscoelasticContact::pressure, ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
             contact::Builder::another_body,
             contact::Settings::paper, contact::Settings::paper_literal, load::Load::eccentric_force, load::Load::force,
-            rheology::Material::contact_compliance
+            rheology::Material::contact_compliance, states::ElasticStates::cone, states::ElasticStates::power,
+            states::ElasticStates::sphere
     );
     let _ = (<dyn Geometry>::initial_gap, <dyn Rheology>::creep_compliance);
     // generic in the loads: named by a call

@@ -3,7 +3,6 @@
 use crate::common::contact_of;
 use crate::common::oscillation::{Cycle, Oscillation};
 use approx::assert_abs_diff_eq;
-use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -37,8 +36,7 @@ fn the_contact_of_a_ball_changes_the_loss_of_large_amplitudes() {
     for (amplitude, over_fixed, allowed) in [(0.1, 1.0, 2e-3), (1.0, 1.07, 5e-3)] {
         let force = Oscillation { mean: 1.0, amplitude, frequency: 1.0e-3 };
         let radius = force.radius_under_mean(&material, ball);
-        let foundation =
-            AxisymmetricContact::new(&Profile::sphere(ball).unwrap(), &material, 500, 1.4 * radius).unwrap();
+        let foundation = StatesContact::new(&ElasticStates::sphere(ball).unwrap(), &material).unwrap();
         let exact = force.follow_on(foundation, 256).unwrap().loss();
         assert_abs_diff_eq!(exact / force.loss_of_fixed_contact(&creep, radius), over_fixed, epsilon = allowed);
         let mut contact = ViscoelasticContact::builder(Grid::square(96, 2.7 * radius).unwrap())

@@ -6,7 +6,7 @@ use crate::common::histories::{four_terms, triangle};
 use crate::common::{RADIUS, contact_of, elastic, figures, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
-use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
+use viscocontact::analytic::GrowingSphere;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
@@ -162,17 +162,14 @@ fn loads_that_come_and_go_are_as_accurate_as_planned() {
         [("triangle", zener, Box::new(triangle()), 3.5), ("sine", four, Box::new(sine), 2.0)];
     for (name, material, history, until) in cases {
         for accuracy in [Accuracy::COARSE, Accuracy::STANDARD] {
-            let reach = 1.4 * (0.75 * RADIUS * material.contact_compliance(until)).cbrt();
-            let mut foundation =
-                AxisymmetricContact::new(&Profile::sphere(RADIUS).unwrap(), &material, 4000, reach).unwrap();
+            let mut foundation = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &material).unwrap();
             let outcome = deliver(&sphere, &material, &*history, until, accuracy, |t, _| {
                 // the foundation goes along, in steps of a thousandth
                 let start = foundation.time();
                 let count = ((t - start) * 2000.0).ceil().max(1.0) as u32;
                 for k in 1..=count {
                     let next = if k == count { t } else { start + (t - start) * f64::from(k) / f64::from(count) };
-                    let Load::Force { normal, .. } = history.at(next) else { unreachable!() };
-                    foundation.press(next - foundation.time(), normal).unwrap();
+                    foundation.step(next - foundation.time(), history.at(next)).unwrap();
                 }
                 (foundation.approach(), None)
             });

@@ -4,9 +4,10 @@
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
-use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
+use viscocontact::analytic::{Hertz, HertzEllipse};
 use viscocontact::prelude::*;
 
 use crate::common::ratios::Ratios;
@@ -18,8 +19,6 @@ const PUNCH: f64 = 1.0e-3;
 const MODULUS: f64 = 1.0e6;
 /// Greatest work of planning over the work of the run, in the median, in convolutions times cells.
 const MOST_PLANNING: f64 = 3.0;
-/// Elements of a foundation.
-const ELEMENTS: usize = 3000;
 
 #[derive(Debug, Clone, Copy)]
 enum Shape {
@@ -39,20 +38,30 @@ impl Shape {
         }
     }
 
-    /// Profile of the foundation, and what multiplies its approach, its pressure and its contact radius. Ellipses of contact
+    /// States in closed form, and what multiplies its approach, its pressure and its contact radius. Ellipses of contact
     /// keep their shape: they behave as the sphere whose contact radius is their semi-axis a.
-    fn foundation(self) -> (Profile, [f64; 3]) {
+    fn states(self) -> (Arc<ElasticStates>, [f64; 3]) {
         match self {
-            Shape::Ball => (Profile::sphere(RADIUS).unwrap(), [1.0; 3]),
-            Shape::Cone => (Profile::cone(SLOPE).unwrap(), [1.0; 3]),
-            Shape::Punch => (Profile::punch(PUNCH).unwrap(), [1.0; 3]),
+            Shape::Ball => (ElasticStates::sphere(RADIUS).unwrap(), [1.0; 3]),
+            Shape::Cone => (ElasticStates::cone(SLOPE).unwrap(), [1.0; 3]),
+            Shape::Punch => (ElasticStates::punch(PUNCH).unwrap(), [1.0; 3]),
             Shape::Ellipsoid(other) => {
                 let ellipse = HertzEllipse::new([RADIUS, other], 4.0 * MODULUS, 1.0).unwrap();
                 let [a, b] = ellipse.semi_axes;
                 let radius = a.powi(3) * 4.0 * MODULUS / 0.75;
                 let sphere = Hertz::new(radius, 4.0 * MODULUS, 1.0).unwrap();
-                (Profile::sphere(radius).unwrap(), [ellipse.approach / sphere.approach, a / b, (b / a).sqrt()])
+                (ElasticStates::sphere(radius).unwrap(), [ellipse.approach / sphere.approach, a / b, (b / a).sqrt()])
             }
+        }
+    }
+
+    /// Pressure at the distance `r` from the axis of the elastic contact of unit compliance.
+    fn pressure(self, elastic: &ElasticStates, level: f64, r: f64) -> f64 {
+        let a = 0.5 * elastic.stiffness(level);
+        match self {
+            _ if r >= a => 0.0,
+            Shape::Cone => 0.5 * SLOPE * (a / r).acosh(),
+            _ => 2.0 / PI * elastic.approach(level) / a * (1.0 - (r / a).powi(2)).sqrt(),
         }
     }
 
@@ -86,8 +95,6 @@ struct Scene {
     accuracy: Accuracy,
     /// Whether the area is promised, too.
     area: bool,
-    /// Contact radius at the greatest load, roughly.
-    radius: f64,
 }
 
 fn body(draws: &mut Draws, ratio: f64, until: f64) -> (&'static str, Material) {
@@ -155,7 +162,7 @@ fn scene(seed: u64, number: u64) -> Scene {
         "{seed}:{number} {shape:?} {aside:.1e} m aside, {body} ×{ratio:.1}, {history_name} ({part:.2}) of {by}, {until:.1e} s, \
          {accuracy:?}, area {area}"
     );
-    Scene { name, shape: Some(shape), geometry, material, history, until, by_force, accuracy, area, radius }
+    Scene { name, shape: Some(shape), geometry, material, history, until, by_force, accuracy, area }
 }
 
 /// A ball or a punch that is turned while it is pressed.
@@ -178,21 +185,19 @@ fn tilting(seed: u64, number: u64) -> Scene {
     let (history, name) =
         (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, {body} ×{ratio:.1}"));
     let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
-    let (shape, until, area, radius) = (None, 1.0, draws.chance(0.3), 0.0);
-    Scene { name, shape, geometry, material, history, until, by_force, accuracy, area, radius }
+    let (shape, until, area) = (None, 1.0, draws.chance(0.3));
+    Scene { name, shape, geometry, material, history, until, by_force, accuracy, area }
 }
 
 /// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the
 /// run; `None` where the reference does not have them.
 type Truth = (Vec<[Option<f64>; 2]>, Option<f64>);
 
-/// By the foundation of a shape.
-fn of_foundation(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
-    let (profile, [approaches, pressures, radii]) = shape.foundation();
+/// By the states of a shape in closed form.
+fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
+    let (elastic, [approaches, pressures, radii]) = shape.states();
     let punch = matches!(shape, Shape::Punch);
-    // the last element lies beyond the face of the punch
-    let reach = if punch { PUNCH * (1.0 + 1.0 / ELEMENTS as f64) } else { 1.6 * scene.radius };
-    let mut foundation = AxisymmetricContact::new(&profile, &scene.material, ELEMENTS + 1, reach).unwrap();
+    let mut contact = StatesContact::new(&elastic, &scene.material).unwrap();
     // steps are graded after the start: pressures may be greatest early
     let mut fine: Vec<f64> = (0..240).map(|k| scene.until * 10f64.powf(-6.0 + 6.0 * f64::from(k) / 239.0)).collect();
     fine.extend((1..=400).map(|k| scene.until * f64::from(k) / 400.0));
@@ -208,22 +213,24 @@ fn of_foundation(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
     fine.dedup();
     let (mut states, mut highest) = (Vec::new(), 0.0_f64);
     for time in fine {
-        let dt = time - foundation.time();
+        let dt = time - contact.time();
         match scene.history.at(time) {
-            Load::Force { normal, .. } => foundation.press(dt, normal).unwrap(),
-            Load::Approach { approach, .. } => foundation.indent(dt, approach / approaches).unwrap(),
+            Load::Approach { approach, .. } => contact.step(dt, Load::approach(approach / approaches)).unwrap(),
+            // an eccentric force leaves the approach of the middle as it is
+            Load::Force { normal, .. } => contact.step(dt, Load::force(normal)).unwrap(),
             load => panic!("{load:?}"),
-        }
+        };
+        let edge = (contact.contact_area() / PI).sqrt();
         if times.contains(&time) {
-            let main = if scene.by_force { approaches * foundation.approach() } else { foundation.force() };
+            let main = if scene.by_force { approaches * contact.approach() } else { contact.force() };
             // under a given approach bodies part at a time that no plan promises
             let grows = scene.by_force && !punch;
-            states.push([Some(main), grows.then(|| radii * foundation.contact_radius())]);
+            states.push([Some(main), grows.then_some(radii * edge)]);
         }
         if !punch {
-            let edge = foundation.contact_radius();
             let places = (0..24).map(|k| edge * (1.0 - 10f64.powf(-0.15 * f64::from(k))));
-            highest = places.map(|r| pressures * foundation.pressure(r)).fold(highest, f64::max);
+            let pressure = |r: f64| contact.superposed(|level| shape.pressure(&elastic, level, r));
+            highest = places.map(|r| pressures * pressure(r)).fold(highest, f64::max);
         }
     }
     (states, (!punch).then_some(highest))
@@ -293,7 +300,7 @@ fn deliver(scene: &Scene) -> Result<Outcome, Error> {
         highest = highest.max(run.contact().max_pressure());
     }
     let (truth, peak) = match scene.shape {
-        Some(shape) => of_foundation(scene, shape, &times),
+        Some(shape) => of_states(scene, shape, &times),
         None => of_finer_run(scene, &plan, &times)?,
     };
     assert_eq!(truth.len(), states.len());

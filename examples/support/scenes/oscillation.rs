@@ -3,7 +3,6 @@
 use std::f64::consts::{PI, TAU};
 
 use viscocontact::Result;
-use viscocontact::analytic::AxisymmetricContact;
 use viscocontact::prelude::*;
 use viscocontact::rheology::CreepSpectrum;
 
@@ -62,18 +61,18 @@ impl Oscillation {
     }
 
     /// The last cycle on a one-dimensional foundation, in `steps` equal steps a cycle.
-    pub fn follow_on(&self, mut foundation: AxisymmetricContact, steps: u32) -> Result<Cycle> {
-        foundation.press(0.0, self.mean)?;
+    pub fn follow_on(&self, mut foundation: StatesContact, steps: u32) -> Result<Cycle> {
+        foundation.step(0.0, Load::force(self.mean))?;
         // with a quarter of these steps, the loss errs by 2e-3
         for k in -288..=0 {
             let time = HELD / self.frequency * 10_f64.powf(f64::from(k) / 48.0);
-            foundation.press(time - foundation.time(), self.mean)?;
+            foundation.step(time - foundation.time(), Load::force(self.mean))?;
         }
         let mut cycle = Cycle::default();
         for k in 0..=CYCLES * steps {
             let time = self.time(k, steps);
             let force = self.force(time);
-            foundation.press(time - foundation.time(), force)?;
+            foundation.step(time - foundation.time(), Load::force(force))?;
             if k >= (CYCLES - 1) * steps {
                 cycle.push(force, foundation.approach());
             }

@@ -19,6 +19,7 @@ pub struct StepReport {
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
     /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
+    /// On elastic states the cells of the state at or below the level, 0 where they were not swept on cells.
     pub contact_cells: usize,
     /// Tilt (α1, α2) of the first body \[rad\].
     pub tilt: [f64; 2],
@@ -63,7 +64,7 @@ pub enum Estimated {
 
 impl Estimated {
     /// What these loads leave free.
-    pub(in crate::contact) fn under(loads: &[Load]) -> Estimated {
+    pub(crate) fn under(loads: &[Load]) -> Estimated {
         let any = |is: fn(&Load) -> bool| loads.iter().any(is);
         match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !matches!(load, Load::Force { .. }))) {
             (false, true) => Estimated::Force,
@@ -204,12 +205,15 @@ bitflags! {
         const MODULUS = 1 << 9;
         /// The undeformed bodies are steeper than 0.5 somewhere in contact ([`StepReport::max_slope`](crate::contact::StepReport::max_slope)):
         /// slopes and strains are not small, and half-spaces are no model of the bodies. Heights in µm that are read as metres are that steep.
-        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count. Not where
-        /// [ranks](crate::parallel) share out the rows.
+        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count.
         const STEEP = 1 << 10;
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
-        /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
+        /// reached: the force of a slow pull-off errs by a percent or more. A fast pull finds a stiffer body, and a longer zone. Refine the mesh,
+        /// or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
+        /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:
+        /// sides of a map or a grid in µm that are read as metres are that long for their heights.
+        const FLAT = 1 << 12;
     }
 }
 
@@ -223,7 +227,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 12] = [
+const MESSAGES: [(Warnings, &str); 13] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -238,6 +242,7 @@ const MESSAGES: [(Warnings, &str); 12] = [
         Warnings::STEEP,
         "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
     ),
+    (Warnings::FLAT, "the bodies are flatter than 1e-6 everywhere, as no real ones are: heights and lengths are in m"),
     (
         Warnings::COARSE_ZONE,
         "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
@@ -294,6 +299,19 @@ mod tests {
         there_and_back(&contact.patches().unwrap().all);
         there_and_back(rubber.report());
         there_and_back(&Accuracy::FINE);
+        there_and_back(&Grid::new([3, 7], [1.0e-3, 0.3]).unwrap());
+        let wrong = postcard::to_stdvec(&([3_usize, 0], [1.0e-3, 0.3])).unwrap();
+        assert!(postcard::from_bytes::<Grid>(&wrong).is_err());
+        let body = Material::incompressible(Elastic::new(1.0e6).unwrap());
+        let line: String = postcard::from_bytes(&postcard::to_stdvec(&body).unwrap()).unwrap();
+        assert_eq!(line, body.to_string());
+        let load = StepLoad::new(Load::force(0.5)).unwrap();
+        let sphere = Sphere::new(10.0e-3).unwrap();
+        let plan = Plan::builder(&sphere, &body, &load, 1.0).accuracy(Accuracy::COARSE).build().unwrap();
+        // the builder is left out: stepping comes first
+        let figures = postcard::to_stdvec(&plan).unwrap();
+        let (stepping, rest) = postcard::take_from_bytes::<Stepping>(&figures).unwrap();
+        assert_eq!((stepping, postcard::take_from_bytes::<Grid>(rest).unwrap().0), (plan.stepping, plan.grid));
         let creep = CreepSpectrum::new(1.0, 0.5, &[(2.0, 3.0)]).unwrap();
         there_and_back(&creep);
         there_and_back(&creep.relaxation());

@@ -27,10 +27,10 @@ const MAX_PASSES: usize = 500;
 /// Change of s in a pass, over the greatest traction, that ends a step, in tolerances of the solver.
 const CHANGE: f64 = 100.0;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
-const INNER: f64 = 0.01;
-const LOOSEST: f64 = 1e-5;
+const INNER: f64 = 0.003;
+const LOOSEST: f64 = 1e-3;
 /// Passes that are extrapolated from.
-const KEPT: usize = 4;
+const KEPT: usize = 3;
 /// Share of the square of a change, independent of the other changes, that counts as zero.
 const DEPENDENT: f64 = 1e-10;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may

@@ -2,7 +2,8 @@
 
 use super::integral::{Past, relaxing};
 use super::{INTERPOLANTS, Random, bodies, creep};
-use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
+use crate::hereditary::remembered_field::RememberedField;
+use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::rheology::CreepSpectrum;
 
 /// One cell whose displacement is prescribed.

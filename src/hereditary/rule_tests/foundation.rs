@@ -1,6 +1,7 @@
 //! A sphere on a one-dimensional foundation, with any interpolant.
 
-use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
+use crate::hereditary::remembered_field::RememberedField;
+use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::parallel::Rows;
 use crate::rheology::CreepSpectrum;
 

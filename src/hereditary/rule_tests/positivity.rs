@@ -2,7 +2,8 @@
 
 use super::foundation::{Foundation, Given};
 use super::{Random, bodies};
-use crate::hereditary::{Interpolant, RememberedField};
+use crate::hereditary::Interpolant;
+use crate::hereditary::remembered_field::RememberedField;
 
 /// Random forces, also none, over random steps of given length.
 #[test]

@@ -1,7 +1,8 @@
 //! What free cells do, step after step: nothing may grow.
 
 use super::{bodies, kelvin_voigt};
-use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
+use crate::hereditary::remembered_field::RememberedField;
+use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::rheology::CreepSpectrum;
 
 const CORRECTED: [Interpolant; 2] = [Interpolant::CorrectedLinear, Interpolant::CorrectedQuadratic];

@@ -1,30 +1,32 @@
-use educe::Educe;
-
 use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
 use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
-use crate::values::counted;
+use crate::values::Counted;
 
 /// Measurements at one temperature.
 ///
 /// ```
 /// use viscocontact::rheology::{Isotherm, Measurements};
 ///
-/// let creep = Measurements::creep(&[1.0, 10.0, 100.0, 1000.0], &[1.0e-9, 1.1e-9, 1.4e-9, 2.0e-9])?;
+/// let creep = Measurements::creep(&[(1.0, 1.0e-9), (10.0, 1.1e-9), (100.0, 1.4e-9), (1000.0, 2.0e-9)])?;
 /// let at_60 = Isotherm::new(333.15, creep)?;
 /// assert_eq!(at_60.temperature(), 333.15);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 pub struct Isotherm {
     temperature: f64,
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
-    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
+}
+
+debug_by! {
+    self: Isotherm =>
+    temperature: self.temperature, experiment: self.experiment, deformation: self.deformation,
+    rows: Counted(&self.rows)
 }
 
 impl Isotherm {
@@ -82,8 +84,8 @@ impl Isotherm {
 /// for temperature in [300.0, 310.0, 320.0] {
 ///     // three decades of time at each temperature; here from a formula
 /// #   let slow = law.shift_factor(temperature)?;
-/// #   let compliances: Vec<f64> = times.iter().map(|&t| body.creep_compliance(t / slow)).collect();
-///     isotherms.push(Isotherm::new(temperature, Measurements::creep(&times, &compliances)?)?);
+/// #   let table: Vec<(f64, f64)> = times.iter().map(|&t| (t, body.creep_compliance(t / slow))).collect();
+///     isotherms.push(Isotherm::new(temperature, Measurements::creep(&table)?)?);
 /// }
 /// let master = MasterCurve::new(300.0, isotherms)?;
 /// let polymer = master.fit()?; // at 300 K, over more than four decades

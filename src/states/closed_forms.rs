@@ -1,0 +1,120 @@
+//! Elastic states without a sweep: closed forms and tables.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::error::{Result, positive, within};
+use crate::load::Tilt;
+use crate::states::curve::{ElasticState, ElasticStates, Rest};
+
+/// Contact radii \[m\] between which closed forms are tabulated; below, they are continued by the same power.
+const RADII: [f64; 2] = [1e-6, 1e3];
+
+/// Upright axisymmetric bodies on a half-space: exact at every level, and the contact may grow to a radius of 1 km. The
+/// superposition is then the method of dimensionality reduction (Popov & Heß, *Method of Dimensionality Reduction in
+/// Contact Mechanics and Friction*, 2015; for creeping bodies Ting 1968, Greenwood, Int. J. Mech. Sci. 52, 2010).
+impl ElasticStates {
+    /// A sphere of `radius` R \[m\] as a paraboloid r²/2R (Hertz): δ = a²/R, l = 4/3 a³/R.
+    ///
+    /// ```
+    /// use viscocontact::analytic::Hertz;
+    /// use viscocontact::prelude::*;
+    /// use viscocontact::states::{ElasticStates, StatesContact};
+    ///
+    /// let (ball, body) = (10.0e-3, Material::incompressible(Elastic::new(1.0e6)?));
+    /// let mut contact = StatesContact::new(&ElasticStates::sphere(ball)?, &body)?;
+    /// let report = contact.step(0.0, Load::force(1.0))?;
+    /// let hertz = Hertz::new(ball, 4.0e6, 1.0)?;
+    /// assert!((report.approach / hertz.approach - 1.0).abs() < 1e-12);
+    /// // the pressure in the middle, from the elastic one
+    /// let pressure = contact.superposed(|level| Hertz::new(ball, 1.0, level).map_or(0.0, |hertz| hertz.max_pressure));
+    /// assert!((pressure / hertz.max_pressure - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the radius is not finite and positive, or so far from 1 m that levels are no numbers.
+    pub fn sphere(radius: f64) -> Result<Arc<ElasticStates>> {
+        ElasticStates::power(0.5 / positive("sphere radius", radius)?, 2.0)
+    }
+
+    /// A cone of slope `tan_beta` (Love 1939): δ = (π/2) a tan β, l = δ a.
+    ///
+    /// # Errors
+    /// As [`ElasticStates::sphere`].
+    pub fn cone(tan_beta: f64) -> Result<Arc<ElasticStates>> {
+        ElasticStates::power(positive("cone slope tan β", tan_beta)?, 1.0)
+    }
+
+    /// A flat circular punch of `radius` a \[m\]: l = 2 a δ.
+    ///
+    /// # Errors
+    /// As [`ElasticStates::sphere`].
+    pub fn punch(radius: f64) -> Result<Arc<ElasticStates>> {
+        positive("punch radius", radius)?;
+        ElasticStates::from_table(&RADII.map(|depth| (2.0 * radius * depth, depth, 2.0 * radius, PI * radius * radius)))
+    }
+
+    /// A body of the shape c r^n, with `coefficient` c \[m^(1−n)\] and `exponent` n (Galin; Sneddon 1965): δ = κ c a^n,
+    /// κ = √π Γ(n/2 + 1)/Γ((n + 1)/2), l = 2n/(n + 1) δ a.
+    ///
+    /// # Errors
+    /// As [`ElasticStates::sphere`]; if the exponent is outside \[0.1, 100\].
+    pub fn power(coefficient: f64, exponent: f64) -> Result<Arc<ElasticStates>> {
+        positive("coefficient of the shape c r^n", coefficient)?;
+        let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;
+        let factor = PI.sqrt() * libm::tgamma(0.5 * n + 1.0) / libm::tgamma(0.5 * n + 0.5);
+        ElasticStates::from_table(&RADII.map(|radius| {
+            let depth = factor * coefficient * radius.powf(n);
+            (2.0 * n / (n + 1.0) * depth * radius, depth, 2.0 * radius, PI * radius * radius)
+        }))
+    }
+
+    /// States of an upright body from a table of (level \[m²\], approach \[m\], stiffness over the modulus \[m\],
+    /// contact area \[m²\]), as of another closed form, another program or a measurement, whose level is the force over
+    /// the contact modulus E*. The approach is measured from the first touch, and the contact is taken to grow only.
+    ///
+    /// An axisymmetric body of the shape f(r) has, at the contact radius a, the depth g(a) = a ∫ f′(r)/√(a² − r²) dr
+    /// over 0 < r < a, the level 2 ∫ (g(a) − g(x)) dx over 0 < x < a, and the stiffness 2a.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    /// use viscocontact::states::{ElasticStates, StatesContact};
+    ///
+    /// // a cone with a spherical tip of radius R, tangent at the radius b: g = x²/R within b
+    /// let (radius, b) = (1.0e-3_f64, 0.1e-3_f64);
+    /// let depth = |x: f64| if x < b { x * x / radius } else { x / radius * (x - (x * x - b * b).sqrt() + b * (b / x).acos()) };
+    /// let mut table = Vec::new();
+    /// let (mut sum, mut last) = (0.0, 0.0);
+    /// for k in 0..=200 {
+    ///     let a = 1.0e-6 * 10.0_f64.powf(f64::from(k) / 60.0);
+    ///     // ∫ g dx by Simpson's rule
+    ///     sum += (a - last) / 6.0 * (depth(last) + 4.0 * depth(0.5 * (last + a)) + depth(a));
+    ///     last = a;
+    ///     table.push((2.0 * (a * depth(a) - sum), depth(a), 2.0 * a, std::f64::consts::PI * a * a));
+    /// }
+    /// let states = ElasticStates::from_table(&table)?;
+    /// let mut contact = StatesContact::new(&states, &Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))?;
+    /// contact.step(0.0, Load::force(1.0))?;
+    /// assert!(contact.contact_area() > std::f64::consts::PI * b * b);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there are fewer than two states, a number is not finite and positive, or levels and approaches do not ascend.
+    pub fn from_table(table: &[(f64, f64, f64, f64)]) -> Result<Arc<ElasticStates>> {
+        let states = table.iter().map(|&(level, approach, stiffness, area)| ElasticState {
+            level,
+            approach,
+            tilt: [0.0; 2],
+            stiffness,
+            load_stiffness: stiffness,
+            tilt_rate: [0.0; 2],
+            area,
+            cells: 0,
+            patches: 0,
+        });
+        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
+        ElasticStates::new(states.collect(), rest, [Tilt::Fixed(0.0); 2]).validated().map(Arc::new)
+    }
+}
