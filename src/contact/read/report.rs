@@ -210,6 +210,10 @@ bitflags! {
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
         /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
+        /// Surfaces that attract each other snapped together or apart within the step, or nearly so: its end is known, not the moment within it
+        /// ([`PassReport::response`](crate::contact::PassReport::response)); [`PassReport::released`](crate::contact::PassReport::released) is the
+        /// energy that was lost. Adaptive steps are shortened until the moment no longer matters.
+        const JUMP = 1 << 12;
     }
 }
 
@@ -223,7 +227,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 12] = [
+const MESSAGES: [(Warnings, &str); 13] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -242,6 +246,7 @@ const MESSAGES: [(Warnings, &str); 12] = [
         Warnings::COARSE_ZONE,
         "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
     ),
+    (Warnings::JUMP, "surfaces snapped together or apart in this step"),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.

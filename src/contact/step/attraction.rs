@@ -20,7 +20,7 @@ use crate::error::{AdhesionError, Result, StepError};
 use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::for_each_band;
-use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Stop};
+use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, RigidMotion, Solution, Stop};
 
 /// Greatest number of passes of a step.
 const MAX_PASSES: usize = 500;
@@ -39,6 +39,10 @@ const UNSURE: f64 = PENETRATION_SLACK;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
 const GREATEST_CHANGE: f64 = 0.5;
 
+/// Between the [response](PassReport::response) to a smooth change, on spheres at Tabor's numbers 0.5 to 3 at most 13, and to a jump, at least
+/// 19.
+const LEAST_OF_JUMP: f64 = 15.0;
+
 /// What the passes of a step work in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
 pub(in crate::contact) struct Passes {
@@ -49,6 +53,8 @@ pub(in crate::contact) struct Passes {
     /// s of passes that were kept, and s at the gaps that they led to, the last first.
     kept: [[Vec<f64>; 2]; KEPT],
     known: usize,
+    /// The change of s in the first pass.
+    first: Vec<f64>,
     pub(in crate::contact) report: PassReport,
 }
 
@@ -63,6 +69,19 @@ pub struct PassReport {
     pub rejected: usize,
     /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
     pub rise: f64,
+    /// The energy of the state before the step, under the load and the creep of its end, less that of the state at its end \[J\]: what a jump loses.
+    /// Where nothing jumps, it is of second order in the length of the step, of either sign.
+    pub released: f64,
+    /// By how many times the response of the surfaces enlarges a change of the attraction: 1 where it is weak, above 15 in a jump
+    /// ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)).
+    pub response: f64,
+}
+
+impl PassReport {
+    /// Whether the surfaces snapped together or apart.
+    pub(in crate::contact) fn jumped(&self) -> bool {
+        self.response > LEAST_OF_JUMP
+    }
 }
 
 /// Sums over the cells of a pass.
@@ -77,12 +96,26 @@ struct Found {
 
 impl Passes {
     /// Fields for each cell, with s of the trial.
-    pub(in crate::contact) const FIELDS: usize = 2 + 2 * KEPT + 1;
+    pub(in crate::contact) const FIELDS: usize = 3 + 2 * KEPT + 1;
 
     fn new(cells: usize) -> Passes {
         let field = || vec![0.0; cells];
         let kept = std::array::from_fn(|_| [field(), field()]);
-        Passes { image: field(), open: field(), kept, known: 0, report: PassReport::default() }
+        Passes { image: field(), open: field(), kept, known: 0, first: field(), report: PassReport::default() }
+    }
+
+    /// |z − s| at the end of a step that was solved, at its start, and at the start of the step before.
+    pub(in crate::contact) fn weights(&self) -> [&[f64]; 3] {
+        self.kept.each_ref().map(|[weights, _]| &weights[..])
+    }
+
+    fn keep_weights(&mut self, solutions: [&Solution; 3]) {
+        for ([weights, _], Solution { pressure, attraction, .. }) in self.kept.iter_mut().zip(solutions) {
+            for (weight, (z, s)) in weights.iter_mut().zip(pressure.iter().zip(attraction)) {
+                // no cell counts as one that the bodies have yet to meet
+                *weight = (z - s).abs().max(f64::MIN_POSITIVE);
+            }
+        }
     }
 
     /// The next s: from the kept passes, the last of which led from s to g, with g − Σ γ (g − g′), where γ makes the change f = g − s
@@ -165,7 +198,7 @@ impl AttractedStep<'_> {
             let pulled = self.add_to_load(wanted, trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
             if !carried && plain {
-                let force = wanted.total * self.scene.grid.cell_area() * state.region.images() as f64;
+                let force = wanted.total * self.area();
                 return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
             }
             let tolerance = inner.max(stop.tolerance);
@@ -188,6 +221,10 @@ impl AttractedStep<'_> {
                 (plain, wait, penalty) = (true, penalty, 2 * penalty);
                 continue;
             };
+            if own.report.passes == 1 {
+                let Passes { first, kept: [[s, g], ..], .. } = own;
+                first.iter_mut().zip(s.iter().zip(g)).for_each(|(first, (s, g))| *first = *g - *s);
+            }
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
@@ -202,6 +239,9 @@ impl AttractedStep<'_> {
                 trial.solution.counts = counts;
                 let net = &mut trial.solution.potential;
                 net.iter_mut().zip(&own.image).for_each(|(net, image)| *net -= image);
+                own.report.released = self.area() * (self.energy_at_start(wanted, own, trial) - found.energy);
+                own.report.response = self.response(own, trial);
+                own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
                 return Ok(());
             }
             if change <= limit {
@@ -303,7 +343,7 @@ impl AttractedStep<'_> {
         if wanted.tilts() {
             trial.solution.motions[0] = region.modes(trial.free[0]).coefficients(motion);
         }
-        sum * self.scene.grid.cell_area() * region.images() as f64
+        sum * self.area()
     }
 
     /// One contact problem with the attraction of the trial, which pulls with the force `pulled` \[N\].
@@ -341,27 +381,78 @@ impl AttractedStep<'_> {
             }
         });
         let (s, g, image) = (&*s, &*g, &own.image);
-        let [elastic, attracted, wall, pressed] = rows.sum_terms(|k| {
+        let cell = |k: usize| {
             let (z, h) = (solution.pressure[k], height(k));
-            let stored = 0.5 * c * (z - s[k]) * (solution.potential[k] - image[k]);
-            let open = if z > 0.0 { 0.0 } else { h.max(0.0) };
-            let wall = if z > 0.0 { z * h } else { 0.0 };
-            h.is_finite().then(|| [stored, law.energy(open), wall, c * z * solution.potential[k]])
+            let [open, wall] = if z > 0.0 { [0.0, z * h] } else { [h.max(0.0), 0.0] };
+            [z - s[k], solution.potential[k] - image[k], open, wall]
+        };
+        let [energy, parts] = self.energy(wanted, modes.physical(motion), cell);
+        let pressed = rows.sum_of_pairs(&solution.pressure, &solution.potential, |z, v| c * z * v);
+        let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
+        let change = changes.fold(0.0, f64::max) / law.traction(0.0);
+        Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change }
+    }
+
+    /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from z − s, K (z − s), the gap and the
+    /// work of the wall of a cell.
+    fn energy(&self, wanted: Freedom, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> [f64; 2] {
+        let AttractedStep { state, law, given: [c, _], .. } = *self;
+        let [elastic, attracted, wall] = state.region.rows().sum_terms(|k| {
+            let [traction, potential, open, wall] = cell(k);
+            open.is_finite().then(|| [0.5 * c * traction * potential, law.energy(open), wall])
         });
-        let area = self.scene.grid.cell_area() * state.region.images() as f64;
-        let position = modes.physical(motion);
         let of_load = match self.step.loads[0] {
-            Load::Force { .. } => -wanted.total * position.at(wanted.point),
+            Load::Force { .. } => -wanted.total * motion.at(wanted.point),
             Load::Spring { stiffness, drive, .. } => {
-                let extended = drive - self.step.indenter.gap().datum - motion.0[0];
-                0.5 * stiffness * extended * extended / area
+                let extended = drive - self.step.indenter.gap().datum - motion.approach;
+                0.5 * stiffness * extended * extended / self.area()
             }
             Load::Approach { .. } => 0.0,
         };
-        let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
-        let change = changes.fold(0.0, f64::max) / law.traction(0.0);
-        let scale = elastic.abs() + attracted + pressed.abs() + of_load.abs() + f64::MIN_POSITIVE;
-        Found { energy: elastic - attracted - wall + of_load, scale, change }
+        [elastic - attracted - wall + of_load, elastic.abs() + attracted + of_load.abs()]
+    }
+
+    /// The energy over the area of a cell of the state before the step, under the load and the creep of its end.
+    fn energy_at_start(&self, wanted: Freedom, own: &Passes, trial: &Trial) -> f64 {
+        let (state, step, c) = (self.state, self.step, self.given[0]);
+        let Solution { pressure, attraction, potential, .. } = &state.current.solution;
+        let (RigidMotion { approach, tilt }, prescribed) = (state.current.motions[0], step.prescribed(0));
+        let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
+        let freedom = trial.free[0];
+        let motion = RigidMotion {
+            approach: free(freedom.translation, approach - step.indenter.gap().datum - prescribed.approach),
+            tilt: [0, 1].map(|axis| free(freedom.tilt[axis], tilt[axis] - prescribed.tilt[axis])),
+        };
+        let cell = |k: usize| {
+            let h = own.open[k] + c * potential[k] - motion.at(state.region.center(k));
+            let traction = pressure[k] - attraction[k];
+            // the wall of the state before holds its cells while the gap changes by what the step begins with
+            let [open, wall] = if pressure[k] > 0.0 { [0.0, traction * h] } else { [h.max(0.0), 0.0] };
+            [traction, potential[k], open, wall]
+        };
+        self.energy(wanted, motion, cell)[0]
+    }
+
+    /// How the surfaces respond: of the change e of s from its guess, a first pass finds r, and e·e/(e·r) is 1/(1 − λ) for the rate λ of the
+    /// passes.
+    fn response(&self, own: &Passes, trial: &Trial) -> f64 {
+        let (state, reach) = (self.state, trial.reach);
+        if state.is_undisturbed() {
+            return 1.0;
+        }
+        let [now, before] = [&state.current.solution.attraction, &state.previous.solution.attraction];
+        let [square, first] = state.region.rows().sum_terms(|k| {
+            let change = trial.solution.attraction[k] - (now[k] + reach * (now[k] - before[k]));
+            Some([change * change, change * own.first[k]])
+        });
+        let ratio = square / first;
+        // no change has no ratio
+        if ratio < 0.0 { f64::INFINITY } else { ratio.max(1.0) }
+    }
+
+    /// Force over Σ p \[m²\].
+    fn area(&self) -> f64 {
+        self.scene.grid.cell_area() * self.state.region.images() as f64
     }
 }
 
