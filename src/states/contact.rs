@@ -119,7 +119,7 @@ impl StatesContact {
     /// Advances by `dt` to `time`.
     pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
         non_negative("time step", dt)?;
-        load.validate()?;
+        load.validate_in(false)?;
         let length = match &self.scene.temperature {
             Some(history) => history.reduced_time(self.time, time)?,
             None => dt,

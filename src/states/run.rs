@@ -200,7 +200,7 @@ impl<'a> StatesRun<'a> {
     fn take_step(&mut self) -> Result<Option<StatesReport>> {
         self.stepping.validate_run(self.start, self.until)?;
         let now = self.contact.time();
-        let load = self.history.at(now).validated_at(now)?;
+        let load = self.history.at(now).validated_at(now, false)?;
         if self.load != Some(load) {
             self.before.copy_from(self.contact);
             let report = self.contact.step(0.0, load)?;
@@ -243,7 +243,7 @@ impl<'a> StatesRun<'a> {
         let middle = start + 0.5 * (end - start);
         let halved = matches!(self.stepping, Stepping::Adaptive { .. }) && time > middle;
         for stop in [halved.then_some(middle), (time > start).then_some(time)].into_iter().flatten() {
-            contact.step_to(stop, stop - contact.time(), self.history.at(stop).validated_at(stop)?)?;
+            contact.step_to(stop, stop - contact.time(), self.history.at(stop).validated_at(stop, false)?)?;
         }
         Ok(contact)
     }
@@ -259,7 +259,7 @@ impl<'a> StatesRun<'a> {
 
     /// Advances to a time under the load there, or just before it where it jumps.
     fn step_to(&mut self, now: f64, time: f64) -> Result<StatesReport> {
-        let load = self.history.before(time).validated_at(time)?;
+        let load = self.history.before(time).validated_at(time, false)?;
         self.load = Some(load);
         self.contact.step_to(time, time - now, load)
     }

@@ -194,7 +194,7 @@ impl<'a> Run<'a> {
     fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
         let now = self.contact.time();
-        let load = self.history.at(now).validated_at(now)?;
+        let load = self.history.at(now).validated_at(now, self.contact.scene.attraction.is_some())?;
         if load != self.contact.load() {
             if let Some(control) = &mut self.progress.control {
                 control.jump();
@@ -226,7 +226,7 @@ impl<'a> Run<'a> {
         }
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
         let time = self.next_time(now, dt, corner)?;
-        let load = self.history.before(time).validated_at(time)?;
+        let load = self.history.before(time).validated_at(time, self.contact.scene.attraction.is_some())?;
         let report = self.step_to(time, time - now, load)?;
         if time == corner {
             self.contact.computation.state.history.reset_differences();

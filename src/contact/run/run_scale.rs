@@ -28,7 +28,7 @@ pub(super) struct RunScale {
     /// Approach at first touch.
     touch: f64,
     /// Whether bodies pull at each other, so that heights above first touch are loads, too.
-    attracts: bool,
+    pub(super) attracts: bool,
     /// Greatest force.
     force: f64,
     /// Greatest prescribed depth below first touch, and an estimate of the greatest v that it requires.
@@ -69,7 +69,7 @@ impl RunScale {
         let mut last = None;
         for time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let load = load(history, time).validated_at(time)?;
+                let load = load(history, time).validated_at(time, scene.attraction.is_some())?;
                 scale.include(&load);
                 let is_force = |load: &Load| matches!(load, Load::Force { .. });
                 let before = last.replace(load);
@@ -239,7 +239,7 @@ impl Rises {
         let (mut rises, mut again, mut last) = (Rises::default(), false, None);
         for &time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let approach = match load(history, time).validated_at(time)? {
+                let approach = match load(history, time).validated_at(time, scene.attraction.is_some())? {
                     Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth,
                     Load::Force { .. } => {
                         // a force may have receded, too
