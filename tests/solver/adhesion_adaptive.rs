@@ -64,7 +64,7 @@ impl Scene {
     }
 }
 
-/// The force stays within a few tolerances of the curve of short steps, in force or in time: a jump takes no time, so that the force itself has no error
+/// The force stays within three tolerances of the curve in 95 % of the runs and ten in all of short steps, in force or in time: a jump takes no time, so that the force itself has no error
 /// there. Every great jump of the short steps is reported, with the energy that it loses.
 #[test]
 fn adaptive_runs_follow_short_steps() {
@@ -110,7 +110,8 @@ fn adaptive_runs_follow_short_steps() {
                 scene.name
             );
             worst[which] = worst[which].max(ratio);
-            beyond += usize::from(ratio > 3.0);
+            beyond += u64::from(ratio > 3.0);
+            assert!(ratio < 10.0, "{}: {ratio} tolerances", scene.name);
             for (time, released) in &great {
                 jumps += 1;
                 let near = |(at, length, _): &&(f64, f64, f64)| {
@@ -126,6 +127,7 @@ fn adaptive_runs_follow_short_steps() {
             }
         }
     }
+    assert!(20 * beyond <= 2 * runs, "{beyond} of {} beyond 3 tolerances", 2 * runs);
     println!("{runs} scenes: worst {worst:.2?} tolerances, {beyond} beyond 3, {jumps} great jumps");
 }
 
