@@ -67,13 +67,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let isotherms = temperatures.iter().zip(args.seed..).map(|(&temperature, seed)| {
         let mut noise = noise(seed);
         let slow = law.shift_factor(temperature)?;
-        let omega: Vec<f64> = (0..=30).map(|k| 10f64.powf(-1.0 + f64::from(k) / 10.0)).collect();
-        let mut measured = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            omega.iter().map(|omega| of(omega * slow) * (1.0 + args.noise * noise())).collect()
-        };
-        let storage = measured(&|omega| truth.storage_modulus(omega));
-        let loss = measured(&|omega| truth.loss_modulus(omega));
-        Isotherm::new(temperature, Measurements::dynamic(&omega, &storage, &loss)?)
+        let mut rows: Vec<(f64, f64, f64)> = (0..=30)
+            .map(|k| 10f64.powf(-1.0 + f64::from(k) / 10.0))
+            .map(|omega| (omega, truth.storage_modulus(omega * slow), truth.loss_modulus(omega * slow)))
+            .collect();
+        rows.iter_mut().for_each(|row| row.1 *= 1.0 + args.noise * noise());
+        rows.iter_mut().for_each(|row| row.2 *= 1.0 + args.noise * noise());
+        Isotherm::new(temperature, Measurements::dynamic(&rows)?)
     });
     let master = MasterCurve::new(reference, isotherms.collect::<Result<_>>()?)?;
     let body = master.fit()?;

@@ -86,7 +86,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         while let Some(report) = run.next_step()? {
             steps += 1;
             if report.time >= TIMES[0] {
-                points.push((report.time, share(report.area)));
+                points.push((report.time, share(run.contact().contact_area())));
             }
         }
         chart.add("", COLORS[k % COLORS.len()], Style::Line, points);

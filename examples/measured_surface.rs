@@ -173,7 +173,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
         let patches = contact.patches()?;
         let smooth = Hertz::new(args.radius, 1.0 / rubber.contact_compliance(report.time), args.load)?;
         let hertz = std::f64::consts::PI * smooth.contact_radius.powi(2);
-        history.write(contact, &report, &[patches.all.len() as f64, hertz])?;
+        history.record(contact, &report, &[patches.all.len() as f64, hertz])?;
         if !shown.contains(&report.time) {
             continue;
         }

@@ -159,7 +159,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     while let Some(report) = follow.next_step()? {
         let contact = follow.contact();
         work = (work.0 + 1, work.1 + report.convolution_equivalents());
-        files.history.write(contact, &report, &[])?;
+        files.history.record(contact, &report, &[])?;
         if !shown.contains(&report.time) {
             continue;
         }
@@ -202,13 +202,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     // Unloading: a jump, then steps that grow with the time since.
     let held = Load::force(0.5 * force);
     let report = contact.step(0.0, held)?;
-    files.history.write(&contact, &report, &[])?;
+    files.history.record(&contact, &report, &[])?;
     let mut hold = vec![observe(&contact)?];
     let (mut before, mut fell) = (contact.contact_cells(), 0);
     let progress = support::progress(shown.len() as u64);
     for &since in &shown {
         let report = contact.step(args.to + since - contact.time(), held)?;
-        files.history.write(&contact, &report, &[])?;
+        files.history.record(&contact, &report, &[])?;
         fell += usize::from(report.contact_cells < before);
         before = report.contact_cells;
         hold.push(Moment { time: since, ..observe(&contact)? });
@@ -333,7 +333,7 @@ impl Files {
     #[allow(clippy::unnecessary_wraps, unused_variables, reason = "there is nothing to write without features")]
     fn frame(&mut self, contact: &ViscoelasticContact) -> Result<()> {
         for series in &mut self.frames {
-            series.write(contact)?;
+            series.record(contact)?;
         }
         Ok(())
     }

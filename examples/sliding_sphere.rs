@@ -165,7 +165,7 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     {
         use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, &Field::ALL)?.write(&contact)?;
+        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, &Field::ALL)?.record(&contact)?;
     }
     Ok(())
 }
@@ -203,7 +203,7 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
         while contact.time() < corner * (1.0 - 1e-12) {
             let next = dt.min(corner - contact.time());
             let report = contact.step_along(&travel, next, bodies.load)?;
-            table.write(&contact, &report.step, &[report.position[0], report.lateral_force[0], report.power])?;
+            table.record(&contact, &report.step, &[report.position[0], report.lateral_force[0], report.power])?;
             friction.push((report.step.time / bodies.tau, report.lateral_force[0] / report.step.force));
             sinking.push((report.step.time / bodies.tau, report.step.approach * 1e6));
             dt = if k == 1 { dt * 1.2 } else { step };

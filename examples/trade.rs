@@ -351,10 +351,11 @@ fn plot(args: &Args, scene: &str, cells: usize, rows: &[Row]) -> Result<(), Box<
 /// For every scene and method the least work that reaches an error.
 fn page(scenes: &[Scene], meshes: &[usize], rows: &[Row], failures: &[(&str, Method, usize, f64)]) -> String {
     let mut page = String::from(
-        "## Work to reach an error\n\nLeast convolution equivalents over all step counts or tolerances of the sweep for which the error of \
-         the approach (greatest over the run, relative to its greatest value; mesh included; for the held sphere on a Maxwell body of the central \
-         pressure too) is below 1e-2, 1e-3 and 1e-4; in brackets \
-         the steps. A dash: not reached in the sweep.\n",
+        "## Work to reach an error\n\n\
+         Least convolution equivalents over all step counts or tolerances of the sweep for which the error of the approach\n\
+         (greatest over the run, relative to its greatest value; mesh included; for the held sphere on a Maxwell body of the\n\
+         central pressure too) is below 1e-2, 1e-3 and 1e-4; in brackets the steps. A dash: not reached in the sweep.\n\
+         Memory is that of `Builder::memory` and what the steps add.\n",
     );
     let cells = meshes[meshes.len() - 1];
     for scene in scenes {

@@ -101,22 +101,26 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             // reduced times
             .times(1.0e-2..=1.0e12)
             .build()?;
-        let stops: Vec<f64> = (0..=60).map(|k| until * f64::from(k) / 60.0).collect();
-        let mut follow = contact.follow(&load, Stepping::adaptive(args.tolerance), until).stop_at(&stops)?;
+        // the curves go through states within the steps, which are as long as their error allows
+        let mut follow =
+            contact.follow(&load, Stepping::adaptive(args.tolerance), until).sample_at(Times::every(until / 60.0))?;
         let (mut area, mut depth, mut course, mut collapsed) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut steps, mut error) = (0, 0.0);
         while let Some(report) = follow.next_step()? {
             progress.set_position((100.0 * (n as f64 + report.time / until)) as u64);
-            let contact = follow.contact();
-            let (t, now, xi) = (report.time, temperature.at(report.time), contact.reduced_time());
-            let minutes = t / 60.0;
-            area.push((minutes, 1e6 * contact.contact_area()));
-            depth.push((minutes, 1e3 * report.approach));
-            course.push((minutes, now - FREEZING));
-            collapsed.extend((xi > 1.0).then_some((xi, 1e6 * contact.contact_area())));
-            error = report.approach / approach(xi) - 1.0;
-            table.serialize((&name, t, now, xi, contact.contact_area(), report.approach))?;
             steps += 1;
+            for sample in follow.samples() {
+                let sample = sample?;
+                let contact = sample.contact();
+                let (t, xi) = (contact.time(), contact.reduced_time());
+                let (now, minutes) = (temperature.at(t), t / 60.0);
+                area.push((minutes, 1e6 * contact.contact_area()));
+                depth.push((minutes, 1e3 * contact.approach()));
+                course.push((minutes, now - FREEZING));
+                collapsed.extend((xi > 1.0).then_some((xi, 1e6 * contact.contact_area())));
+                error = contact.approach() / approach(xi) - 1.0;
+                table.serialize((&name, t, now, xi, contact.contact_area(), contact.approach()))?;
+            }
         }
         progress.suspend(|| println!(
             "{name}: contact area {:.3} mm² at first, {:.3} mm² at the end, after {:.1e} s at the reference temperature; \

@@ -27,7 +27,55 @@ impl Ascending {
     }
 }
 
-/// Times \[s\] at which steps end or states are sampled: single ones, multiples of an interval, and decades.
+/// Times at which the steps of a run end ([`Run::stop_at`](crate::contact::Run::stop_at)) or its states are sampled
+/// ([`Run::sample_at`](crate::contact::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade. References to
+/// slices, arrays and vectors of times \[s\] are times, too.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = StatesContact::new(&ElasticStates::sphere(10.0e-3)?, &Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))?;
+/// let load = StepLoad::new(Load::force(0.5))?;
+/// let run = contact.follow(&load, Stepping::adaptive(1.0e-3), 10.0);
+/// let mut run = run.stop_at(&[1.0, 5.0])?.sample_at(Times::decades(1.0e-2, 10).and(Times::every(0.5)))?;
+/// while run.next_step()?.is_some() {}
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Times {
+    given: Vec<f64>,
+    rules: Vec<Rule>,
+}
+
+impl Times {
+    /// The multiples of an `interval` \[s\] from the start of the run.
+    pub fn every(interval: f64) -> Times {
+        Times { rules: vec![Rule::Every(interval)], ..Times::default() }
+    }
+
+    /// The time `first` \[s\] after the start of the run, and `per_decade` times, 1 to 1000, in each decade beyond.
+    pub fn decades(first: f64, per_decade: usize) -> Times {
+        Times { rules: vec![Rule::Decades(first, per_decade)], ..Times::default() }
+    }
+
+    /// Both.
+    #[must_use]
+    pub fn and(mut self, other: impl Into<Times>) -> Times {
+        let Times { given, rules } = other.into();
+        self.given.extend(given);
+        self.rules.extend(rules);
+        self
+    }
+}
+
+/// In any order; times before the time of the contact have no effect.
+impl<T: AsRef<[f64]> + ?Sized> From<&T> for Times {
+    fn from(times: &T) -> Times {
+        Times { given: times.as_ref().to_vec(), rules: Vec::new() }
+    }
+}
+
+/// The [`Times`] of a run.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Schedule {
     times: Ascending,
@@ -35,40 +83,32 @@ pub(crate) struct Schedule {
 }
 
 /// Endless times, counted from an origin.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Rule {
     /// Multiples of an interval, from 1 on.
     Every(f64),
     /// The first, and a number for each decade.
-    Decades(f64, f64),
+    Decades(f64, usize),
 }
 
 /// Greatest number of times per decade: more are closer than plots resolve.
 const MOST_PER_DECADE: usize = 1000;
 
 impl Schedule {
-    /// Adds `times` in any order; `field` names them in the error of one that is not finite.
-    pub(crate) fn add(&mut self, field: &'static str, times: &[f64]) -> Result<()> {
-        self.times.add(field, times)
-    }
-
-    /// Adds the multiples of an interval after `origin`; `field` names the interval.
-    pub(crate) fn add_every(&mut self, field: &'static str, interval: f64, origin: f64) -> Result<()> {
-        self.rules.push((origin, Rule::Every(positive(field, interval)?)));
-        Ok(())
-    }
-
-    /// Adds the time `first` after `origin`, and `per_decade` times in each decade beyond. Errors name both numbers by the
-    /// names given.
-    pub(crate) fn add_decades(
-        &mut self,
-        [first_name, count_name]: [&'static str; 2],
-        (first, per_decade): (f64, usize),
-        origin: f64,
-    ) -> Result<()> {
-        positive(first_name, first)?;
-        count_within(count_name, per_decade, (1..=MOST_PER_DECADE).contains(&per_decade), "1 to 1000")?;
-        self.rules.push((origin, Rule::Decades(first, per_decade as f64)));
+    /// Adds times of a run that starts at `origin`.
+    pub(crate) fn add(&mut self, times: Times, origin: f64) -> Result<()> {
+        self.times.add("time to stop at or to sample", &times.given)?;
+        for rule in times.rules {
+            match rule {
+                Rule::Every(interval) => drop(positive("interval of times", interval)?),
+                Rule::Decades(first, per_decade) => {
+                    positive("first of the times in decades", first)?;
+                    let is_allowed = (1..=MOST_PER_DECADE).contains(&per_decade);
+                    count_within("times per decade", per_decade, is_allowed, "1 to 1000")?;
+                }
+            }
+            self.rules.push((origin, rule));
+        }
         Ok(())
     }
 
@@ -85,6 +125,7 @@ impl Rule {
         match self {
             Rule::Every(interval) => origin + (number + 1.0) * interval,
             Rule::Decades(first, per_decade) => {
+                let per_decade = per_decade as f64;
                 let decade = (number / per_decade).floor();
                 origin + first * 10f64.powi(decade as i32) * 10f64.powf(number / per_decade - decade)
             }
@@ -94,7 +135,7 @@ impl Rule {
     fn after(self, origin: f64, time: f64) -> f64 {
         let about = match self {
             Rule::Every(interval) => (time - origin) / interval - 1.0,
-            Rule::Decades(first, per_decade) => per_decade * ((time - origin) / first).log10(),
+            Rule::Decades(first, per_decade) => per_decade as f64 * ((time - origin) / first).log10(),
         };
         // NaN of a time before the origin is the first
         let mut number = (about.floor() - 1.0).max(0.0);
@@ -168,9 +209,8 @@ mod tests {
     #[test]
     fn schedules_have_every_time_once_and_in_order() {
         let mut schedule = Schedule::default();
-        schedule.add("times", &[0.35, -1.0, 7.0]).unwrap();
-        schedule.add_every("interval", 0.1, 0.0).unwrap();
-        schedule.add_decades(["first", "number"], (1e-3, 2), 0.0).unwrap();
+        let given = Times::from(&[0.35, -1.0, 7.0]);
+        schedule.add(given.and(Times::every(0.1)).and(Times::decades(1e-3, 2)), 0.0).unwrap();
         let (mut time, mut found) = (-2.0, Vec::new());
         while let Some(next) = schedule.after(time).filter(|next| *next < 0.45) {
             assert!(next > time);
@@ -192,8 +232,8 @@ mod tests {
             assert_eq!(schedule.after(next.next_down()), Some(next));
         }
         assert!(schedule.after(1e300).unwrap() > 1e300);
-        assert!(schedule.add_every("interval", 0.0, 0.0).is_err());
-        assert!(schedule.add_decades(["first", "number"], (1.0, 0), 0.0).is_err());
+        assert!(schedule.add(Times::every(0.0), 0.0).is_err());
+        assert!(schedule.add(Times::decades(1.0, 0), 0.0).is_err());
         assert!(Schedule::default().after(0.0).is_none());
     }
 }

@@ -225,8 +225,8 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepError, StepReport,
-        Stepping, TimeRule, ViscoelasticContact, Warnings,
+        BodyState, Builder, Contact, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepError, StepReport,
+        Stepping, TimeRule, Times, ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,

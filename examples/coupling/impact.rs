@@ -65,36 +65,19 @@ fn main() {
     support::finish(run(&args));
 }
 
-/// The resistance to the mass.
-trait Foundation: Clone {
-    /// Advances by `dt` to `approach`; returns the force.
-    fn indent(&mut self, dt: f64, approach: f64) -> Result<f64>;
-}
-
-impl Foundation for ViscoelasticContact {
-    fn indent(&mut self, dt: f64, approach: f64) -> Result<f64> {
-        Ok(self.step(dt, Load::approach(approach))?.force)
-    }
-}
-
-impl Foundation for StatesContact {
-    fn indent(&mut self, dt: f64, approach: f64) -> Result<f64> {
-        Ok(self.step(dt, Load::approach(approach))?.force)
-    }
-}
-
 /// m dv/dt = −F within a step, y = (approach, velocity).
-struct Motion<'a, F> {
-    foundation: &'a F,
+struct Motion<'a, C> {
+    contact: &'a C,
     mass: f64,
     /// Force at the start of the step.
     force: f64,
     failed: &'a RefCell<Option<viscocontact::Error>>,
 }
 
-impl<F: Foundation> System<f64, Vector2<f64>> for Motion<'_, F> {
+impl<C: Contact> System<f64, Vector2<f64>> for Motion<'_, C> {
     fn system(&self, t: f64, y: &Vector2<f64>, dy: &mut Vector2<f64>) {
-        let force = if t > 0.0 { self.foundation.clone().indent(t, y[0]) } else { Ok(self.force) };
+        let step = |t, approach| Ok(self.contact.clone().step(t, Load::approach(approach))?.force);
+        let force = if t > 0.0 { step(t, y[0]) } else { Ok(self.force) };
         let force = force.unwrap_or_else(|error| {
             // the integrator takes no errors: they are reported afterwards
             self.failed.borrow_mut().get_or_insert(error);
@@ -116,17 +99,17 @@ struct Moment {
 }
 
 /// Follows the ball from the first touch until it leaves; `seen` is shown each state.
-fn strike<F: Foundation>(
+fn strike<C: Contact>(
     args: &Args,
-    mut foundation: F,
+    mut contact: C,
     dt: f64,
-    mut seen: impl FnMut(&Moment, &F) -> Result<(), Box<dyn Error>>,
+    mut seen: impl FnMut(&Moment, &C) -> Result<(), Box<dyn Error>>,
 ) -> Result<Vec<Moment>, Box<dyn Error>> {
     let mut now = Moment { time: 0.0, approach: 0.0, velocity: args.velocity, force: 0.0, work: 0.0 };
     let mut all = vec![now];
     while all.len() == 1 || now.velocity > 0.0 || now.force > 0.0 {
         let failed = RefCell::new(None);
-        let motion = Motion { foundation: &foundation, mass: args.mass, force: now.force, failed: &failed };
+        let motion = Motion { contact: &contact, mass: args.mass, force: now.force, failed: &failed };
         let mut integrator = Rk4::new(motion, 0.0, Vector2::new(now.approach, now.velocity), dt, dt);
         integrator.integrate()?;
         let end = *integrator.y_out().last().ok_or("the integrator took no step")?;
@@ -134,11 +117,11 @@ fn strike<F: Foundation>(
         if let Some(error) = failed.into_inner() {
             return Err(error.into());
         }
-        let force = foundation.indent(dt, end[0])?;
+        let force = contact.step(dt, Load::approach(end[0]))?.force;
         let work = now.work + 0.5 * (now.force + force) * (end[0] - now.approach);
         now = Moment { time: now.time + dt, approach: end[0], velocity: end[1], force, work };
         all.push(now);
-        seen(&now, &foundation)?;
+        seen(&now, &contact)?;
         if all.len() > 100_000 {
             return Err("the ball does not leave".into());
         }
@@ -235,7 +218,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let computed = strike(args, args.contact(&material, widest)?, dt, |_, contact| {
             count += 1;
             match &mut animation {
-                Some(animation) if count % (args.steps / 25).max(1) == 0 => Ok(animation.add(contact)?),
+                Some(animation) if count % (args.steps / 25).max(1) == 0 => Ok(animation.record(contact)?),
                 _ => Ok(()),
             }
         })?;

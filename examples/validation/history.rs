@@ -63,8 +63,8 @@ pub fn many_times() -> Outcome {
 pub fn measured() -> Outcome {
     let law = FractionalZener::new(10.0 * G, 0.5 * G, 1.0, 0.5)?;
     let times: Vec<f64> = (0..=72).map(|k| 10_f64.powf(-4.0 + f64::from(k) / 12.0)).collect();
-    let values: Vec<f64> = times.iter().map(|&t| law.creep_compliance(t)).collect();
-    let table = Material::incompressible(Measurements::creep(&times, &values)?.fit()?);
+    let rows: Vec<(f64, f64)> = times.iter().map(|&t| (t, law.creep_compliance(t))).collect();
+    let table = Material::incompressible(Measurements::creep(&rows)?.fit()?);
     let known = Material::incompressible(law.series(1e-6..=1e2, 1e-6)?);
     beside_foundation(
         &table,

@@ -77,8 +77,8 @@ fn write_files(folder: &Path, ranks: Option<Arc<dyn Ranks>>) -> Result<(), Error
     let mut vtk = FrameSeries::create(folder.join("vtk"), Format::Vtk, &Metadata::new("check"), &Field::ALL)?;
     for dt in [0.0, 0.3] {
         contact.step(dt, Load::force(1.0))?;
-        npz.write(&contact)?;
-        vtk.write(&contact)?;
+        npz.record(&contact)?;
+        vtk.record(&contact)?;
     }
     Ok(())
 }

@@ -40,6 +40,7 @@ mod settings;
 mod stepper;
 mod window;
 
+pub use crate::ascending::Times;
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
 pub use crate::error::StepError;
@@ -55,7 +56,7 @@ pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
-pub use stepper::ViscoelasticContact;
+pub use stepper::{Contact, ViscoelasticContact};
 
 use builder::memory::Footprint;
 use computation::Computation;

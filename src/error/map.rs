@@ -1,3 +1,6 @@
+use crate::Axis;
+use crate::rounded::rounded;
+
 /// What is wrong with a height map or its file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -16,6 +19,21 @@ pub enum MapError {
     /// No height is known: nothing was measured, or the grid does not overlap the map.
     #[error("no height is known: nothing was measured there")]
     NothingKnown,
+
+    /// The shortest wavelength of a rough surface is below two cells of its grid.
+    #[error(
+        "shortest wavelength = {:e} m is not allowed: it must be at least two cells of the grid, which are {:e} m along {axis}: take a longer wavelength, or {cells} cells along {axis}", rounded(*.shortest, 4), rounded(*.least, 4)
+    )]
+    TooFine {
+        /// The shortest wavelength \[m\].
+        shortest: f64,
+        /// The length of two cells \[m\].
+        least: f64,
+        /// The axis of the cells.
+        axis: Axis,
+        /// Number of cells along the axis that resolves the wavelength.
+        cells: usize,
+    },
 
     /// Some heights are missing and all are needed: fill them
     /// ([`HeightMap::filled`](crate::geometry::HeightMap::filled)) or crop the map.

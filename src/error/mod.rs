@@ -39,7 +39,7 @@ pub use table::{Place, TableError};
 pub use text::TextError;
 pub use violation::{Location, Verdict, Violation};
 
-use crate::rounded::rounded;
+use crate::rounded::{rounded, without_noise};
 
 /// Everything that can go wrong, with the numbers needed to correct it.
 ///
@@ -59,7 +59,7 @@ use crate::rounded::rounded;
 #[non_exhaustive]
 pub enum Error {
     /// A number is outside its allowed range, or not finite.
-    #[error("{field} = {value:?} is not allowed: it must be {allowed}")]
+    #[error("{field} = {:?} is not allowed: it must be {allowed}", without_noise(*.value, .allowed))]
     OutOfRange {
         /// The quantity.
         field: &'static str,

@@ -4,48 +4,79 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::ViscoelasticContact;
-use crate::contact::StepReport;
+use crate::contact::{Contact, StepReport};
 use crate::error::{Result, exact_length};
 use crate::file::{Appending, check_regular, failed};
 use crate::output::Metadata;
 
-/// The name of a column, and its cell in the row of a step.
-type Column = (&'static str, fn(&ViscoelasticContact, &StepReport) -> String);
-
-/// The columns of every history.
-const COLUMNS: [Column; 17] = [
-    ("time [s]", |contact, _| number(contact.time())),
-    ("step length [s]", |_, report| number(report.dt)),
-    ("force [N]", |contact, _| number(contact.force())),
-    ("approach [m]", |contact, _| number(contact.approach())),
-    ("tilt 1 [rad]", |contact, _| number(contact.tilt()[0])),
-    ("tilt 2 [rad]", |contact, _| number(contact.tilt()[1])),
-    ("moment 1 [N m]", |contact, _| number(contact.moment()[0])),
-    ("moment 2 [N m]", |contact, _| number(contact.moment()[1])),
-    ("contact area [m2]", |contact, _| number(contact.contact_area())),
-    ("contact cells", |contact, _| contact.contact_cells().to_string()),
-    ("mean pressure [Pa]", |contact, _| number(contact.mean_pressure())),
-    ("max pressure [Pa]", |contact, _| number(contact.max_pressure())),
-    ("iterations", |_, report| report.iterations.to_string()),
-    ("convolutions", |_, report| report.convolutions.to_string()),
-    ("preconditioner applications", |_, report| report.preconditioner_applications.to_string()),
-    ("residual", |_, report| number(report.residual)),
-    ("time error", |_, report| report.time_error.map(number).unwrap_or_default()),
+/// The names of the columns of every history.
+const COLUMNS: [&str; 17] = [
+    "time [s]",
+    "step length [s]",
+    "force [N]",
+    "approach [m]",
+    "tilt 1 [rad]",
+    "tilt 2 [rad]",
+    "moment 1 [N m]",
+    "moment 2 [N m]",
+    "contact area [m2]",
+    "contact cells",
+    "mean pressure [Pa]",
+    "max pressure [Pa]",
+    "iterations",
+    "convolutions",
+    "preconditioner applications",
+    "residual",
+    "time error",
 ];
+
+/// Their cells in the row of a step.
+fn cells(contact: &impl Contact, report: &StepReport) -> [String; COLUMNS.len()] {
+    let known = |value: Option<f64>| value.map(number).unwrap_or_default();
+    let [tilt1, tilt2] = contact.tilt().map(number);
+    let moment = contact.in_space().map(|contact| contact.moment());
+    [
+        number(contact.time()),
+        number(report.dt),
+        number(contact.force()),
+        number(contact.approach()),
+        tilt1,
+        tilt2,
+        known(moment.map(|moment| moment[0])),
+        known(moment.map(|moment| moment[1])),
+        number(contact.contact_area()),
+        report.contact_cells.to_string(),
+        number(contact.mean_pressure()),
+        known(contact.in_space().map(|contact| contact.max_pressure())),
+        report.iterations.to_string(),
+        report.convolutions.to_string(),
+        report.preconditioner_applications.to_string(),
+        number(report.residual),
+        known(report.time_error),
+    ]
+}
+
+/// The result of every rank, or the error of one.
+fn agreed<T>(contact: &impl Contact, own: Result<T>) -> Result<T> {
+    match contact.in_space() {
+        Some(contact) => contact.agreed(own),
+        None => own,
+    }
+}
 
 /// A number with enough digits to be read back bitwise.
 fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A run as a CSV file with one row per step, each passed to the operating system when its `write` returns.
+/// A run as a CSV file with one row per step, each passed to the operating system when its `record` returns.
 ///
 /// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
 /// `max pressure [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is
-/// empty where nothing was estimated), and additional columns of your choice.
+/// empty where nothing was estimated), and additional columns of your choice. A [`Contact`] is one in space or one on elastic
+/// states; moments and the greatest pressure of the latter are empty.
 /// Where [ranks](crate::parallel) share out the contact, all of them make and write the history, and rank 0 has the file.
 /// [`Run::samples`](crate::contact::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
@@ -62,7 +93,7 @@ fn number(value: f64) -> String {
 /// # let path = folder.join("history.csv");
 /// let mut history = CsvHistory::create(&path, &Metadata::new("Ball on rubber"), &contact, &["energy [J]"])?;
 /// let report = contact.step(0.0, Load::force(0.5))?;
-/// history.write(&contact, &report, &[0.5 * report.force * report.approach])?;
+/// history.record(&contact, &report, &[0.5 * report.force * report.approach])?;
 /// # std::fs::remove_dir_all(&folder).unwrap();
 /// # Ok::<(), Error>(())
 /// ```
@@ -83,7 +114,7 @@ impl CsvHistory {
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,
-        contact: &ViscoelasticContact,
+        contact: &impl Contact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
         CsvHistory::begin(path.as_ref(), (metadata, contact, additional), false)
@@ -97,7 +128,7 @@ impl CsvHistory {
     pub fn create_or_replace(
         path: impl AsRef<Path>,
         metadata: &Metadata,
-        contact: &ViscoelasticContact,
+        contact: &impl Contact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
         CsvHistory::begin(path.as_ref(), (metadata, contact, additional), true)
@@ -105,15 +136,14 @@ impl CsvHistory {
 
     fn begin(
         path: &Path,
-        (metadata, contact, additional): (&Metadata, &ViscoelasticContact, &[&str]),
+        (metadata, contact, additional): (&Metadata, &impl Contact, &[&str]),
         replaced: bool,
     ) -> Result<CsvHistory> {
         let unusable = |error| failed(path, error);
-        contact.agreed(check_names(additional).map_err(unusable))?;
-        let names: Vec<String> =
-            COLUMNS.iter().map(|(name, _)| name).chain(additional).map(|name| quoted(name)).collect();
+        agreed(contact, check_names(additional).map_err(unusable))?;
+        let names: Vec<String> = COLUMNS.iter().chain(additional).map(|name| quoted(name)).collect();
         let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
-        let file = contact.by_one_rank(|| {
+        let create = || {
             let file = if replaced {
                 check_regular(path)?;
                 File::create(path)
@@ -126,7 +156,11 @@ impl CsvHistory {
                 return Err(unusable(error));
             }
             Ok(file)
-        })?;
+        };
+        let file = match contact.in_space() {
+            Some(contact) => contact.by_one_rank(create)?,
+            None => Some(create()?),
+        };
         Ok(CsvHistory { path: path.to_owned(), file, additional: additional.len() })
     }
 
@@ -135,14 +169,14 @@ impl CsvHistory {
     /// # Errors
     /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is
     /// in the file, and writing can be repeated once there is space again.
-    pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, additional: &[f64]) -> Result<()> {
-        contact.agreed(exact_length("additional columns", additional.len(), self.additional))?;
-        let standard = COLUMNS.iter().map(|(_, cell)| cell(contact, report));
-        let cells: Vec<String> = standard.chain(additional.iter().copied().map(number)).collect();
+    pub fn record(&mut self, contact: &impl Contact, report: &StepReport, additional: &[f64]) -> Result<()> {
+        agreed(contact, exact_length("additional columns", additional.len(), self.additional))?;
+        let cells: Vec<String> =
+            cells(contact, report).into_iter().chain(additional.iter().copied().map(number)).collect();
         let row = cells.join(",") + "\n";
         let CsvHistory { path, file, .. } = self;
         let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
-        contact.agreed(appended.map_err(|error| failed(path, error)))
+        agreed(contact, appended.map_err(|error| failed(path, error)))
     }
 }
 
@@ -160,7 +194,7 @@ fn or_replace(error: io::Error) -> io::Error {
 fn check_names(additional: &[&str]) -> io::Result<()> {
     for (k, name) in additional.iter().enumerate() {
         let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
-        if invalid || COLUMNS.iter().any(|(standard, _)| standard == name) || additional[..k].contains(name) {
+        if invalid || COLUMNS.contains(name) || additional[..k].contains(name) {
             let rule = "unique, not empty, and without '#', quotes and control characters";
             let reason = format!("invalid column name {name:?}: names must be {rule}");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));

@@ -1,7 +1,6 @@
 //! The description of a run in its files.
 
-use crate::ViscoelasticContact;
-use crate::contact::Settings;
+use crate::contact::{Contact, Settings};
 use crate::output::Field;
 use crate::rheology::{Material, TemperatureHistory};
 
@@ -76,15 +75,20 @@ impl Metadata {
     /// `material` has an entry for each body: `poisson` or `bulk_modulus` \[Pa\], and `contact_creep`, the series of C(t) with
     /// `glassy` \[1/Pa\], `fluidity` \[1/(Pa s)\] and `terms` of \[compliance, retardation time\]; a body without a series has
     /// `rheology`, as Rust prints it. `temperature` has the `reference`, the constants of the law, and the `table` of \[time,
-    /// temperature\], or the `corners` of a function.
-    pub fn json(&self, contact: &ViscoelasticContact) -> String {
+    /// temperature\], or the `corners` of a function. Of a contact on elastic states there is no more than title, notes, crate and
+    /// version, units and conventions.
+    pub fn json(&self, contact: &impl Contact) -> String {
+        let units = Field::ALL.map(|field| (field.name(), field.unit())).into_iter().chain(UNITS);
+        let units = ("units", object(units.map(|(name, unit)| (name, text(unit)))));
+        let about = self.head().into_iter();
+        let after = [units, ("conventions", text(CONVENTIONS))];
+        let Some(contact) = contact.in_space() else { return object(about.chain(after)) };
         let grid = contact.grid();
         let grid = object([
             ("cells", format!("{:?}", grid.cells())),
             ("spacing", format!("{:?}", grid.spacing())),
             ("lengths", format!("{:?}", grid.lengths())),
         ]);
-        let units = Field::ALL.map(|field| (field.name(), field.unit())).into_iter().chain(UNITS);
         let temperature = contact.temperature().map(|history| ("temperature", temperature(history)));
         let scene = [
             ("grid", grid),
@@ -93,9 +97,7 @@ impl Metadata {
             ("settings", settings(contact.settings())),
             ("material", material(contact.material())),
         ];
-        let units = ("units", object(units.map(|(name, unit)| (name, text(unit)))));
-        let conventions = ("conventions", text(CONVENTIONS));
-        object(self.head().into_iter().chain(scene).chain(temperature).chain([units, conventions]))
+        object(about.chain(scene).chain(temperature).chain(after))
     }
 
     /// Title, notes and version of the crate as JSON.

@@ -11,7 +11,7 @@
 //! | `CsvHistory`: one row per step | – | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
-//! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed,
+//! You choose which [`Field`]s are written. A frame is complete on disk when its `record` returns: if a run is killed,
 //! all earlier frames are readable.
 //!
 //! Files of an earlier run are replaced by these rules. Series and histories grow with a run: `create` refuses a folder with

@@ -87,7 +87,7 @@ impl Format {
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
-///     series.write(&contact)?;
+///     series.record(&contact)?;
 /// }
 /// assert!(folder.join("frame_000002.npz").exists());
 /// # std::fs::remove_dir_all(&folder).unwrap();
@@ -176,7 +176,7 @@ impl FrameSeries {
     ///
     /// # Errors
     /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
-    pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
+    pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
         let FrameSeries { folder, format, metadata, fields, buffer, .. } = self;
         let name = format!("frame_{:06}.{}", self.written, format.extension());
         let path = folder.join(&name);

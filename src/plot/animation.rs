@@ -15,7 +15,7 @@ use crate::plot::{Map, Picture, color_scale};
 
 /// A run as an animated GIF that repeats endlessly.
 ///
-/// Frames are written as they are added, to a file whose name ends in the process ID and `.part`; browsers show it as
+/// Frames are written as they are recorded, to a file whose name ends in the process ID and `.part`; browsers show it as
 /// far as it is written. [`Animation::finish`] gives it its final name. An animation that is dropped before that leaves
 /// the partial file.
 ///
@@ -31,7 +31,7 @@ use crate::plot::{Map, Picture, color_scale};
 /// let mut animation = Animation::create(&path, Field::Pressure, [0.0, 0.3e6], 0.1)?;
 /// for dt in [0.0, 0.1, 0.1] {
 ///     contact.step(dt, Load::force(0.5))?;
-///     animation.add(&contact)?;
+///     animation.record(&contact)?;
 /// }
 /// animation.finish()?;
 /// # std::fs::remove_file(&path).unwrap();
@@ -86,21 +86,21 @@ impl Animation {
         })
     }
 
-    /// Adds the current state of a contact: the field, with the contact outlined.
+    /// Records the current state of a contact as a frame: the field, with the contact outlined.
     ///
     /// # Errors
-    /// As [`Animation::add_picture`], or if a value exceeds 1e100 in magnitude.
-    pub fn add(&mut self, contact: &ViscoelasticContact) -> Result<()> {
+    /// As [`Animation::record_picture`], or if a value exceeds 1e100 in magnitude.
+    pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<()> {
         let mut map = Map::field(contact, self.field)?.outline_contact(contact)?;
         map.range = self.range;
-        self.add_picture(&map.draw()?)
+        self.record_picture(&map.draw()?)
     }
 
-    /// Adds any picture. Its colours are mapped to the nearest of 256: the colours of maps and curves, and greys.
+    /// Records any picture as a frame. Its colours are mapped to the nearest of 256: the colours of maps and curves, and greys.
     ///
     /// # Errors
     /// If its size differs from the first picture's, or the file cannot be written. The file then contains nothing of it.
-    pub fn add_picture(&mut self, picture: &Picture) -> Result<()> {
+    pub fn record_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
         let refused = |error| failed(&self.path, io::Error::other(error));
         if self.frames == 0 {

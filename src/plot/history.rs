@@ -1,6 +1,6 @@
 //! Quantities of a contact over time.
 
-use crate::ViscoelasticContact;
+use crate::contact::Contact;
 use crate::error::{Result, exact_length};
 use crate::plot::{COLORS, Chart, Legend, Quantity, Style};
 
@@ -8,15 +8,16 @@ use crate::plot::{COLORS, Chart, Legend, Quantity, Style};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HistoryColumn {
-    /// [`ViscoelasticContact::force`] \[N\].
+    /// [`Contact::force`] \[N\].
     Force,
-    /// [`ViscoelasticContact::approach`] \[m\].
+    /// [`Contact::approach`] \[m\].
     Approach,
-    /// [`ViscoelasticContact::contact_area`] \[m²\].
+    /// [`Contact::contact_area`] \[m²\].
     ContactArea,
-    /// [`ViscoelasticContact::mean_pressure`] \[Pa\].
+    /// [`Contact::mean_pressure`] \[Pa\].
     MeanPressure,
-    /// [`ViscoelasticContact::max_pressure`] \[Pa\].
+    /// [`ViscoelasticContact::max_pressure`](crate::ViscoelasticContact::max_pressure) \[Pa\]; not recorded of contacts on
+    /// elastic states.
     MaxPressure,
 }
 
@@ -32,18 +33,24 @@ impl HistoryColumn {
 
     /// Name and SI unit.
     pub fn quantity(self) -> Quantity {
-        let (name, unit, _) = self.definition();
+        let (name, unit) = match self {
+            HistoryColumn::Force => ("force", "N"),
+            HistoryColumn::Approach => ("approach", "m"),
+            HistoryColumn::ContactArea => ("contact area", "m²"),
+            HistoryColumn::MeanPressure => ("mean pressure", "Pa"),
+            HistoryColumn::MaxPressure => ("greatest pressure", "Pa"),
+        };
         Quantity::new(name, unit)
     }
 
-    /// Name, SI unit and the method that returns the value.
-    fn definition(self) -> (&'static str, &'static str, fn(&ViscoelasticContact) -> f64) {
+    /// The value of a contact, if it has one.
+    fn value(self, contact: &impl Contact) -> Option<f64> {
         match self {
-            HistoryColumn::Force => ("force", "N", ViscoelasticContact::force),
-            HistoryColumn::Approach => ("approach", "m", ViscoelasticContact::approach),
-            HistoryColumn::ContactArea => ("contact area", "m²", ViscoelasticContact::contact_area),
-            HistoryColumn::MeanPressure => ("mean pressure", "Pa", ViscoelasticContact::mean_pressure),
-            HistoryColumn::MaxPressure => ("greatest pressure", "Pa", ViscoelasticContact::max_pressure),
+            HistoryColumn::Force => Some(contact.force()),
+            HistoryColumn::Approach => Some(contact.approach()),
+            HistoryColumn::ContactArea => Some(contact.contact_area()),
+            HistoryColumn::MeanPressure => Some(contact.mean_pressure()),
+            HistoryColumn::MaxPressure => contact.in_space().map(|contact| contact.max_pressure()),
         }
     }
 }
@@ -61,7 +68,7 @@ impl HistoryColumn {
 /// let mut history = History::new();
 /// for dt in [0.0, 0.1, 0.2] {
 ///     contact.step(dt, Load::force(0.5))?;
-///     history.add(&contact);
+///     history.record(&contact);
 /// }
 /// assert_eq!(history.column(HistoryColumn::Approach)[2], contact.approach());
 /// let mut chart = history.chart(HistoryColumn::Approach)?;
@@ -83,11 +90,12 @@ impl History {
         History::default()
     }
 
-    /// Records the current state of a contact, or of a sample within a step ([`Run::samples`](crate::contact::Run::samples)).
-    pub fn add(&mut self, contact: &ViscoelasticContact) {
+    /// Records the current state of a contact, in space or on elastic states, or of a sample within a step
+    /// ([`Run::samples`](crate::contact::Run::samples)).
+    pub fn record(&mut self, contact: &impl Contact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(HistoryColumn::ALL) {
-            column.push(observed.definition().2(contact));
+            column.extend(observed.value(contact));
         }
     }
 
@@ -96,7 +104,7 @@ impl History {
         &self.times
     }
 
-    /// The recorded values of a quantity, one per time.
+    /// The recorded values of a quantity, one per time; none of a quantity that the contact does not have.
     pub fn column(&self, observed: HistoryColumn) -> &[f64] {
         &self.columns[observed as usize]
     }
@@ -104,7 +112,7 @@ impl History {
     /// A recorded quantity over time.
     ///
     /// # Errors
-    /// As [`Chart::history`]; none is expected, since all columns are as long as the times.
+    /// If the quantity was not recorded.
     pub fn chart(&self, observed: HistoryColumn) -> Result<Chart> {
         Chart::history("", &self.times, observed.quantity(), &[("", self.column(observed))])
     }

@@ -27,8 +27,8 @@
 //! let mut animation = Animation::create(folder.join("run.gif"), Field::Pressure, [0.0, 0.5e6], 0.2)?;
 //! for dt in [0.0, 0.5, 0.5] {
 //!     contact.step(dt, Load::force(1.0))?;
-//!     history.add(&contact);
-//!     animation.add(&contact)?;
+//!     history.record(&contact);
+//!     animation.record(&contact)?;
 //! }
 //! animation.finish()?;
 //! Map::pressure(&contact)?.save(folder.join("pressure.png"))?;

@@ -82,9 +82,14 @@ impl Material {
     /// assert!((silicone.contact_compliance(0.0) * 3.0e6 / (1.0 - 0.49 * 0.49) - 1.0).abs() < 1e-14);
     ///
     /// // storage and loss modulus in tension at five frequencies (DMA)
-    /// let omega = [0.1, 1.0, 10.0, 100.0, 1000.0];
-    /// let (storage, loss) = ([1.50e6, 1.52e6, 2.25e6, 2.98e6, 3.0e6], [0.02e6, 0.15e6, 0.75e6, 0.15e6, 0.02e6]);
-    /// let measured = Measurements::dynamic(&omega, &storage, &loss)?.fit_tension()?;
+    /// let table = [
+    ///     (0.1, 1.50e6, 0.02e6),
+    ///     (1.0, 1.52e6, 0.15e6),
+    ///     (10.0, 2.25e6, 0.75e6),
+    ///     (100.0, 2.98e6, 0.15e6),
+    ///     (1000.0, 3.0e6, 0.02e6),
+    /// ];
+    /// let measured = Measurements::dynamic(&table)?.fit_tension()?;
     /// let silicone = Material::from_tension(measured, 0.49)?;
     /// # let _ = silicone;
     /// # Ok::<(), viscocontact::Error>(())

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::ViscoelasticContact;
+use crate::contact::{Contact, Estimated, StepReport, Warnings};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -35,27 +37,6 @@ struct Scene {
     temperature: Option<TemperatureHistory>,
     known_until: f64,
     interpolant: Interpolant,
-}
-
-/// The state after a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct StatesReport {
-    /// Time \[s\].
-    pub time: f64,
-    /// Normal force \[N\].
-    pub force: f64,
-    /// Approach of the origin \[m\].
-    pub approach: f64,
-    /// Tilt along x1 and x2 \[rad\].
-    pub tilt: [f64; 2],
-    /// Level c(t) of the elastic contact with the same area \[m²\]; 0 without contact.
-    pub level: f64,
-    /// Contact area \[m²\].
-    pub area: f64,
-    /// Number of groups of levels.
-    pub groups: usize,
 }
 
 impl StatesContact {
@@ -112,12 +93,12 @@ impl StatesContact {
     /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
     /// load point than the sweep, needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the
     /// body has no elastic response, or the time is beyond the material's. A step that fails changes nothing.
-    pub fn step(&mut self, dt: f64, load: Load) -> Result<StatesReport> {
+    pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_to(self.time + dt, dt, load)
     }
 
     /// Advances by `dt` to `time`.
-    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
+    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         non_negative("time step", dt)?;
         load.validate_in(false)?;
         let length = match &self.scene.temperature {
@@ -140,7 +121,23 @@ impl StatesContact {
         }
         self.levels.accept(&self.states, demand, wanted.level);
         (self.time, self.reduced_time) = (time, reduced);
-        Ok(self.report())
+        Ok(StepReport {
+            time,
+            force: self.force(),
+            approach: self.approach(),
+            contact_cells: self.states.cells(self.level()),
+            tilt: self.tilt(),
+            dt,
+            time_error: (dt == 0.0).then_some(0.0),
+            estimated: Estimated::under(&[load]),
+            warnings: Warnings::empty(),
+            max_slope: None,
+            iterations: 0,
+            fallback_iterations: 0,
+            convolutions: 0,
+            preconditioner_applications: 0,
+            residual: 0.0,
+        })
     }
 
     /// Adds the elastic state at a level to the states of this contact.
@@ -224,19 +221,6 @@ impl StatesContact {
         }
     }
 
-    /// The state.
-    pub fn report(&self) -> StatesReport {
-        StatesReport {
-            time: self.time,
-            force: self.force(),
-            approach: self.approach(),
-            tilt: self.tilt(),
-            level: self.levels.level,
-            area: self.contact_area(),
-            groups: self.levels.count(),
-        }
-    }
-
     /// The elastic states that it is made of.
     pub fn states(&self) -> &Arc<ElasticStates> {
         &self.states
@@ -269,6 +253,11 @@ impl StatesContact {
         self.levels.level
     }
 
+    /// Number of groups of levels, each with its own past.
+    pub fn groups(&self) -> usize {
+        self.levels.count()
+    }
+
     /// Contact area \[m²\].
     pub fn contact_area(&self) -> f64 {
         self.states.area(self.levels.level)
@@ -298,8 +287,45 @@ impl StatesContact {
     }
 }
 
+impl Contact for StatesContact {
+    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
+        StatesContact::step(self, dt, load)
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn force(&self) -> f64 {
+        StatesContact::force(self)
+    }
+
+    fn approach(&self) -> f64 {
+        StatesContact::approach(self)
+    }
+
+    fn tilt(&self) -> [f64; 2] {
+        StatesContact::tilt(self)
+    }
+
+    fn contact_area(&self) -> f64 {
+        StatesContact::contact_area(self)
+    }
+
+    fn in_space(&self) -> Option<&ViscoelasticContact> {
+        None
+    }
+}
+
 impl fmt::Debug for StatesContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("StatesContact").field("report", &self.report()).finish_non_exhaustive()
+        f.debug_struct("StatesContact")
+            .field("time", &self.time)
+            .field("force", &self.force())
+            .field("approach", &self.approach())
+            .field("tilt", &self.tilt())
+            .field("level", &self.level())
+            .field("groups", &self.groups())
+            .finish_non_exhaustive()
     }
 }

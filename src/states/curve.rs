@@ -317,6 +317,12 @@ impl ElasticStates {
         self.power_law(level, |state| state.area, 2.0)
     }
 
+    /// Cells in contact at a level: those of the state there, or else below it.
+    pub(super) fn cells(&self, level: f64) -> usize {
+        let above = self.states.partition_point(|state| state.level * (1.0 - NEAREST) <= level);
+        if level > 0.0 { self.states[above.saturating_sub(1)].cells } else { 0 }
+    }
+
     /// Stiffness over the contact modulus at a level \[m\], see [`ElasticState::stiffness`].
     pub fn stiffness(&self, level: f64) -> f64 {
         self.power_law(level, |state| state.stiffness, 1.0)

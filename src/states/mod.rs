@@ -32,8 +32,8 @@
 //!     let body = Material::incompressible(Maxwell::with_time(1.0e6, f64::from(time))?);
 //!     let mut contact = StatesContact::new(&states, &body)?;
 //!     contact.step(0.0, Load::force(1.0))?;
-//!     let report = contact.step(1.0, Load::force(1.0))?;
-//!     assert!(report.area > 4.8e-6);
+//!     contact.step(1.0, Load::force(1.0))?;
+//!     assert!(contact.contact_area() > 4.8e-6);
 //! }
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
@@ -52,7 +52,7 @@ mod saved;
 mod sweep;
 
 pub use crate::error::StatesError;
-pub use contact::{StatesContact, StatesReport};
+pub use contact::StatesContact;
 #[cfg(feature = "npy")]
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};

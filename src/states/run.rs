@@ -1,10 +1,13 @@
 //! A contact on elastic states along a load history.
 
-use crate::ascending::Schedule;
-use crate::contact::Stepping;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::ascending::{Schedule, Times};
+use crate::contact::{RunProgress, StepReport, Stepping};
 use crate::error::{Error, LoadError, Result, StepError, within};
 use crate::load::{Load, LoadHistory};
-use crate::states::contact::{StatesContact, StatesReport};
+use crate::states::contact::StatesContact;
 
 /// Two times closer than this fraction of a step are the same time.
 const SAME_TIME: f64 = 1e-6;
@@ -33,7 +36,7 @@ const ORDER: f64 = 3.0;
 /// let load = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
 /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-4), 10.0);
 /// while let Some(report) = run.next_step()? {
-///     println!("{:.3} s  {:.4} mm²", report.time, report.area * 1e6);
+///     println!("{:.3} s  {:.4} mm²", report.time, run.contact().contact_area() * 1e6);
 /// }
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
@@ -56,6 +59,11 @@ pub struct StatesRun<'a> {
     /// Greatest depth and force of the run, for errors relative to them.
     greatest: [f64; 2],
     rejected: u64,
+    /// Steps taken, and the length of the first one that took time.
+    taken: u64,
+    first_step: f64,
+    /// Set by another thread to end the run.
+    cancelled: Option<Arc<AtomicBool>>,
     /// Times at which steps end, and at which states within steps are sampled.
     stops: Schedule,
     sampled: Schedule,
@@ -82,6 +90,9 @@ impl StatesContact {
             whole,
             greatest,
             rejected,
+            taken: 0,
+            first_step: 0.0,
+            cancelled: None,
             stops: Schedule::default(),
             sampled: Schedule::default(),
             stepped: false,
@@ -90,59 +101,35 @@ impl StatesContact {
 }
 
 impl<'a> StatesRun<'a> {
-    /// Makes steps end exactly at these `times` \[s\] too, as [`Run::stop_at`](crate::contact::Run::stop_at).
+    /// Makes steps end exactly at these [`Times`] too, as [`Run::stop_at`](crate::contact::Run::stop_at).
     ///
     /// # Errors
-    /// If a time is not finite.
-    pub fn stop_at(mut self, times: &[f64]) -> Result<StatesRun<'a>> {
-        self.stops.add("time to stop at", times)?;
+    /// As [`Run::stop_at`](crate::contact::Run::stop_at).
+    pub fn stop_at(mut self, times: impl Into<Times>) -> Result<StatesRun<'a>> {
+        self.stops.add(times.into(), self.start)?;
         Ok(self)
     }
 
-    /// Makes steps end exactly at every multiple of `interval` \[s\] from the start of the run too.
+    /// Samples the states at these [`Times`] ([`StatesRun::samples`]).
     ///
     /// # Errors
-    /// If the interval is not finite and positive.
-    pub fn stop_every(mut self, interval: f64) -> Result<StatesRun<'a>> {
-        self.stops.add_every("interval of the stops", interval, self.start)?;
+    /// As [`StatesRun::stop_at`].
+    pub fn sample_at(mut self, times: impl Into<Times>) -> Result<StatesRun<'a>> {
+        self.sampled.add(times.into(), self.start)?;
         Ok(self)
     }
 
-    /// Makes steps end exactly `first` \[s\] after the start of the run too, and at `per_decade` times in each decade beyond.
-    ///
-    /// # Errors
-    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
-    pub fn stop_at_decades(mut self, first: f64, per_decade: usize) -> Result<StatesRun<'a>> {
-        self.stops.add_decades(["first time to stop at", "stops per decade"], (first, per_decade), self.start)?;
-        Ok(self)
+    /// Lets another thread end the run: while it sets `flag`, a step fails with [`Error::Cancelled`] and leaves the contact as it was,
+    /// as [`Run::cancelled_by`](crate::contact::Run::cancelled_by).
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> StatesRun<'a> {
+        self.cancelled = Some(flag);
+        self
     }
 
-    /// Samples the states at these `times` \[s\] ([`StatesRun::samples`]).
-    ///
-    /// # Errors
-    /// If a time is not finite.
-    pub fn sample_at(mut self, times: &[f64]) -> Result<StatesRun<'a>> {
-        self.sampled.add("time to sample", times)?;
-        Ok(self)
-    }
-
-    /// Samples the states at every multiple of `interval` \[s\] from the start of the run ([`StatesRun::samples`]).
-    ///
-    /// # Errors
-    /// If the interval is not finite and positive.
-    pub fn sample_every(mut self, interval: f64) -> Result<StatesRun<'a>> {
-        self.sampled.add_every("interval of the samples", interval, self.start)?;
-        Ok(self)
-    }
-
-    /// Samples the states `first` \[s\] after the start of the run, and at `per_decade` times in each decade beyond
-    /// ([`StatesRun::samples`]).
-    ///
-    /// # Errors
-    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
-    pub fn sample_at_decades(mut self, first: f64, per_decade: usize) -> Result<StatesRun<'a>> {
-        self.sampled.add_decades(["first time to sample", "samples per decade"], (first, per_decade), self.start)?;
-        Ok(self)
+    /// How far the run has come.
+    pub fn progress(&self) -> RunProgress {
+        let StatesRun { taken, start, until, first_step, .. } = *self;
+        RunProgress { steps: taken, start, time: self.contact.time(), until, first_step }
     }
 
     /// The states of the last step, in the order of time: at each time to sample within it, and at its end, as
@@ -155,7 +142,7 @@ impl<'a> StatesRun<'a> {
     /// let rubber = Material::incompressible(Zener::relaxing(1.0e6, 0.5e6, 1.0)?);
     /// let mut contact = StatesContact::new(&states, &rubber)?;
     /// let load = StepLoad::new(Load::force(0.3))?;
-    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 100.0).sample_at_decades(1.0e-2, 20)?;
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 100.0).sample_at(Times::decades(1.0e-2, 20))?;
     /// let mut curve = Vec::new();
     /// while run.next_step()?.is_some() {
     ///     for sample in run.samples() {
@@ -190,16 +177,22 @@ impl<'a> StatesRun<'a> {
     /// # Errors
     /// If the end of the run, the fixed step or the tolerance is not allowed, the history returns an invalid load, or
     /// a step fails ([`StatesContact::step`]).
-    pub fn next_step(&mut self) -> Result<Option<StatesReport>> {
+    pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         self.stepped = false;
         let report = self.take_step()?;
-        self.stepped = report.is_some();
+        if let Some(report) = report {
+            (self.stepped, self.taken) = (true, self.taken + 1);
+            self.first_step = if self.first_step > 0.0 { self.first_step } else { report.dt };
+        }
         Ok(report)
     }
 
-    fn take_step(&mut self) -> Result<Option<StatesReport>> {
+    fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.start, self.until)?;
         let now = self.contact.time();
+        if self.cancelled.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Err(Error::Cancelled { what: "a step" });
+        }
         let load = self.history.at(now).validated_at(now, false)?;
         if self.load != Some(load) {
             self.before.copy_from(self.contact);
@@ -248,7 +241,7 @@ impl<'a> StatesRun<'a> {
         Ok(contact)
     }
 
-    fn fixed_step(&mut self, now: f64, dt: f64, stop: f64) -> Result<StatesReport> {
+    fn fixed_step(&mut self, now: f64, dt: f64, stop: f64) -> Result<StepReport> {
         self.before.copy_from(self.contact);
         while self.start + (self.steps + 1) as f64 * dt <= now * (1.0 + f64::EPSILON) + SAME_TIME * dt {
             self.steps += 1;
@@ -258,13 +251,13 @@ impl<'a> StatesRun<'a> {
     }
 
     /// Advances to a time under the load there, or just before it where it jumps.
-    fn step_to(&mut self, now: f64, time: f64) -> Result<StatesReport> {
+    fn step_to(&mut self, now: f64, time: f64) -> Result<StepReport> {
         let load = self.history.before(time).validated_at(time, false)?;
         self.load = Some(load);
         self.contact.step_to(time, time - now, load)
     }
 
-    fn adaptive_step(&mut self, now: f64, tolerance: f64, stop: f64) -> Result<StatesReport> {
+    fn adaptive_step(&mut self, now: f64, tolerance: f64, stop: f64) -> Result<StepReport> {
         self.before.copy_from(self.contact);
         let mut length = if self.next > 0.0 { self.next } else { FIRST_STEP * (stop - now) };
         loop {
@@ -284,7 +277,7 @@ impl<'a> StatesRun<'a> {
             let growth = (AIM * tolerance / error).powf(1.0 / ORDER).clamp(MIN_GROWTH, MAX_GROWTH);
             if error <= ALLOWED * tolerance {
                 self.next = growth.max(0.5) * (end - now).max(length.min(stop - now));
-                return Ok(report);
+                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
             }
             self.contact.copy_from(&self.before);
             self.rejected += 1;
@@ -293,7 +286,7 @@ impl<'a> StatesRun<'a> {
     }
 
     /// Takes a step whole, then again in two halves.
-    fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<StatesReport> {
+    fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<StepReport> {
         self.step_to(now, end)?;
         self.whole.copy_from(self.contact);
         self.contact.copy_from(&self.before);

@@ -133,7 +133,9 @@ fn material(draws: &mut Draws, poisson: f64) -> Material {
         3 => Box::new(KelvinVoigt::new(MODULUS, MODULUS * time).unwrap()),
         4 => Box::new(GeneralizedKelvin::new(1.0 / MODULUS, 0.0, &terms).unwrap()),
         _ => Box::new(
-            Measurements::creep(&times, &[1.0e-6, 1.2e-6, 1.5e-6, 1.8e-6]).and_then(|table| table.fit()).unwrap(),
+            Measurements::creep(&crate::pairs(&times, &[1.0e-6, 1.2e-6, 1.5e-6, 1.8e-6]))
+                .and_then(|table| table.fit())
+                .unwrap(),
         ),
     };
     Material::constant_poisson(rheology, poisson).unwrap()

@@ -80,7 +80,20 @@ pub fn adaptive() -> AnyScene {
     AnyScene { material: Material::incompressible(body), ..scene }
 }
 
-/// All of these, and more.
+/// Bodies that are too steep or too flat, and the names of their warnings.
+pub fn sloped() -> [(AnyScene, &'static str); 4] {
+    let pressed = |depth: f64| Steps::Given(vec![(0.0, Load::approach(depth)), (0.1, Load::approach(depth))]);
+    let grid = Grid::new([192, 176], [1.0e-3, 1.0e-3]).unwrap();
+    let cone = AnyScene::plain("cone", grid.clone(), Cone::new(0.8).unwrap(), pressed(1.0e-4));
+    let beside = FnGeometry::new(|x1: f64, x2: f64| 0.9 * (x1 - 3.1e-5).hypot(0.8 * (x2 + 1.7e-5)));
+    let beside = AnyScene::plain("elliptic cone", grid.clone(), beside, pressed(1.0e-4));
+    let steep = Some(RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.4)));
+    let rough = AnyScene { rough: steep, steps: pressed(2.0e-5), ..rough() };
+    let flat = AnyScene::plain("ball of a kilometre", grid, Sphere::new(1.0e3).unwrap(), pressed(1.0e-11));
+    [(cone, "STEEP"), (beside, "STEEP"), (rough, "STEEP"), (flat, "FLAT")]
+}
+
+/// All of these but the sloped ones, and more.
 pub fn all() -> Vec<AnyScene> {
     let square = |cells: usize| Grid::square(cells, 1.0e-3).unwrap();
     let two = |force: f64| forces(&[(0.0, force), (0.5, force)]);

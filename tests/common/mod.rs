@@ -30,6 +30,7 @@ pub mod related;
 #[path = "../../examples/support/scenes/rolling.rs"]
 pub mod rolling;
 pub mod rough;
+pub mod rows;
 pub mod runs;
 pub mod sealed;
 pub mod spectra;
@@ -48,6 +49,7 @@ pub use environment::from_environment;
 pub use noise::{noise, uniform};
 pub use random_scenes::RandomScene;
 pub use ratios::Ratios;
+pub use rows::{pairs, triples};
 pub use spheres::{RADIUS, builder_of, builder_on, contact_of, sphere, sphere_on};
 pub use step_loaded_sphere::StepLoadedSphere;
 pub use temporary::Temporary;

@@ -130,7 +130,9 @@ pub fn random_body(draws: &mut Draws) -> Body {
             let values: Vec<f64> = times.iter().map(|t| 1.0 / g + creep * (t / tau).powf(order)).collect();
             (
                 "measured creep",
-                some(Box::new(Measurements::creep(&times, &values).and_then(|table| table.fit()).unwrap())),
+                some(Box::new(
+                    Measurements::creep(&crate::pairs(&times, &values)).and_then(|table| table.fit()).unwrap(),
+                )),
                 tau,
             )
         }

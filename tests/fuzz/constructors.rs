@@ -200,7 +200,10 @@ fn analytic(source: &mut Source) -> Verdict {
                     _ => Load::spring(modulus * radius, radius * source.between(-1e-3, 1e-2)),
                 };
                 if let Ok(report) = foundation.step(dt, load) {
-                    known("states", [report.time, report.approach, report.force, report.area, report.level])?;
+                    known(
+                        "states",
+                        [report.time, report.approach, report.force, foundation.contact_area(), foundation.level()],
+                    )?;
                 }
             }
             Ok(Outcome::Accepted)

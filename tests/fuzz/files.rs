@@ -114,7 +114,7 @@ fn frames(source: &mut Source) -> Verdict {
     if source.chance(0.5) {
         match FrameSeries::create(folder.path("npz"), Format::Npz, &scene, &chosen) {
             Ok(mut series) => {
-                let path = series.write(&contact).map_err(|error| error.to_string())?;
+                let path = series.record(&contact).map_err(|error| error.to_string())?;
                 let length = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
                 if length < 8 * (chosen.len() * contact.grid().len()) as u64 {
                     return Err("an archive without the fields".to_owned());
@@ -126,7 +126,7 @@ fn frames(source: &mut Source) -> Verdict {
     if source.chance(0.5) {
         match FrameSeries::create(folder.path("vtk"), Format::Vtk, &scene, &chosen) {
             Ok(mut series) => {
-                let path = series.write(&contact).map_err(|error| error.to_string())?;
+                let path = series.record(&contact).map_err(|error| error.to_string())?;
                 let file = std::fs::read(path).map_err(|error| error.to_string())?;
                 let head = file.split(|&byte| byte == b'_').next().unwrap_or_default();
                 if head.windows(3).any(|three| three == b"NaN" || three == b"inf") {
@@ -150,7 +150,7 @@ fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Metadata,
     let mut contact = contact.clone();
     let Ok(report) = contact.step(0.5, contact.load()) else { return Ok(Outcome::Refused) };
     let further: Vec<f64> = names.iter().map(|_| source.anything()).collect();
-    history.write(&contact, &report, &further).map_err(|error| error.to_string())?;
+    history.record(&contact, &report, &further).map_err(|error| error.to_string())?;
     let file = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
     let row: Vec<f64> = file.lines().last().unwrap_or_default().split(',').flat_map(str::parse).collect();
     if row.len() != 17 + further.len() || row[..17].iter().any(|value| !value.is_finite()) {

@@ -5,6 +5,7 @@ use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology};
 use crate::engine::{Target, Verdict, judged, known};
 use crate::models::creeps;
 use crate::source::Source;
+use viscocontact_scenes::{pairs, triples};
 
 pub fn targets() -> Vec<Target> {
     vec![
@@ -61,9 +62,13 @@ fn falling(values: &[f64]) -> Vec<f64> {
 fn slices(source: &mut Source) -> Verdict {
     let [x, first, second] = columns(source);
     match source.below(3) {
-        0 => judged(Measurements::creep(&x, &first).and_then(|table| table.fit()), |table| look(&table)),
-        1 => judged(Measurements::relaxation(&x, &falling(&first)).and_then(|table| table.fit()), |table| look(&table)),
-        _ => judged(Measurements::dynamic(&x, &first, &second).and_then(|table| table.fit()), |table| look(&table)),
+        0 => judged(Measurements::creep(&pairs(&x, &first)).and_then(|table| table.fit()), |table| look(&table)),
+        1 => judged(Measurements::relaxation(&pairs(&x, &falling(&first))).and_then(|table| table.fit()), |table| {
+            look(&table)
+        }),
+        _ => judged(Measurements::dynamic(&triples(&x, &first, &second)).and_then(|table| table.fit()), |table| {
+            look(&table)
+        }),
     }
 }
 
@@ -82,9 +87,9 @@ fn master(source: &mut Source) -> Verdict {
             [x, first.clone(), second.clone()]
         });
         let table = match if source.chance(0.03) { source.below(3) } else { kind } {
-            0 => Measurements::creep(&x, &first),
-            1 => Measurements::relaxation(&x, &falling(&first)),
-            _ => Measurements::dynamic(&x, &first, &second),
+            0 => Measurements::creep(&pairs(&x, &first)),
+            1 => Measurements::relaxation(&pairs(&x, &falling(&first))),
+            _ => Measurements::dynamic(&triples(&x, &first, &second)),
         };
         temperatures.push(temperature);
         isotherms.extend(table.and_then(|table| Isotherm::new(temperature, table)));

@@ -47,7 +47,7 @@ fn contact_near_the_edge_is_warned_of_before_it_touches() {
 #[test]
 fn material_beyond_its_data_is_warned_of() {
     let times = [0.1, 0.3, 1.0, 3.0, 10.0];
-    let table = Measurements::creep(&times, &times.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p())))
+    let table = Measurements::creep(&times.map(|t: f64| (t, 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))))
         .and_then(|table| table.fit())
         .unwrap();
     assert_eq!(table.measured(), [0.1, 10.0]);
@@ -206,6 +206,37 @@ fn wrong_units_are_warned_of() {
             }
         }
     }
+}
+
+/// Sides that are read in another unit than metres make maps too flat, or too steep; shapes of any size are neither.
+#[test]
+fn wrong_lengths_are_warned_of() {
+    let [steep, flat] = [Warnings::STEEP, Warnings::FLAT];
+    let on = |shape: &dyn Geometry, lengths: f64, size: f64| {
+        let settings = Settings::default().with_edge(Edge::Allow);
+        let grid = Grid::square(64, lengths).unwrap();
+        let mut contact = builder_of(shape, grid, elastic()).settings(settings).build().unwrap();
+        contact.step(0.0, Load::approach(size)).unwrap().warnings & (steep | flat)
+    };
+    let grid = Grid::square(64, 1.0e-3).unwrap();
+    for seed in 0..20 {
+        let slope = Roughness::RmsSlope(0.005 * 1.2_f64.powi(seed as i32));
+        let rough = Rough::new(&grid, RoughSpec::new(0.5e-3, 0.06e-3, slope).with_seed(seed)).unwrap();
+        let map = |lengths: f64| HeightMap::new([64; 2], [lengths; 2], rough.height_map().heights().to_vec()).unwrap();
+        for (lengths, expected) in [(1.0e-3, Warnings::empty()), (1.0e3, flat), (1.0e-9, steep)] {
+            assert_eq!(on(&map(lengths), lengths, 1.0e-7), expected, "{seed} {lengths}");
+        }
+    }
+    for size in [1.0e-9, 1.0e-6, 1.0e-3, 1.0, 1.0e3] {
+        let sphere = Sphere::new(10.0 * size).unwrap();
+        let punch = FlatPunch::circular(0.3 * size).unwrap();
+        for shape in [&sphere as &dyn Geometry, &punch] {
+            assert_eq!(on(shape, size, 1.0e-3 * size), Warnings::empty(), "{size}");
+        }
+    }
+    // the gap of a plane is constant but for rounding
+    let plane = FnGeometry::new(|x1: f64, _: f64| if x1 < 0.0 { 0.1 + 0.2 } else { 0.3 });
+    assert_eq!(on(&plane, 1.0e-3, 0.31), Warnings::empty());
 }
 
 /// The greatest slope in contact is the slope of the body there, whatever part of the grid is computed.

@@ -164,9 +164,9 @@ mod outputs {
         let mut second = FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
         for _ in 0..3 {
-            first.write(&contact).unwrap();
-            second.write(&contact).unwrap();
-            third.write(&contact, &report, &[]).unwrap();
+            first.record(&contact).unwrap();
+            second.record(&contact).unwrap();
+            third.record(&contact, &report, &[]).unwrap();
         }
         fs::write(archives.join("notes.txt"), "kept").unwrap();
         let before = fs::read(&table).unwrap();
@@ -194,8 +194,8 @@ mod outputs {
         let mut second = FrameSeries::create_or_replace(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
         assert_eq!([count("npz"), count("vtk")], [1, 0]);
-        first.write(&contact).unwrap();
-        second.write(&contact).unwrap();
+        first.record(&contact).unwrap();
+        second.record(&contact).unwrap();
         assert_eq!([count("npz"), count("vtk")], [2, 2]);
         assert_eq!(fs::read_to_string(&table).unwrap().lines().count(), 2);
         assert_eq!(fs::read_to_string(archives.join("notes.txt")).unwrap(), "kept");
@@ -210,8 +210,7 @@ mod outputs {
 fn many_values_are_counted_not_printed() {
     let map = HeightMap::new([40, 50], [4.0e-5, 5.0e-5], vec![1.0e-9; 2000]).unwrap();
     let times: Vec<f64> = (1..=100).map(f64::from).collect();
-    let table =
-        Measurements::creep(&times, &times.iter().map(|t| 1.0e-9 * (2.0 + t.ln())).collect::<Vec<_>>()).unwrap();
+    let table = Measurements::creep(&times.iter().map(|&t| (t, 1.0e-9 * (2.0 + t.ln()))).collect::<Vec<_>>()).unwrap();
     let fitted = table.fit().unwrap();
     for text in [format!("{map:?}"), format!("{table:?}"), format!("{:?}", fitted.report())] {
         assert!(text.contains(" values") && text.len() < 400 && !text.contains('\n'), "{text}");

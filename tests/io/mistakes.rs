@@ -64,7 +64,7 @@ fn stop() -> Result<()> {
 }
 
 fn beyond_the_table() -> Result<StepReport> {
-    let table = Measurements::creep(&TIMES, &TIMES.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p())))?.fit()?;
+    let table = Measurements::creep(&TIMES.map(|t: f64| (t, 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))))?.fit()?;
     let mut contact = built(table)?;
     contact.step(0.0, Load::force(0.1))?;
     contact.step(1.0e4, Load::force(0.1))
@@ -90,7 +90,7 @@ fn folder() -> PathBuf {
 fn frames_again() -> Result<FrameSeries> {
     let (folder, metadata) = (folder().join("frames"), Metadata::new(""));
     let fields = [Field::Pressure];
-    FrameSeries::create_or_replace(&folder, Format::Npz, &metadata, &fields)?.write(&contact()?)?;
+    FrameSeries::create_or_replace(&folder, Format::Npz, &metadata, &fields)?.record(&contact()?)?;
     FrameSeries::create(&folder, Format::Npz, &metadata, &fields)
 }
 
@@ -199,18 +199,18 @@ const MISTAKES: &[Mistake] = &[
      with FnHistory::with_breakpoints, ramp the load, or allow a greater error"),
 ("a stop that is not a number",
     || stop().map(drop),
-    "time to stop at = NaN is not allowed: it must be finite"),
+    "time to stop at or to sample = NaN is not allowed: it must be finite"),
 ("an accuracy in per cent",
     || Accuracy::new(5.0).map(drop),
     "accuracy = 5.0 is not allowed: it must be in [1e-6, 0.1]"),
 ("a negative compliance",
-    || Measurements::creep(&TIMES, &[1.0e-6, 1.1e-6, -1.2e-6, 1.3e-6, 1.4e-6]).map(drop),
+    || Measurements::creep(&[(0.1, 1.0e-6), (1.0, 1.1e-6), (10.0, -1.2e-6), (100.0, 1.3e-6)]).map(drop),
     "creep table, entry 2: creep compliance = -1.2e-6 is not allowed: it must be finite and > 0"),
-("columns of different lengths",
-    || Measurements::creep(&TIMES, &[1.0e-6, 1.1e-6]).map(drop),
-    "creep compliances: 2 given, 5 needed"),
+("a table of two rows",
+    || Measurements::creep(&[(0.1, 1.0e-6), (1.0, 1.1e-6)]).map(drop),
+    "creep table: 2 given, at least 4 needed"),
 ("a relaxation table read as creep",
-    || Measurements::creep(&TIMES, &TIMES.map(|t: f64| 1.0e6 / (1.0 + t)))?.fit().map(drop),
+    || Measurements::creep(&TIMES.map(|t: f64| (t, 1.0e6 / (1.0 + t))))?.fit().map(drop),
     "creep table, entry 0: creep compliance = 909091.0 deviates by 200.84 % from the nearest monotone curve, where the \
      scatter of the data explains 10.00 %: compliances rise, moduli of relaxation fall (Experiment)"),
 ("a step beyond the table",
@@ -240,7 +240,8 @@ const MISTAKES: &[Mistake] = &[
      body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked"),
 ("a roughness finer than the mesh",
     || Rough::new(&grid(), RoughSpec::new(4.0e-3, 1.0e-6, Roughness::RmsHeight(1.0e-6))).map(drop),
-    "shortest wavelength = 1e-6 is not allowed: it must be at least two cells of the grid"),
+    "shortest wavelength = 1e-6 m is not allowed: it must be at least two cells of the grid, which are 2.5e-4 m along x1: take \
+     a longer wavelength, or 8000 cells along x1"),
 ("a history in a file that exists",
     || CsvHistory::create(path("taken.csv")?, &Metadata::new(""), &contact()?, &[]).map(drop),
     "FOLDER/taken.csv cannot be written: it exists: CsvHistory::create_or_replace replaces it"),
@@ -257,8 +258,7 @@ const MISTAKES: &[Mistake] = &[
 ("a checkpoint of another scene",
     || resumed().map(drop),
     "no run can be resumed from FOLDER/saved.ckpt: the checkpoint is of another scene: its grid is 32 × 32 cells of 1.25e-4 \
-     m × 1.25e-4 m, but the contact has 48 × 48 cells of 8.333333333333333e-5 m × 8.333333333333333e-5 m: build the contact \
-     as it was saved"),
+     m × 1.25e-4 m, but the contact has 48 × 48 cells of 8.3333e-5 m × 8.3333e-5 m: build the contact as it was saved"),
 ];
 
 #[test]

@@ -115,7 +115,7 @@ mod npy {
         let mut series = FrameSeries::create(&folder, Format::Npz, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         run(&mut contact, |contact, _| {
-            let path = series.write(contact).unwrap();
+            let path = series.record(contact).unwrap();
             let mut archive = Archive(zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap());
             assert_eq!(archive.0.len(), 11);
             for field in Field::ALL {
@@ -151,11 +151,11 @@ mod npy {
         let folder = Temporary::folder("npz-fails");
         let mut series = FrameSeries::create(folder.join("run"), Format::Npz, &scene(), &[Field::Pressure]).unwrap();
         fs::remove_dir_all(folder.join("run")).unwrap();
-        let error = series.write(&punch()).unwrap_err();
+        let error = series.record(&punch()).unwrap_err();
         assert!(matches!(&error, Error::Output(error) if error.path().ends_with("frame_000000.npz")), "{error}");
         assert_eq!(series.frames(), 0);
         fs::create_dir(folder.join("run")).unwrap();
-        assert!(series.write(&punch()).unwrap().ends_with("frame_000000.npz"));
+        assert!(series.record(&punch()).unwrap().ends_with("frame_000000.npz"));
     }
 
     #[test]
@@ -251,7 +251,7 @@ mod vtk {
         let mut contact = punch();
         let mut listed = Vec::new();
         run(&mut contact, |contact, _| {
-            let image = Image::open(&series.write(contact).unwrap());
+            let image = Image::open(&series.record(contact).unwrap());
             assert_eq!(image.attribute("ImageData WholeExtent", "WholeExtent"), "0 24 0 17 0 0");
             assert_eq!(image.attribute("Piece", "Extent"), "0 24 0 17 0 0");
             let ([x1, x2], [d1, d2]) = (contact.grid().center(0, 0), contact.grid().spacing());
@@ -290,7 +290,7 @@ mod vtk {
     fn fields_are_chosen() {
         let folder = Temporary::folder("vtk-few");
         let mut series = FrameSeries::create(&folder, Format::Vtk, &scene(), &[Field::Gap]).unwrap();
-        let image = Image::open(&series.write(&punch()).unwrap());
+        let image = Image::open(&series.record(&punch()).unwrap());
         assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
         assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
     }
@@ -309,7 +309,7 @@ mod csv {
         let mut history = CsvHistory::create(&path, &scene(), &contact, &["energy, total [J]", "odd"]).unwrap();
         let mut steps = 0;
         run(&mut contact, |contact, report| {
-            history.write(contact, report, &[0.1 * report.force, f64::NAN]).unwrap();
+            history.record(contact, report, &[0.1 * report.force, f64::NAN]).unwrap();
             steps += 1;
             // read while the writer is still at work
             let text = text_of(&path);
@@ -342,7 +342,7 @@ mod csv {
             assert!(value("odd").is_nan());
         });
         let report = contact.step(0.1, Load::force(0.7)).unwrap();
-        assert!(matches!(history.write(&contact, &report, &[]), Err(Error::WrongLength { expected: 2, .. })));
+        assert!(matches!(history.record(&contact, &report, &[]), Err(Error::WrongLength { expected: 2, .. })));
         assert_eq!(text_of(&path).lines().count(), 5);
     }
 
@@ -380,9 +380,9 @@ fn a_run_for_other_readers() {
         CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &["twice, force [N]"]).unwrap();
     let mut frame = 0;
     run(&mut contact, |contact, report| {
-        archives.write(contact).unwrap();
-        images.write(contact).unwrap();
-        history.write(contact, report, &[2.0 * report.force]).unwrap();
+        archives.record(contact).unwrap();
+        images.record(contact).unwrap();
+        history.record(contact, report, &[2.0 * report.force]).unwrap();
         let dump = |name: &str, values: &[f64]| {
             let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
             fs::write(folder.join(format!("frame_{frame:06}.{name}.raw")), bytes).unwrap();
@@ -428,9 +428,9 @@ fn a_run_without_room() {
     let mut contact = sphere_on(Grid::square(96, 4.0e-3).unwrap(), maxwell(), Settings::default());
     let mut history = CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &[]).unwrap();
     let report = contact.step(0.0, Load::force(0.1)).unwrap();
-    let rows = (0..1000).take_while(|_| history.write(&contact, &report, &[]).is_ok()).count();
+    let rows = (0..1000).take_while(|_| history.record(&contact, &report, &[]).is_ok()).count();
     for _ in 0..20 {
-        assert!(matches!(history.write(&contact, &report, &[]), Err(Error::Output(_))));
+        assert!(matches!(history.record(&contact, &report, &[]), Err(Error::Output(_))));
     }
     drop(history);
     fs::write(folder.join("rows"), rows.to_string()).unwrap();
@@ -438,14 +438,14 @@ fn a_run_without_room() {
     let mut archives = FrameSeries::create(folder.join("npz"), Format::Npz, &scene(), &Field::ALL).unwrap();
     let mut images = FrameSeries::create(folder.join("vtk"), Format::Vtk, &scene(), &Field::ALL).unwrap();
     for _ in 0..2 {
-        assert!(matches!(archives.write(&contact), Err(Error::Output(_))));
-        assert!(matches!(images.write(&contact), Err(Error::Output(_))));
+        assert!(matches!(archives.record(&contact), Err(Error::Output(_))));
+        assert!(matches!(images.record(&contact), Err(Error::Output(_))));
         let written = write_npy(folder.join("field.npy"), contact.grid(), contact.pressure());
         assert!(matches!(written, Err(Error::Output(_))));
     }
     assert_eq!((archives.frames(), images.frames()), (0, 0));
     let mut few = FrameSeries::create(folder.join("few"), Format::Npz, &scene(), &[]).unwrap();
-    few.write(&contact).unwrap();
+    few.record(&contact).unwrap();
 }
 
 /// On a full disk: each row that was reported as written is whole in the file and no other is there at all, no part of a frame

@@ -23,8 +23,8 @@ fn a_file_that_one_rank_cannot_write_is_an_error_on_all() {
         errors.push(CsvHistory::create(root.join("new.csv"), &metadata(), &contact, &[bad]).err());
         errors.push(write_field_npy(root.join("none/gap.npy"), &contact, Field::Gap).err());
         let mut csv = CsvHistory::create(root.join("new.csv"), &metadata(), &contact, &[])?;
-        errors.push(csv.write(&contact, &report, if ranks.rank() == 2 { &[1.0] } else { &[] }).err());
-        csv.write(&contact, &report, &[])?;
+        errors.push(csv.record(&contact, &report, if ranks.rank() == 2 { &[1.0] } else { &[] }).err());
+        csv.record(&contact, &report, &[])?;
         let series = root.join("series");
         let mut npz = FrameSeries::create(&series, Format::Npz, &metadata(), &[Field::Pressure])?;
         let mut vtk = FrameSeries::create(&series, Format::Vtk, &metadata(), &[Field::Pressure])?;
@@ -34,14 +34,14 @@ fn a_file_that_one_rank_cannot_write_is_an_error_on_all() {
             fs::remove_dir_all(&series).unwrap();
         }
         contact.moment();
-        errors.push(npz.write(&contact).err());
-        errors.push(vtk.write(&contact).err());
+        errors.push(npz.record(&contact).err());
+        errors.push(vtk.record(&contact).err());
         if ranks.rank() == 0 {
             fs::create_dir(&series).unwrap();
         }
         contact.moment();
         assert!(
-            npz.write(&contact)?.ends_with("frame_000000.npz") && vtk.write(&contact)?.ends_with("frame_000000.vti")
+            npz.record(&contact)?.ends_with("frame_000000.npz") && vtk.record(&contact)?.ends_with("frame_000000.vti")
         );
         Ok::<_, Error>(errors)
     });

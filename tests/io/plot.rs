@@ -97,7 +97,7 @@ fn profiles_and_histories_hold_the_state() {
     let mut history = History::new();
     assert!(history.chart(HistoryColumn::Force).unwrap().draw().is_err(), "nothing to draw yet");
     for _ in 0..3 {
-        history.add(&contact);
+        history.record(&contact);
         contact.step(0.5, Load::force(0.3)).unwrap();
     }
     assert_eq!(history.times(), [0.0, 0.5, 1.0]);
@@ -182,14 +182,14 @@ fn animations_play_back() {
     let mut animation = Animation::create(&path, Field::Pressure, [0.0, 0.4e6], 0.05).unwrap();
     let mut last = None;
     for _ in 0..4 {
-        animation.add(&contact).unwrap();
+        animation.record(&contact).unwrap();
         let mut map = Map::pressure(&contact).unwrap().outline_contact(&contact).unwrap();
         map.range = [0.0, 0.4e6];
         last = Some(map.draw().unwrap());
         contact.step(0.2, Load::force(0.3)).unwrap();
     }
     let other = Map::draw_row(&[Map::pressure(&contact).unwrap(), Map::gap(&contact).unwrap()]).unwrap();
-    let refused = animation.add_picture(&other).unwrap_err();
+    let refused = animation.record_picture(&other).unwrap_err();
     assert!(matches!(refused, Error::CountOutOfRange { field: "width of a frame", .. }));
     assert_eq!(animation.frames(), 4);
     assert!(!path.exists(), "it is not there before it is whole");
@@ -284,7 +284,7 @@ fn frames_until_there_is_no_room() {
     let mut before = length();
     for _ in 0..1000 {
         contact.step(0.2, Load::force(0.1 + 0.2 * (contact.time() % 0.7))).unwrap();
-        match animation.add(&contact) {
+        match animation.record(&contact) {
             Ok(()) => before = length(),
             Err(error) => {
                 assert!(matches!(error, Error::Output(_)), "{error}");

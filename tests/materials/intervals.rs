@@ -1,7 +1,7 @@
 //! Random tables of bodies of one to four relaxation times, with noise of up to 3 % and without, that begin before or after
 //! the relaxation: their creep against the exact one at all measured times. `TABLE_SEEDS` (60) tables of each kind are drawn.
 
-use crate::common::{from_environment, uniform};
+use crate::common::{from_environment, pairs, triples, uniform};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum};
 
@@ -40,12 +40,12 @@ impl Table {
         let (fitted, report, known_from) = match kind {
             "creep" => {
                 let values: Vec<f64> = times.iter().map(|&t| measured(truth.compliance(t))).collect();
-                let table = Measurements::creep(&times, &values).and_then(|table| table.fit()).unwrap();
+                let table = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
                 (table.spectrum().clone(), table.report().clone(), table.measured()[0])
             }
             "relaxation" => {
                 let values: Vec<f64> = times.iter().map(|&t| measured(relaxation.modulus(t))).collect();
-                let table = Measurements::relaxation(&times, &values).and_then(|table| table.fit()).unwrap();
+                let table = Measurements::relaxation(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
                 (table.spectrum().clone(), table.report().clone(), table.measured()[0])
             }
             _ => {
@@ -53,7 +53,8 @@ impl Table {
                 let storage: Vec<f64> =
                     omega.iter().map(|&omega| measured(relaxation.storage_modulus(omega))).collect();
                 let loss: Vec<f64> = omega.iter().map(|&omega| measured(relaxation.loss_modulus(omega))).collect();
-                let table = Measurements::dynamic(&omega, &storage, &loss).and_then(|table| table.fit()).unwrap();
+                let table =
+                    Measurements::dynamic(&triples(&omega, &storage, &loss)).and_then(|table| table.fit()).unwrap();
                 (table.spectrum().clone(), table.report().clone(), table.measured()[0])
             }
         };
@@ -143,7 +144,7 @@ fn relaxation_after_its_time_is_extrapolated_and_uncertain() {
         let truth = RelaxationSpectrum::new(1.0e6, 0.0, &[(modulus, time)]).unwrap();
         let times: Vec<f64> = (0..31).map(|k| first * 10f64.powf(decades * f64::from(k) / 30.0)).collect();
         let moduli: Vec<f64> = times.iter().map(|&t| truth.modulus(t)).collect();
-        let table = Measurements::relaxation(&times, &moduli).and_then(|table| table.fit()).unwrap();
+        let table = Measurements::relaxation(&pairs(&times, &moduli)).and_then(|table| table.fit()).unwrap();
         let creep = truth.creep();
         for &t in &times {
             let error = table.spectrum().compliance(t) / creep.compliance(t) - 1.0;
@@ -155,7 +156,7 @@ fn relaxation_after_its_time_is_extrapolated_and_uncertain() {
         // a modulus at t = 0 leaves nothing hidden
         let times: Vec<f64> = std::iter::once(0.0).chain(times).collect();
         let moduli: Vec<f64> = times.iter().map(|&t| truth.modulus(t)).collect();
-        let table = Measurements::relaxation(&times, &moduli).and_then(|table| table.fit()).unwrap();
+        let table = Measurements::relaxation(&pairs(&times, &moduli)).and_then(|table| table.fit()).unwrap();
         assert!(table.measured()[0] == first && table.report().uncertainty() < 1e-2, "{}", table.report());
     }
 }

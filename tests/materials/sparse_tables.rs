@@ -1,7 +1,7 @@
 //! Tables of few rows: smooth bodies over four to eight decades, with and without noise. What is fitted is compared with the
 //! exact model at the rows and between them. `SPARSE_SEEDS` (2) times seven bodies are drawn.
 
-use crate::common::{from_environment, noise, sphere_on, uniform};
+use crate::common::{from_environment, noise, pairs, sphere_on, triples, uniform};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSeries, CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};
@@ -115,7 +115,7 @@ fn tables(kind: Kind, deviation: f64, mut look: impl FnMut(&str, &[(f64, Fitted)
 
 fn creep(body: &Body, times: &[f64], check: &[f64], mut measured: impl FnMut(f64) -> f64) -> Fitted {
     let values: Vec<f64> = times.iter().map(|&t| measured(body.creep.creep_compliance(t))).collect();
-    let table = Measurements::creep(times, &values)
+    let table = Measurements::creep(&pairs(times, &values))
         .and_then(|table| table.fit())
         .unwrap_or_else(|error| panic!("{}: {error}", body.name));
     let error = |&t: &f64| table.creep_compliance(t) / body.creep.creep_compliance(t) - 1.0;
@@ -129,7 +129,7 @@ fn relaxation(
     mut measured: impl FnMut(f64) -> f64,
 ) -> Fitted {
     let values: Vec<f64> = times.iter().map(|&t| measured(truth.modulus(t))).collect();
-    let table = Measurements::relaxation(times, &values).and_then(|table| table.fit()).unwrap();
+    let table = Measurements::relaxation(&pairs(times, &values)).and_then(|table| table.fit()).unwrap();
     let fitted = table.spectrum().relaxation();
     Fitted::new(check.iter().map(|&t| fitted.modulus(t) / truth.modulus(t) - 1.0), table.report())
 }
@@ -138,7 +138,7 @@ fn dynamic(truth: &RelaxationSpectrum, times: &[f64], check: &[f64], mut measure
     let omega: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
     let storage: Vec<f64> = omega.iter().map(|&omega| measured(truth.storage_modulus(omega))).collect();
     let loss: Vec<f64> = omega.iter().map(|&omega| measured(truth.loss_modulus(omega))).collect();
-    let table = Measurements::dynamic(&omega, &storage, &loss).and_then(|table| table.fit()).unwrap();
+    let table = Measurements::dynamic(&triples(&omega, &storage, &loss)).and_then(|table| table.fit()).unwrap();
     let fitted = table.spectrum().relaxation();
     let errors = check.iter().map(|t| 1.0 / t).flat_map(|omega| {
         let storage = fitted.storage_modulus(omega) / truth.storage_modulus(omega) - 1.0;
@@ -234,7 +234,7 @@ fn more_rows_are_no_worse() {
         for rows in [15, 19, 31] {
             let times = log_spaced(6.0, rows);
             let values: Vec<f64> = times.iter().map(|&t| creep(t)).collect();
-            let table = Measurements::creep(&times, &values).and_then(|table| table.fit()).unwrap();
+            let table = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
             let check = log_spaced(6.0, 400);
             let error = |&t: &f64| table.creep_compliance(t.min(times[rows - 1])) / creep(t) - 1.0;
             let fitted = Fitted::new(check.iter().map(error), table.report());
@@ -255,7 +255,7 @@ fn contacts_warn_of_doubtful_tables() {
     };
     let table = |decades: f64, rows, creep: &dyn Fn(f64) -> f64| {
         let times = log_spaced(decades, rows);
-        Measurements::creep(&times, &times.iter().map(|&t| creep(t)).collect::<Vec<_>>())
+        Measurements::creep(&times.iter().map(|&t| (t, creep(t))).collect::<Vec<_>>())
             .and_then(|table| table.fit())
             .unwrap()
     };
@@ -277,7 +277,7 @@ fn contacts_warn_of_doubtful_tables() {
     let mut noise = noise(5);
     let times = log_spaced(6.0, 61);
     let values: Vec<f64> = times.iter().map(|&t| slow(t) * (1.0 + 0.02 * noise())).collect();
-    let scattered = Measurements::creep(&times, &values).and_then(|table| table.fit()).unwrap();
+    let scattered = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
     assert!(scattered.report().warning().is_none() && !step(&scattered), "{}", scattered.report());
     let series = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-3..=1e3, 1e-2).unwrap();
     assert!(series.report().warning().is_none() && series.report().uncertainty() == 0.0);

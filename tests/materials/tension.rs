@@ -1,5 +1,6 @@
 //! Named constructors, and bodies measured in tension.
 
+use crate::common::{pairs, triples};
 use approx::assert_abs_diff_eq;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -165,15 +166,15 @@ fn tables_in_tension_become_bodies() {
     let times: Vec<f64> = (-15..=15).map(|k| 10f64.powf(0.2 * f64::from(k))).collect();
     let of = |value: &dyn Fn(f64) -> f64| times.iter().map(|&x| value(x)).collect::<Vec<_>>();
     let tables = [
-        ("E(t)", Measurements::relaxation(&times, &of(&|t| relaxation.modulus(t)))),
-        ("D(t)", Measurements::creep(&times, &of(&|t| creep.compliance(t)))),
+        ("E(t)", Measurements::relaxation(&pairs(&times, &of(&|t| relaxation.modulus(t))))),
+        ("D(t)", Measurements::creep(&pairs(&times, &of(&|t| creep.compliance(t))))),
         (
             "E', E''",
-            Measurements::dynamic(
+            Measurements::dynamic(&triples(
                 &times,
                 &of(&|w| relaxation.storage_modulus(w)),
                 &of(&|w| relaxation.loss_modulus(w)),
-            ),
+            )),
         ),
     ];
     let nu = 0.49;

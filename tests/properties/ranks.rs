@@ -57,6 +57,20 @@ fn random_scenes_are_the_same_on_all_ranks() {
     assert!(2 * pressed > scenes as usize && 3 * failed < scenes as usize, "{pressed} pressed, {failed} failed");
 }
 
+/// The greatest slope is that of all rows, those at the ends of ranks included, whatever is folded; so is flatness.
+#[test]
+fn slopes_are_warned_of_on_all_ranks() {
+    for (mut scene, warning) in chosen_scenes::sloped() {
+        let alone = scene.course(None).unwrap();
+        assert!(!alone.reports.is_empty(), "{}: {:?}", scene.name, alone.error);
+        assert!(alone.reports.iter().all(|report| report.contains(warning)), "{}: {:?}", scene.name, alone.reports);
+        for size in [1, 2, 3, 5, 8] {
+            scene.on_own_rows = size != 3;
+            assert_same_on(size, &scene, &alone);
+        }
+    }
+}
+
 /// Snapshots go back on all ranks alike.
 #[test]
 fn restored_snapshots_are_the_same_on_all_ranks() {
@@ -87,9 +101,9 @@ fn write(scene: &AnyScene, mut contact: ViscoelasticContact, folder: &Path) -> R
     let mut areas = Vec::new();
     let (_, error) = scene.drive(&mut contact, 0, &mut |stepper, report| {
         let contact = stepper.contact();
-        npz.write(contact)?;
-        vtk.write(contact)?;
-        csv.write(contact, &report, &[2.0 * report.force])?;
+        npz.record(contact)?;
+        vtk.record(contact)?;
+        csv.record(contact, &report, &[2.0 * report.force])?;
         areas.push(contact.contact_area());
         Ok(areas.len() < 2)
     });

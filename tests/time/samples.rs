@@ -33,7 +33,7 @@ fn samples_leave_the_steps_as_they_are() {
         let mut contact = contact();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), 80.0);
         if sampled {
-            run = run.sample_at_decades(1e-3, 10).unwrap().sample_every(5.0).unwrap().sample_at(&[0.77, 90.0]).unwrap();
+            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0)).and(&[0.77, 90.0])).unwrap();
         }
         assert_eq!(run.samples().count(), 0, "no step yet");
         let (mut reports, mut looks, mut asked, mut problems): (Vec<StepReport>, _, Vec<f64>, _) =
@@ -86,7 +86,7 @@ fn the_curve_of_a_held_ball_is_exact() {
     let exact = GrowingSphere::step(RADIUS, &rubber(), FORCE).unwrap();
     let load = StepLoad::new(Load::force(FORCE)).unwrap();
     let mut contact = contact();
-    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 100.0).sample_at_decades(1e-3, 10).unwrap();
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 100.0).sample_at(Times::decades(1e-3, 10)).unwrap();
     // the error of the mesh, which all states share
     let mesh = exact.approach(0.0) / {
         run.next_step().unwrap();
@@ -127,8 +127,8 @@ fn steps_end_where_they_are_stopped() {
             ends
         };
         let free = ends(&|run| run);
-        let every = ends(&|run| run.stop_every(0.5).unwrap());
-        let at_decades = ends(&|run| run.stop_at_decades(1e-2, 3).unwrap());
+        let every = ends(&|run| run.stop_at(Times::every(0.5)).unwrap());
+        let at_decades = ends(&|run| run.stop_at(Times::decades(1e-2, 3)).unwrap());
         println!("{} steps, {} with stops at multiples, {} at decades", free.len(), every.len(), at_decades.len());
         assert!(met(&multiples, &every) && met(&decades, &at_decades));
         assert!(!met(&multiples, &free));
@@ -137,11 +137,12 @@ fn steps_end_where_they_are_stopped() {
     let states = states.run(Reach::Level(6.0e-7)).unwrap();
     for stepping in [Stepping::adaptive(1e-3), Stepping::fixed(0.3)] {
         let mut contact = StatesContact::new(&states, &rubber()).unwrap();
-        let mut run = contact.follow(&load, stepping, 10.0).stop_every(0.5).unwrap().stop_at_decades(1e-2, 3).unwrap();
+        let mut run =
+            contact.follow(&load, stepping, 10.0).stop_at(Times::every(0.5).and(Times::decades(1e-2, 3))).unwrap();
         let mut ends = Vec::new();
         while let Some(report) = run.next_step().unwrap() {
             ends.push(report.time);
-            assert_eq!(run.samples().map(|sample| sample.unwrap().report()).collect::<Vec<_>>(), [report]);
+            assert_eq!(run.samples().map(|sample| sample.unwrap().time()).collect::<Vec<_>>(), [report.time]);
         }
         assert!(met(&multiples, &ends) && met(&decades, &ends), "{ends:?}");
     }
@@ -157,7 +158,7 @@ fn samples_of_elastic_states_leave_the_steps_as_they_are() {
         let mut contact = StatesContact::new(&states, &rubber()).unwrap();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), 80.0);
         if sampled {
-            run = run.sample_at_decades(1e-3, 10).unwrap().sample_every(5.0).unwrap().sample_at(&[0.77]).unwrap();
+            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0))).unwrap().sample_at(&[0.77]).unwrap();
         }
         let (mut reports, mut points) = (Vec::new(), Vec::new());
         while let Some(report) = run.next_step().unwrap() {

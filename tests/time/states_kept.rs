@@ -39,12 +39,12 @@ fn contacts_on_states_come_back_to_the_last_bit() {
     advanced(&mut contact, 0..8);
     let mut start = contact.snapshot();
     advanced(&mut contact, 8..20);
-    let end = contact.report();
+    let end = format!("{contact:?}");
     contact.restore(&start).unwrap();
     advanced(&mut contact, 8..20);
-    assert_eq!(contact.report(), end);
+    assert_eq!(format!("{contact:?}"), end);
     contact.snapshot_into(&mut start);
-    assert_eq!(start.report(), end);
+    assert_eq!(format!("{start:?}"), end);
     let mut other = StatesContact::new(&states, &material()).unwrap();
     assert!(matches!(other.restore(&start), Err(Error::OtherContact)));
 
@@ -56,14 +56,14 @@ fn contacts_on_states_come_back_to_the_last_bit() {
     let mut again = StatesContact::new(&states, &material()).unwrap();
     again.resume(&path).unwrap();
     advanced(&mut again, 8..20);
-    assert_eq!(again.report(), end);
+    assert_eq!(format!("{again:?}"), end);
     // of another material, other states, a damaged file, a file of a contact
     let stiffer = Material::incompressible(Maxwell::with_time(1.0, 1.0).unwrap());
     let mut wrong = StatesContact::new(&states, &stiffer).unwrap();
     assert!(matches!(wrong.resume(&path), Err(Error::Checkpoint { .. })));
     let table = ElasticStates::from_table(&[(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)]).unwrap();
     assert!(StatesContact::new(&table, &material()).unwrap().resume(&path).is_err());
-    let before = again.report();
+    let before = format!("{again:?}");
     let bytes = std::fs::read(&path).unwrap();
     for cut in (0..bytes.len()).step_by(97) {
         std::fs::write(&path, &bytes[..cut]).unwrap();
@@ -73,7 +73,7 @@ fn contacts_on_states_come_back_to_the_last_bit() {
         std::fs::write(&path, damaged).unwrap();
         assert!(again.resume(&path).is_err(), "{cut}");
     }
-    assert_eq!(again.report(), before);
+    assert_eq!(format!("{again:?}"), before);
 }
 
 /// States read from a file carry the same contacts, and the same pressures.
@@ -165,4 +165,62 @@ fn tables_that_are_no_states_are_refused() {
     }
     let falls = [(1.0, 1.0, 1.0, 1.0), (2.0, 0.5, 2.0, 2.0)];
     assert!(matches!(ElasticStates::from_table(&falls), Err(Error::OutOfOrder { .. })));
+}
+
+/// Tables and charts take contacts on elastic states; what these do not have is empty.
+#[cfg(feature = "plot")]
+#[test]
+fn histories_of_states_are_written_and_drawn() {
+    use viscocontact::plot::{History, HistoryColumn};
+
+    let folder = Temporary::folder("states-history");
+    let path = folder.join("history.csv");
+    let mut contact = StatesContact::new(&rough_states(false), &material()).unwrap();
+    let mut table = CsvHistory::create(&path, &Metadata::new("rough"), &contact, &["level [m2]"]).unwrap();
+    let mut history = History::new();
+    for step in 0..6 {
+        let (dt, load) = load(step);
+        let report = contact.step(dt, load).unwrap();
+        assert!((report.contact_cells > 0) == (report.force > 0.0) && report.dt == dt);
+        table.record(&contact, &report, &[contact.level()]).unwrap();
+        history.record(&contact);
+    }
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (names, row) = (text.lines().nth(1).unwrap(), text.lines().last().unwrap());
+    let value = |name: &str| {
+        let column = names.split(',').position(|other| other == name).unwrap();
+        row.split(',').nth(column).unwrap().to_owned()
+    };
+    assert_eq!(value("force [N]").parse::<f64>().unwrap(), contact.force());
+    assert_eq!(value("contact area [m2]").parse::<f64>().unwrap(), contact.contact_area());
+    assert_eq!(value("level [m2]").parse::<f64>().unwrap(), contact.level());
+    assert_eq!(value("max pressure [Pa]"), "");
+    assert_eq!(history.column(HistoryColumn::ContactArea).last(), Some(&contact.contact_area()));
+    history.chart(HistoryColumn::ContactArea).unwrap();
+    assert!(matches!(history.chart(HistoryColumn::MaxPressure), Err(Error::WrongLength { .. })));
+}
+
+/// A run on states tells how far it is, and can be ended by another thread.
+#[test]
+fn runs_on_states_show_their_progress_and_can_be_cancelled() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    let mut contact = StatesContact::new(&ElasticStates::sphere(1.0).unwrap(), &material()).unwrap();
+    let (load, flag) = (StepLoad::new(Load::force(1.0e-3)).unwrap(), Arc::new(AtomicBool::new(false)));
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 100.0).cancelled_by(Arc::clone(&flag));
+    let (mut steps, mut last) = (0, 0.0);
+    while let Some(report) = run.next_step().unwrap() {
+        steps += 1;
+        let progress = run.progress();
+        assert!(progress.steps == steps && progress.time == report.time && progress.share_of_decades() >= last);
+        assert!(report.time_error.is_some_and(|error| error <= 1e-3));
+        last = progress.share_of_decades();
+        if steps == 5 {
+            flag.store(true, Ordering::Relaxed);
+            assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
+            assert_eq!(run.contact().time(), report.time);
+            flag.store(false, Ordering::Relaxed);
+        }
+    }
+    assert_eq!(last, 1.0);
 }

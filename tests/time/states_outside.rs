@@ -94,12 +94,12 @@ fn scenes_outside_the_statement_are_refused_or_right() {
             let tilt = if scene.turns { scene.tilt.map(turn) } else { scene.tilt };
             let load = Load::Force { normal: last * draws.between(0.02, 0.98), tilt };
             let dt = draws.power_of_ten(-2.0, 1.0);
-            let before = contact.report();
+            let before = format!("{contact:?}");
             match contact.step(dt, load) {
                 Ok(_) => {}
                 Err(Error::States(error)) => {
                     assert!(!matches!(error, StatesError::Beyond { .. }), "{} {number}: {error}", scene.name);
-                    assert_eq!(contact.report(), before);
+                    assert_eq!(format!("{contact:?}"), before);
                     is_refused = true;
                     break;
                 }

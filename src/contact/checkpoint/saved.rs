@@ -10,6 +10,7 @@ use crate::contact::{Clock, Equilibrium, Progress, Region, Scene, State, Viscoel
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
+use crate::rounded::texts_without_noise;
 
 /// A state on no cells, and the fingerprint of its scene.
 #[derive(Serialize, Deserialize)]
@@ -91,7 +92,7 @@ pub(super) fn check_run(clock: &Clock, run: Option<&Progress>, scene: &Scene) ->
         let [saved, built] = [clock.reduced_time, history.reduced_time(0.0, clock.time).unwrap_or(f64::NAN)];
         let agree = (saved - built).abs() <= CLOCKS_AGREE * built;
         if !agree {
-            let [saved, built] = [saved, built].map(|time| format!("reduced time {time:e} s"));
+            let [saved, built] = texts_without_noise([saved, built].map(|time| format!("reduced time {time:e} s")));
             return Err(CheckpointError::OtherScene { what: "temperature", saved, built });
         }
     }

@@ -11,6 +11,7 @@ use crate::contact::{Region, Scene, Settings};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::rheology::Material;
+use crate::rounded::texts_without_noise;
 use crate::sum::{MOMENTS, add_to_moments};
 
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
@@ -179,7 +180,7 @@ impl Fingerprint {
     pub(super) fn require(&self, scene: &Scene) -> Result<(), CheckpointError> {
         for (saved, (what, built)) in self.0.iter().zip(marks(scene)) {
             if let Some(entry) = saved.difference(&built) {
-                let [saved, built] = [saved, &built].map(|mark| mark.entry(entry));
+                let [saved, built] = texts_without_noise([saved, &built].map(|mark| mark.entry(entry)));
                 return Err(CheckpointError::OtherScene { what, saved, built });
             }
         }

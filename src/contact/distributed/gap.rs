@@ -68,7 +68,7 @@ impl SharedGap<'_> {
         if m2 < n2 {
             above = above.chunks_exact(n2).flat_map(|row| &row[n2 - m2..]).copied().collect();
         }
-        Indenter::shared(Gap { datum: self.datum, above, owner: None }, even, self.hull(grid))
+        Indenter::shared(Gap { datum: self.datum, above, owner: None }, even, self.hull(grid), region)
     }
 
     /// The convex hull of the cells that may be touched.

@@ -7,13 +7,13 @@ mod slope;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use self::slope::Slopes;
 use crate::Grid;
 use crate::contact::Hull;
-#[cfg(feature = "checkpoint")]
 use crate::contact::window::region::Region;
 use crate::error::Result;
 use crate::geometry::Gap;
-use crate::solver::RigidMotion;
+use crate::solver::{HaloRows, RigidMotion};
 
 /// The indenters of a contact where they are. Replaced whole when one of them moves or changes.
 #[derive(Debug)]
@@ -25,8 +25,10 @@ pub(crate) struct Indenter {
     even: OnceLock<[bool; 2]>,
     /// Where loads may act on each body; computed when a body is first free to tilt.
     hulls: Vec<OnceLock<Hull>>,
-    /// Whether any cell of the whole grid is steep; computed when a step is first accepted.
-    is_steep: OnceLock<bool>,
+    /// Slopes on the whole grid; computed when a step is first accepted, or on ranks when the contact is built.
+    slopes: OnceLock<Slopes>,
+    /// The rows of the gap beyond the local rows of a rank.
+    beyond: HaloRows,
     /// Whether the gap covers only the local rows of a rank.
     is_local: bool,
 }
@@ -34,13 +36,22 @@ pub(crate) struct Indenter {
 impl Indenter {
     pub(crate) fn new(gap: Gap, bodies: usize) -> Indenter {
         let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
-        Indenter { gap, id: next_id(), even: OnceLock::new(), hulls, is_steep: OnceLock::new(), is_local: false }
+        Indenter {
+            gap,
+            id: next_id(),
+            even: OnceLock::new(),
+            hulls,
+            slopes: OnceLock::new(),
+            beyond: HaloRows::default(),
+            is_local: false,
+        }
     }
 
-    /// The indenter of a rank: the gap of a single body on the computed cells of the local rows; symmetry and hull of all rows.
-    pub(crate) fn shared(gap: Gap, even: [bool; 2], hull: Hull) -> Indenter {
+    /// The indenter of a rank: the gap of a single body on the computed cells of the local rows, which are `region`; symmetry and
+    /// hull of all rows. A call of all ranks.
+    pub(crate) fn shared(gap: Gap, even: [bool; 2], hull: Hull, region: &Region) -> Indenter {
         let hulls = vec![OnceLock::from(hull)];
-        Indenter { even: OnceLock::from(even), hulls, is_local: true, ..Indenter::new(gap, 0) }
+        Indenter { even: OnceLock::from(even), hulls, is_local: true, ..Indenter::new(gap, 0) }.with_rows_beyond(region)
     }
 
     /// The gap on the whole grid, or on the computed cells of the local rows where ranks share out the grid.
@@ -77,12 +88,14 @@ impl Indenter {
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
     }
 
-    /// The indenter of a rank with another rounding of the gap, on the local rows of the region of another state.
+    /// The indenter of a rank with another rounding of the gap, on the local rows of the region of another state. A call of all
+    /// ranks.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn with_gap_on(&self, region: &Region, gap: Gap) -> Indenter {
         let built = self.even.get().copied().unwrap_or_default();
         let even = OnceLock::from([0, 1].map(|axis| built[axis] || region.folded()[axis]));
-        Indenter { even, hulls: self.hulls.clone(), is_local: true, ..Indenter::new(gap, 0) }
+        let hulls = self.hulls.clone();
+        Indenter { even, hulls, is_local: true, ..Indenter::new(gap, 0) }.with_rows_beyond(region)
     }
 
     /// The motion at which each body just touches the undeformed surface, upright.
@@ -105,7 +118,7 @@ impl Indenter {
         self.gap.exchange(heights, grid)?;
         self.id = next_id();
         self.even.take();
-        self.is_steep.take();
+        self.slopes.take();
         self.hulls.iter_mut().for_each(|hull| _ = hull.take());
         Ok(())
     }

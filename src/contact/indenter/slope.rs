@@ -2,37 +2,121 @@
 
 use crate::Grid;
 use crate::contact::{Indenter, Region};
+use crate::solver::{HaloExchange, HaloRows};
 
 /// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
 const STEEP: f64 = 0.5;
+/// Bodies without a slope beyond this are no real ones: a nanometre over a millimetre.
+const FLAT: f64 = 1e-6;
+/// A relief of a smaller part of the height of the lowest point is rounding.
+const RELIEF: f64 = 1e-12;
+
+/// What the slopes of the gap on the whole grid say.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slopes {
+    /// Whether any cell is steep.
+    any_steep: bool,
+    /// Whether the bodies are flatter than real ones, but not flat.
+    too_flat: bool,
+}
+
+/// The cells that a gap is on: the whole grid, or the computed cells of the local rows of a rank.
+#[derive(Clone, Copy)]
+struct Cells {
+    spacing: [f64; 2],
+    /// Number of columns.
+    n2: usize,
+    /// Axes along which the first row or column borders on its image.
+    folded: [bool; 2],
+}
 
 impl Indenter {
-    /// Greatest slope of the gap on the cells of a region that carry `pressure`, if it is steep. `None` on ranks, which have no
-    /// neighbours beyond their rows.
+    /// Greatest slope of the gap on the cells of a region that carry `pressure`, if it is steep. A call of all ranks.
     pub(crate) fn steepest(&self, grid: &Grid, region: &Region, pressure: &[f64]) -> Option<f64> {
-        let n2 = grid.cells()[1];
-        let is_steep = || (0..grid.len()).any(|k| self.squared_slope(grid, [k / n2, k % n2]) > STEEP * STEEP);
+        let whole = whole(grid);
         // most indenters are steep nowhere, and steps need not look again
-        if self.is_local || !*self.is_steep.get_or_init(is_steep) {
+        if !self.slopes(grid).any_steep {
             return None;
         }
+        let squared = |k: usize| {
+            let [i, j] = region.cell(k);
+            if self.is_local {
+                self.squared_slope(local(region), k)
+            } else {
+                self.squared_slope(whole, i * whole.n2 + j)
+            }
+        };
         let in_contact = (0..pressure.len()).filter(|&k| pressure[k] > 0.0);
-        let greatest = in_contact.map(|k| self.squared_slope(grid, region.cell(k))).fold(0.0, f64::max);
+        let greatest = region.rows().greatest(in_contact.map(squared).fold(0.0, f64::max));
         (greatest > STEEP * STEEP).then(|| greatest.sqrt())
     }
 
+    /// Whether the bodies are flatter on the whole grid than real ones, though not flat.
+    pub(crate) fn is_too_flat(&self, grid: &Grid) -> bool {
+        self.slopes(grid).too_flat
+    }
+
+    fn slopes(&self, grid: &Grid) -> Slopes {
+        *self.slopes.get_or_init(|| self.slopes_of(self.greatest_slope_and_relief(whole(grid))))
+    }
+
+    fn slopes_of(&self, [squared, relief]: [f64; 2]) -> Slopes {
+        let too_flat = squared > 0.0 && squared < FLAT * FLAT && relief > RELIEF * self.gap.datum.abs();
+        Slopes { any_steep: squared > STEEP * STEEP, too_flat }
+    }
+
+    /// Square of the greatest slope of all cells of the gap, and its greatest finite height above the lowest \[m\].
+    fn greatest_slope_and_relief(&self, cells: Cells) -> [f64; 2] {
+        let above = &self.gap.above;
+        let squared = (0..above.len()).map(|k| self.squared_slope(cells, k)).fold(0.0, f64::max);
+        [squared, above.iter().copied().filter(|h| h.is_finite()).fold(0.0, f64::max)]
+    }
+
+    /// Fetches the rows of the gap beyond the local rows of a rank, and finds its slopes on all ranks. A call of all ranks.
+    pub(super) fn with_rows_beyond(mut self, region: &Region) -> Indenter {
+        let (rows, [_, n2]) = (region.rows(), region.cells());
+        let above = &self.gap.above;
+        self.beyond = HaloRows::new(&rows, |rank| rows.of(rank), [rows.cells()[0], n2], false);
+        if let Some(mut exchange) = HaloExchange::new(&rows, n2) {
+            let own = rows.own().len();
+            exchange.fetch(&mut self.beyond, n2, own, |k, row| row.copy_from_slice(&above[k * n2..][..n2]));
+        }
+        let own = self.greatest_slope_and_relief(local(region));
+        self.slopes = self.slopes_of(own.map(|own| rows.greatest(own))).into();
+        self
+    }
+
     /// Square of the slope of the gap in a cell: along each axis the lesser of the slopes to both neighbours on the same body.
-    fn squared_slope(&self, grid: &Grid, cell: [usize; 2]) -> f64 {
-        let ([_, n2], gap) = (grid.cells(), &self.gap);
-        let k = cell[0] * n2 + cell[1];
+    fn squared_slope(&self, Cells { spacing, n2, folded }: Cells, k: usize) -> f64 {
+        let (gap, j) = (&self.gap, k % n2);
+        let above = &gap.above;
+        let on_body =
+            |side: Option<usize>| side.filter(|&side| gap.owner(side) == gap.owner(k)).map(|side| above[side]);
+        let image = |axis: usize| folded[axis].then_some(above[k]);
+        let row_before = || self.beyond.before().map(|row| row[j]).or(image(0));
+        let row_after = || self.beyond.after().map(|row| row[j]);
+        let sides = [
+            [
+                if k >= n2 { on_body(Some(k - n2)) } else { row_before() },
+                if k + n2 < above.len() { on_body(Some(k + n2)) } else { row_after() },
+            ],
+            [if j > 0 { on_body(Some(k - 1)) } else { image(1) }, on_body((j + 1 < n2).then_some(k + 1))],
+        ];
         let along = |axis: usize| {
-            let stride = [n2, 1][axis];
-            let back = (cell[axis] > 0).then(|| k - stride);
-            let on = (cell[axis] + 1 < grid.cells()[axis]).then(|| k + stride);
-            let sides = [back, on].into_iter().flatten().filter(|&side| gap.owner(side) == gap.owner(k));
-            let rises = sides.map(|side| (gap.above[side] - gap.above[k]).abs()).filter(|rise| rise.is_finite());
-            rises.reduce(f64::min).unwrap_or(0.0) / grid.spacing()[axis]
+            let rises =
+                sides[axis].iter().flatten().map(|side| (side - above[k]).abs()).filter(|rise| rise.is_finite());
+            rises.reduce(f64::min).unwrap_or(0.0) / spacing[axis]
         };
         along(0).powi(2) + along(1).powi(2)
     }
+}
+
+/// The cells of the whole grid.
+fn whole(grid: &Grid) -> Cells {
+    Cells { spacing: grid.spacing(), n2: grid.cells()[1], folded: [false; 2] }
+}
+
+/// The cells of a region of local rows.
+fn local(region: &Region) -> Cells {
+    Cells { spacing: region.grid().spacing(), n2: region.cells()[1], folded: region.folded() }
 }

@@ -19,6 +19,7 @@ pub struct StepReport {
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
     /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
+    /// On elastic states the cells of the state at or below the level, 0 where they were not swept on cells.
     pub contact_cells: usize,
     /// Tilt (α1, α2) of the first body \[rad\].
     pub tilt: [f64; 2],
@@ -63,7 +64,7 @@ pub enum Estimated {
 
 impl Estimated {
     /// What these loads leave free.
-    pub(in crate::contact) fn under(loads: &[Load]) -> Estimated {
+    pub(crate) fn under(loads: &[Load]) -> Estimated {
         let any = |is: fn(&Load) -> bool| loads.iter().any(is);
         match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !matches!(load, Load::Force { .. }))) {
             (false, true) => Estimated::Force,
@@ -204,8 +205,7 @@ bitflags! {
         const MODULUS = 1 << 9;
         /// The undeformed bodies are steeper than 0.5 somewhere in contact ([`StepReport::max_slope`](crate::contact::StepReport::max_slope)):
         /// slopes and strains are not small, and half-spaces are no model of the bodies. Heights in µm that are read as metres are that steep.
-        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count. Not where
-        /// [ranks](crate::parallel) share out the rows.
+        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count.
         const STEEP = 1 << 10;
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
         /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
@@ -214,6 +214,9 @@ bitflags! {
         /// ([`PassReport::response`](crate::contact::PassReport::response)); [`PassReport::released`](crate::contact::PassReport::released) is the
         /// energy that was lost. Adaptive steps are shortened until the moment no longer matters.
         const JUMP = 1 << 12;
+        /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:
+        /// sides of a map or a grid in µm that are read as metres are that long for their heights.
+        const FLAT = 1 << 13;
     }
 }
 
@@ -227,7 +230,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 13] = [
+const MESSAGES: [(Warnings, &str); 14] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -242,6 +245,7 @@ const MESSAGES: [(Warnings, &str); 13] = [
         Warnings::STEEP,
         "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
     ),
+    (Warnings::FLAT, "the bodies are flatter than 1e-6 everywhere, as no real ones are: heights and lengths are in m"),
     (
         Warnings::COARSE_ZONE,
         "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use crate::ascending::Times;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::follow::{Run, SAME_TIME};
 use crate::contact::stepper::ViscoelasticContact;
@@ -42,66 +43,27 @@ impl Sample<'_> {
 /// Steps that end at times of your choice, and states between the ends of steps. Stops shorten steps, so that an adaptive run takes
 /// more of them; samples leave the steps as they are, bitwise, and cost a contact problem for each time inside a step.
 impl<'a> Run<'a> {
-    /// Makes steps end exactly at these `times` \[s\] too, given in any order. Times before the time of the contact
-    /// have no effect.
+    /// Makes steps end exactly at these [`Times`] too.
     ///
     /// # Errors
-    /// If a time is not finite.
-    pub fn stop_at(mut self, times: &[f64]) -> Result<Run<'a>> {
-        self.stops.add("time to stop at", times)?;
+    /// If a time is not finite, an interval or the first time in decades not finite and positive, or there are not 1 to 1000
+    /// times per decade.
+    pub fn stop_at(mut self, times: impl Into<Times>) -> Result<Run<'a>> {
+        self.stops.add(times.into(), self.progress.start)?;
         Ok(self)
     }
 
-    /// Makes steps end exactly at every multiple of `interval` \[s\] from the start of the run too.
+    /// Samples the states at these [`Times`] ([`Run::samples`]).
     ///
     /// # Errors
-    /// If the interval is not finite and positive.
-    pub fn stop_every(mut self, interval: f64) -> Result<Run<'a>> {
-        self.stops.add_every("interval of the stops", interval, self.progress.start)?;
+    /// As [`Run::stop_at`].
+    pub fn sample_at(mut self, times: impl Into<Times>) -> Result<Run<'a>> {
+        self.sampled.add(times.into(), self.progress.start)?;
         Ok(self)
     }
 
-    /// Makes steps end exactly `first` \[s\] after the start of the run too, and at `per_decade` times in each decade beyond.
-    ///
-    /// # Errors
-    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
-    pub fn stop_at_decades(mut self, first: f64, per_decade: usize) -> Result<Run<'a>> {
-        let names = ["first time to stop at", "stops per decade"];
-        self.stops.add_decades(names, (first, per_decade), self.progress.start)?;
-        Ok(self)
-    }
-
-    /// Samples the states at these `times` \[s\], given in any order ([`Run::samples`]).
-    ///
-    /// # Errors
-    /// If a time is not finite.
-    pub fn sample_at(mut self, times: &[f64]) -> Result<Run<'a>> {
-        self.sampled.add("time to sample", times)?;
-        Ok(self)
-    }
-
-    /// Samples the states at every multiple of `interval` \[s\] from the start of the run ([`Run::samples`]).
-    ///
-    /// # Errors
-    /// If the interval is not finite and positive.
-    pub fn sample_every(mut self, interval: f64) -> Result<Run<'a>> {
-        self.sampled.add_every("interval of the samples", interval, self.progress.start)?;
-        Ok(self)
-    }
-
-    /// Samples the states `first` \[s\] after the start of the run, and at `per_decade` times in each decade beyond
-    /// ([`Run::samples`]).
-    ///
-    /// # Errors
-    /// If `first` is not finite and positive, or `per_decade` not 1 to 1000.
-    pub fn sample_at_decades(mut self, first: f64, per_decade: usize) -> Result<Run<'a>> {
-        let names = ["first time to sample", "samples per decade"];
-        self.sampled.add_decades(names, (first, per_decade), self.progress.start)?;
-        Ok(self)
-    }
-
-    /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`],
-    /// [`Run::sample_every`], [`Run::sample_at_decades`]), and at its end. Each is as exact as the end of the step
+    /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and at its
+    /// end. Each is as exact as the end of the step
     /// ([`Run::within_step`]). So a run of few long steps is drawn as a curve, and the steps stay as they are.
     ///
     /// A sample inside the step costs a copy of the contact and a contact problem; the end costs nothing. Where ranks share out
@@ -115,7 +77,7 @@ impl<'a> Run<'a> {
     ///     .material(Material::incompressible(Zener::relaxing(1.0e6, 0.3e6, 0.5)?))
     ///     .build()?;
     /// let load = StepLoad::new(Load::force(0.5))?;
-    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-2), 100.0).sample_at_decades(1.0e-2, 10)?;
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-2), 100.0).sample_at(Times::decades(1.0e-2, 10))?;
     /// let (mut steps, mut curve) = (0, Vec::new());
     /// while run.next_step()?.is_some() {
     ///     steps += 1;

@@ -110,6 +110,7 @@ pub(super) fn collect_warnings(
         (Warnings::MODULUS, at_once * SOFTEST > 1.0 || (at_once > 0.0 && at_once * STIFFEST < 1.0)),
         (Warnings::STEEP, max_slope.is_some()),
         (Warnings::JUMP, trial.passes.as_ref().is_some_and(|passes| passes.report.jumped())),
+        (Warnings::FLAT, state.indenter.is_too_flat(&scene.grid)),
     ];
     reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
 }

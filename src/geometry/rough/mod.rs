@@ -278,7 +278,8 @@ mod tests {
         assert_eq!(refused(RoughSpec { hurst: 1.1, ..SPEC }), "Hurst exponent");
         assert_eq!(refused(RoughSpec { longest: 0.2, ..SPEC }), "longest wavelength");
         assert_eq!(refused(RoughSpec { roll_off: 0.01, ..SPEC }), "roll-off wavelength");
-        assert_eq!(refused(RoughSpec { shortest: 0.06, ..SPEC }), "shortest wavelength");
+        let fine = Rough::new(&grid, RoughSpec { shortest: 0.06, ..SPEC }).unwrap_err();
+        assert!(matches!(fine, Error::Map(MapError::TooFine { .. })), "{fine}");
         assert_eq!(refused(RoughSpec { roughness: Roughness::RmsSlope(0.0), ..SPEC }), "rms slope");
         let lay = Anisotropy { ratio: 0.5, direction: 0.0 };
         assert_eq!(refused(RoughSpec { anisotropy: lay, ..SPEC }), "ratio of the anisotropy");

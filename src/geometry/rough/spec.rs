@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::Grid;
-use crate::error::{Result, finite, positive, within};
+use crate::error::{MapError, Result, finite, positive, within};
+use crate::{Axis, Grid};
 
 value! {
 /// Specification of a self-affine random surface, [`Rough`](crate::geometry::Rough).
@@ -115,8 +115,11 @@ impl RoughSpec {
         };
         let (cells, spacing) = (grid.cells(), grid.spacing());
         for axis in (0..2).filter(|&axis| cells[axis] > 1) {
-            let resolved = self.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
-            within("shortest wavelength", self.shortest, resolved, "at least two cells of the grid")?;
+            let (shortest, least) = (self.shortest, 2.0 * spacing[axis]);
+            if shortest < least * (1.0 - 1e-12) {
+                let needed = (least * cells[axis] as f64 / shortest * (1.0 - 1e-12)).ceil() as usize;
+                return Err(MapError::TooFine { shortest, least, axis: Axis::BOTH[axis], cells: needed }.into());
+            }
         }
         Ok(())
     }

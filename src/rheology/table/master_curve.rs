@@ -11,7 +11,7 @@ use crate::values::counted;
 /// ```
 /// use viscocontact::rheology::{Isotherm, Measurements};
 ///
-/// let creep = Measurements::creep(&[1.0, 10.0, 100.0, 1000.0], &[1.0e-9, 1.1e-9, 1.4e-9, 2.0e-9])?;
+/// let creep = Measurements::creep(&[(1.0, 1.0e-9), (10.0, 1.1e-9), (100.0, 1.4e-9), (1000.0, 2.0e-9)])?;
 /// let at_60 = Isotherm::new(333.15, creep)?;
 /// assert_eq!(at_60.temperature(), 333.15);
 /// # Ok::<(), viscocontact::Error>(())
@@ -82,8 +82,8 @@ impl Isotherm {
 /// for temperature in [300.0, 310.0, 320.0] {
 ///     // three decades of time at each temperature; here from a formula
 /// #   let slow = law.shift_factor(temperature)?;
-/// #   let compliances: Vec<f64> = times.iter().map(|&t| body.creep_compliance(t / slow)).collect();
-///     isotherms.push(Isotherm::new(temperature, Measurements::creep(&times, &compliances)?)?);
+/// #   let table: Vec<(f64, f64)> = times.iter().map(|&t| (t, body.creep_compliance(t / slow))).collect();
+///     isotherms.push(Isotherm::new(temperature, Measurements::creep(&table)?)?);
 /// }
 /// let master = MasterCurve::new(300.0, isotherms)?;
 /// let polymer = master.fit()?; // at 300 K, over more than four decades

@@ -9,7 +9,7 @@ pub use master_curve::{Isotherm, MasterCurve};
 
 use educe::Educe;
 
-use crate::error::{Place, Result, TableError, exact_length};
+use crate::error::{Place, Result, TableError};
 use crate::rheology::CreepSeries;
 use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
 use crate::values::counted;
@@ -34,9 +34,8 @@ const NOTICEABLE: f64 = 12.0;
 /// ```
 /// use viscocontact::rheology::{Measurements, Rheology};
 ///
-/// let times = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
-/// let compliances = [1.05e-6, 1.14e-6, 1.39e-6, 1.78e-6, 1.99e-6, 2.00e-6, 2.00e-6];
-/// let body = Measurements::creep(&times, &compliances)?.fit()?;
+/// let table = [(0.1, 1.05e-6), (0.3, 1.14e-6), (1.0, 1.39e-6), (3.0, 1.78e-6), (10.0, 1.99e-6), (100.0, 2.00e-6)];
+/// let body = Measurements::creep(&table)?.fit()?;
 /// println!("{}", body.report());
 /// assert!(body.report().max_misfit() < 5e-3);
 /// assert!((body.creep_compliance(5.0) / 1.92e-6 - 1.0).abs() < 1e-2);
@@ -58,17 +57,17 @@ pub struct Measurements {
 }
 
 impl Measurements {
-    /// Creep `compliances` \[1/Pa\] at `times` ≥ 0 \[s\], in any order.
+    /// Creep: a `table` of times ≥ 0 \[s\] and compliances \[1/Pa\], in any order. Columns `times` and `compliances` become
+    /// its rows by `std::iter::zip(times, compliances).collect::<Vec<_>>()`.
     ///
     /// # Errors
-    /// If the slices differ in length, there are fewer than four values, one is not finite and positive, a time is
-    /// negative or given twice, or J decreases by more than the scatter of the data explains:
+    /// If there are fewer than four rows, a value is not finite and positive, a time is negative or given twice, or J decreases by more than the scatter of the data explains:
     /// [`Error::Table`](crate::Error::Table).
-    pub fn creep(times: &[f64], compliances: &[f64]) -> Result<Measurements> {
-        Measurements::from_slices(Experiment::Creep, times, "creep compliances", &[compliances])
+    pub fn creep(table: &[(f64, f64)]) -> Result<Measurements> {
+        Measurements::from_table(Experiment::Creep, table.iter().map(|&(time, compliance)| (time, vec![compliance])))
     }
 
-    /// Relaxation `moduli` \[Pa\] at `times` ≥ 0 \[s\], in any order.
+    /// Relaxation: a `table` of times ≥ 0 \[s\] and moduli \[Pa\], in any order.
     ///
     /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many
     /// times as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five
@@ -79,30 +78,29 @@ impl Measurements {
     /// ```
     /// use viscocontact::rheology::{Measurements, Rheology};
     ///
-    /// let times = [0.01, 0.1, 0.3, 1.0, 3.0, 10.0];
-    /// let moduli = times.map(|t: f64| 1.0e6 + 2.0e6 * (-t).exp());
-    /// let body = Measurements::relaxation(&times, &moduli)?.fit()?;
+    /// let table = [0.01, 0.1, 0.3, 1.0, 3.0, 10.0].map(|t: f64| (t, 1.0e6 + 2.0e6 * (-t).exp()));
+    /// let body = Measurements::relaxation(&table)?.fit()?;
     /// assert!((body.creep_compliance(0.0) * 3.0e6 - 1.0).abs() < 1e-4);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
     /// As [`Measurements::creep`]; G may not increase.
-    pub fn relaxation(times: &[f64], moduli: &[f64]) -> Result<Measurements> {
-        Measurements::from_slices(Experiment::Relaxation, times, "relaxation moduli", &[moduli])
+    pub fn relaxation(table: &[(f64, f64)]) -> Result<Measurements> {
+        Measurements::from_table(Experiment::Relaxation, table.iter().map(|&(time, modulus)| (time, vec![modulus])))
     }
 
-    /// `storage` and `loss` moduli \[Pa\] at the angular frequencies `omega` > 0 \[rad/s\], in any order.
+    /// Dynamic moduli: a `table` of angular frequencies > 0 \[rad/s\], storage moduli and loss moduli \[Pa\], in any order.
     ///
     /// ```
     /// use viscocontact::rheology::{GeneralizedMaxwell, Measurements, Rheology};
     ///
     /// let truth = GeneralizedMaxwell::new(1.0e6, &[(4.0e6, 1.0)])?;
     /// let spectrum = truth.creep_spectrum().unwrap().relaxation();
-    /// let omega: Vec<f64> = (-8..=8).map(|k| 10f64.powf(0.25 * f64::from(k))).collect();
-    /// let storage: Vec<f64> = omega.iter().map(|&omega| spectrum.storage_modulus(omega)).collect();
-    /// let loss: Vec<f64> = omega.iter().map(|&omega| spectrum.loss_modulus(omega)).collect();
-    /// let body = Measurements::dynamic(&omega, &storage, &loss)?.fit()?;
+    /// let omega = (-8..=8).map(|k| 10f64.powf(0.25 * f64::from(k)));
+    /// let table: Vec<(f64, f64, f64)> =
+    ///     omega.map(|omega| (omega, spectrum.storage_modulus(omega), spectrum.loss_modulus(omega))).collect();
+    /// let body = Measurements::dynamic(&table)?.fit()?;
     /// assert!((body.creep_compliance(2.0) / truth.creep_compliance(2.0) - 1.0).abs() < 1e-4);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
@@ -110,18 +108,14 @@ impl Measurements {
     /// # Errors
     /// As [`Measurements::creep`]; frequencies and both moduli must be positive, and G′ may not decrease with the
     /// frequency.
-    pub fn dynamic(omega: &[f64], storage: &[f64], loss: &[f64]) -> Result<Measurements> {
-        Measurements::from_slices(Experiment::Dynamic, omega, "storage and loss moduli", &[storage, loss])
+    pub fn dynamic(table: &[(f64, f64, f64)]) -> Result<Measurements> {
+        let rows = table.iter().map(|&(omega, storage, loss)| (omega, vec![storage, loss]));
+        Measurements::from_table(Experiment::Dynamic, rows)
     }
 
-    fn from_slices(experiment: Experiment, x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Measurements> {
-        columns.iter().try_for_each(|column| exact_length(field, column.len(), x.len()))?;
-        let row = |(k, &x): (usize, &f64)| Row {
-            place: Place::Entry(k),
-            x,
-            values: columns.iter().map(|column| column[k]).collect(),
-        };
-        Measurements::from_rows(experiment, x.iter().enumerate().map(row).collect())
+    fn from_table(experiment: Experiment, table: impl Iterator<Item = (f64, Vec<f64>)>) -> Result<Measurements> {
+        let row = |(k, (x, values))| Row { place: Place::Entry(k), x, values };
+        Measurements::from_rows(experiment, table.enumerate().map(row).collect())
     }
 
     fn from_rows(experiment: Experiment, mut rows: Vec<Row>) -> Result<Measurements> {
@@ -159,8 +153,8 @@ impl Measurements {
     /// ```
     /// use viscocontact::rheology::{Material, Measurements, Rheology};
     ///
-    /// let times = [0.1, 1.0, 10.0, 100.0, 1000.0];
-    /// let rod = Measurements::creep(&times, &[5.0e-10, 5.3e-10, 5.8e-10, 6.5e-10, 7.4e-10])?.fit_tension()?;
+    /// let table = [(0.1, 5.0e-10), (1.0, 5.3e-10), (10.0, 5.8e-10), (100.0, 6.5e-10), (1000.0, 7.4e-10)];
+    /// let rod = Measurements::creep(&table)?.fit_tension()?;
     /// let (nu, strain) = (0.38, rod.creep_compliance(10.0));
     /// let body = Material::from_tension(rod, nu)?;
     /// assert!((body.contact_compliance(10.0) / ((1.0 - nu * nu) * strain) - 1.0).abs() < 1e-15);

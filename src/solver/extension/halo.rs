@@ -53,6 +53,11 @@ impl HaloRows {
         self.rows[0].as_ref().map(|halo| &halo.values[..])
     }
 
+    /// The values of the row after the local rows, if another rank holds it.
+    pub(crate) fn after(&self) -> Option<&[f64]> {
+        self.rows[1].as_ref().map(|halo| &halo.values[..])
+    }
+
     /// The values of one of the rows.
     pub(super) fn row(&self, row: usize) -> &[f64] {
         self.rows.iter().flatten().find(|halo| halo.row == row).map_or(&[], |halo| &halo.values)

@@ -11,7 +11,7 @@ fn read(text: &str) -> Result<CreepSeries> {
 
 #[test]
 fn files_come_in_many_shapes() {
-    let plain = Measurements::creep(&[1.0, 10.0, 100.0, 1000.0], &[1.0e-9, 1.1e-9, 1.3e-9, 1.4e-9])
+    let plain = Measurements::creep(&[(1.0, 1.0e-9), (10.0, 1.1e-9), (100.0, 1.3e-9), (1000.0, 1.4e-9)])
         .and_then(|table| table.fit())
         .unwrap();
     for text in [
