@@ -20,6 +20,8 @@ const MOST_CELLS: usize = isize::MAX as usize / size_of::<f64>();
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "serialised::Rectangle", into = "serialised::Rectangle"))]
 pub struct Grid {
     cells: [usize; 2],
     spacing: [f64; 2],
@@ -118,6 +120,34 @@ impl Grid {
     /// Coordinate of the `index`-th cell centre along `axis`; exactly antisymmetric about zero.
     pub(crate) fn coordinate(&self, axis: usize, index: usize) -> f64 {
         (2 * index as i64 + self.start[axis]) as f64 * (0.5 * self.spacing[axis])
+    }
+}
+
+/// A grid as others than checkpoints have it: `cells` and `spacing` \[m\], checked as [`Grid::new`] does.
+#[cfg(feature = "serde")]
+mod serialised {
+    use super::Grid;
+    use crate::error::Error;
+
+    #[derive(serde::Serialize, serde::Deserialize)]
+    pub(super) struct Rectangle {
+        cells: [usize; 2],
+        spacing: [f64; 2],
+    }
+
+    impl From<Grid> for Rectangle {
+        fn from(grid: Grid) -> Rectangle {
+            Rectangle { cells: grid.cells, spacing: grid.spacing }
+        }
+    }
+
+    impl TryFrom<Rectangle> for Grid {
+        type Error = Error;
+
+        fn try_from(Rectangle { cells, spacing }: Rectangle) -> Result<Grid, Error> {
+            Grid::new(cells, [0, 1].map(|axis| spacing[axis] * cells[axis] as f64))?;
+            Ok(Grid::of_spacing(cells, spacing))
+        }
     }
 }
 

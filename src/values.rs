@@ -2,10 +2,13 @@
 
 use std::fmt;
 
-/// Prints the number of values of a field in its place.
-#[expect(clippy::ptr_arg, reason = "derived code passes the field as it is")]
-pub(crate) fn counted<T>(values: &Vec<T>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    write!(f, "{} values", values.len())
+/// The values of a field, of which `Debug` prints the number.
+pub(crate) struct Counted<'a, T>(pub(crate) &'a [T]);
+
+impl<T> fmt::Debug for Counted<'_, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} values", self.0.len())
+    }
 }
 
 /// Declares a struct whose fields are read by methods named as they are, with their documentation, and changed by methods

@@ -1,17 +1,14 @@
 //! Distributions of gap and pressure over the surface.
 
-use educe::Educe;
-
 use crate::error::{Result, count_within, finite, positive};
-use crate::values::counted;
+use crate::values::Counted;
 
 const MAX_BINS: usize = 1_000_000;
 
 /// The distribution of a quantity over the surface: the share of the surface where the quantity is zero, and the
 /// probability density of its positive values in bins of equal width. Together they integrate to 1, as P does in
 /// Persson's theory of contact.
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Distribution {
@@ -21,9 +18,10 @@ pub struct Distribution {
     pub width: f64,
     /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere. Its sum times the
     /// width is 1 − `share_at_zero`.
-    #[educe(Debug(method(counted)))]
     pub density: Vec<f64>,
 }
+
+debug_by!(self: Distribution => share_at_zero: self.share_at_zero, width: self.width, density: Counted(&self.density));
 
 impl Distribution {
     /// The distribution of `all` values, of which `positive_values` are positive and the rest are zero.

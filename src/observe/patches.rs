@@ -1,9 +1,7 @@
 //! Connected patches of a contact.
 
-use educe::Educe;
-
 use crate::error::{Result, count_within, exact_length, finite, non_negative};
-use crate::values::counted;
+use crate::values::Counted;
 use crate::{Grid, memory};
 
 /// One patch of contact.
@@ -44,17 +42,16 @@ pub struct Patch {
 /// assert_eq!(Patches::new(&grid, &pressure, [false, true])?.all.len(), 2);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Patches {
     /// The label of each cell: 0 out of contact, k + 1 in the patch `all[k]`.
-    #[educe(Debug(method(counted)))]
     pub labels: Vec<u32>,
     /// The patches, in the order of their first cells on the grid.
-    #[educe(Debug(method(counted)))]
     pub all: Vec<Patch>,
 }
+
+debug_by!(self: Patches => labels: Counted(&self.labels), all: Counted(&self.all));
 
 impl Patches {
     /// The patches where `pressure` \[Pa\], one value per cell, is above zero. Along `periodic` axes the first and the

@@ -1,10 +1,8 @@
 //! Pressure, displacement and gap along a line of cells.
 
-use educe::Educe;
-
 use crate::Grid;
 use crate::error::{Result, within};
-use crate::values::counted;
+use crate::values::Counted;
 
 /// The index of the line of cells that contains the coordinate `at` along `across`.
 pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static str, f64)) -> Result<usize> {
@@ -16,25 +14,26 @@ pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static st
 
 /// Pressure, displacement and gap along a line of cells, see
 /// [`ViscoelasticContact::profile`](crate::ViscoelasticContact::profile).
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct LineProfile {
     /// The constant coordinate of the line, at the centres of its cells \[m\].
     pub at: f64,
     /// Cell centres along the line \[m\].
-    #[educe(Debug(method(counted)))]
     pub positions: Vec<f64>,
     /// Pressure \[Pa\].
-    #[educe(Debug(method(counted)))]
     pub pressure: Vec<f64>,
     /// Displacement \[m\].
-    #[educe(Debug(method(counted)))]
     pub displacement: Vec<f64>,
     /// Gap \[m\]; +∞ where there is nothing to touch.
-    #[educe(Debug(method(counted)))]
     pub gap: Vec<f64>,
+}
+
+debug_by! {
+    self: LineProfile =>
+    at: self.at, positions: Counted(&self.positions), pressure: Counted(&self.pressure),
+    displacement: Counted(&self.displacement), gap: Counted(&self.gap)
 }
 
 #[cfg(test)]

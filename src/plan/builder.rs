@@ -137,7 +137,8 @@ impl<'a> PlanBuilder<'a> {
         self.build_with(|_| ControlFlow::Continue(()))
     }
 
-    /// As [`PlanBuilder::build`], calling `progress` after each step of a coarse run; it may end the planning.
+    /// As [`PlanBuilder::build`], calling `progress` after each step of a coarse run; it may end the planning. A step under way
+    /// is not interrupted: coarse runs have few cells.
     ///
     /// # Errors
     /// As [`PlanBuilder::build`]; [`Error::Cancelled`] if `progress` ends it.

@@ -58,10 +58,14 @@ use crate::observe::mesh_error::MeshError;
 /// assert!((contact.approach() / exact.approach(2.0) - 1.0).abs() < 1e-3);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
+/// With the feature `serde`, its figures are serialised, and its builder is not: geometry and load may be closures. So a plan is not read
+/// back.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Plan {
     /// A builder with grid, geometry, material and settings; each can be replaced.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub builder: Builder,
     /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
     pub stepping: Stepping,

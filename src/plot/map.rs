@@ -1,8 +1,6 @@
 //! Colour maps of fields.
 
-use educe::Educe;
-
-use crate::values::counted;
+use crate::values::Counted;
 use std::path::Path;
 
 use crate::Grid;
@@ -38,8 +36,7 @@ const MIN_BAR: u32 = 200;
 /// # std::fs::remove_file(&path).unwrap();
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Map {
     /// The title above the map.
@@ -58,13 +55,17 @@ pub struct Map {
     /// The point in the middle.
     pub(super) middle: [f64; 2],
     /// Lines from point to point, drawn over the frame.
-    #[educe(Debug(method(counted)))]
     pub(super) lines: Vec<[(f64, f64); 2]>,
-    #[educe(Debug(method(counted)))]
     values: Vec<f64>,
     /// Whether each cell lies inside the outline; empty without an outline.
-    #[educe(Debug(method(counted)))]
     inside_outline: Vec<bool>,
+}
+
+debug_by! {
+    self: Map =>
+    title: self.title, quantity: self.quantity, axes: self.axes, range: self.range, blank: self.blank,
+    cells: self.cells, lengths: self.lengths, middle: self.middle, lines: Counted(&self.lines),
+    values: Counted(&self.values), inside_outline: Counted(&self.inside_outline)
 }
 
 impl Map {

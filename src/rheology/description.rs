@@ -38,6 +38,15 @@ impl Material {
     }
 }
 
+/// The line that `Display` prints. A rheology may be a closure, so that a material is not read back: save the arguments of its models, or
+/// its [`CreepSpectrum`](crate::rheology::CreepSpectrum), which is.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Material {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// One line: volume and contact modulus 1/C of each body, and its retardation times.
 ///
 /// ```

@@ -303,6 +303,19 @@ mod tests {
         there_and_back(&contact.patches().unwrap().all);
         there_and_back(rubber.report());
         there_and_back(&Accuracy::FINE);
+        there_and_back(&Grid::new([3, 7], [1.0e-3, 0.3]).unwrap());
+        let wrong = postcard::to_stdvec(&([3_usize, 0], [1.0e-3, 0.3])).unwrap();
+        assert!(postcard::from_bytes::<Grid>(&wrong).is_err());
+        let body = Material::incompressible(Elastic::new(1.0e6).unwrap());
+        let line: String = postcard::from_bytes(&postcard::to_stdvec(&body).unwrap()).unwrap();
+        assert_eq!(line, body.to_string());
+        let load = StepLoad::new(Load::force(0.5)).unwrap();
+        let sphere = Sphere::new(10.0e-3).unwrap();
+        let plan = Plan::builder(&sphere, &body, &load, 1.0).accuracy(Accuracy::COARSE).build().unwrap();
+        // the builder is left out: stepping comes first
+        let figures = postcard::to_stdvec(&plan).unwrap();
+        let (stepping, rest) = postcard::take_from_bytes::<Stepping>(&figures).unwrap();
+        assert_eq!((stepping, postcard::take_from_bytes::<Grid>(rest).unwrap().0), (plan.stepping, plan.grid));
         let creep = CreepSpectrum::new(1.0, 0.5, &[(2.0, 3.0)]).unwrap();
         there_and_back(&creep);
         there_and_back(&creep.relaxation());

@@ -15,13 +15,11 @@ pub use unit::LengthUnit;
 
 use std::fmt;
 
-use educe::Educe;
-
 use crate::Grid;
 use crate::error::{Error, LONGEST, MapError, Result, exact_length};
 use crate::geometry::Geometry;
 use crate::geometry::height_spectrum::HeightSpectrum;
-use crate::values::counted;
+use crate::values::Counted;
 
 /// Distances from a point below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-10;
@@ -58,13 +56,11 @@ const SAME_SPACING: f64 = 1e-12;
 /// assert_eq!(map.initial_gap(2e-6, 0.0), f64::INFINITY);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 pub struct HeightMap {
     cells: [usize; 2],
     spacing: [f64; 2],
     /// Row-major, x2 fastest; NaN where nothing was measured.
-    #[educe(Debug(method(counted)))]
     heights: Vec<f64>,
     /// The greatest known height; −∞ if there is none.
     highest: f64,
@@ -74,6 +70,12 @@ pub struct HeightMap {
     masked: bool,
     center: [f64; 2],
     periodic: bool,
+}
+
+debug_by! {
+    self: HeightMap =>
+    cells: self.cells, spacing: self.spacing, heights: Counted(&self.heights), highest: self.highest,
+    missing: self.missing, masked: self.masked, center: self.center, periodic: self.periodic
 }
 
 /// One line: numbers of points, lengths, least and greatest height, missing heights.

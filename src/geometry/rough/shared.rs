@@ -1,8 +1,6 @@
 //! Random rough surfaces distributed over ranks.
 
-use educe::Educe;
-
-use crate::values::counted;
+use crate::values::Counted;
 use std::sync::Arc;
 
 use super::{Rough, RoughSpec, heights};
@@ -19,16 +17,19 @@ const ROUNDING: f64 = 1e-6;
 ///
 /// As a [`Geometry`] it is defined at the cell centres of the local rows. Elsewhere it is NaN, which a contact refuses: to
 /// shift or turn a surface, use [`Rough`].
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 pub struct SharedRough {
     spec: RoughSpec,
     /// The local rows.
     grid: Grid,
-    #[educe(Debug(method(counted)))]
     heights: Vec<f64>,
     /// The greatest height on all ranks.
     highest: f64,
+}
+
+debug_by! {
+    self: SharedRough =>
+    spec: self.spec, grid: self.grid, heights: Counted(&self.heights), highest: self.highest
 }
 
 impl Rough {

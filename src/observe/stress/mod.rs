@@ -12,9 +12,7 @@ pub use greatest::StressPeak;
 pub use section::{StressSection, StressVolume};
 pub use tensor::Stress;
 
-use educe::Educe;
-
-use crate::values::counted;
+use crate::values::Counted;
 use num_complex::Complex64;
 
 use crate::axis::Axis;
@@ -91,16 +89,15 @@ pub struct SubsurfaceStress {
 }
 
 /// A field that acts like a pressure.
-#[derive(Clone, Educe)]
-#[educe(Debug)]
+#[derive(Clone)]
 struct Source {
-    #[educe(Debug(method(counted)))]
     field: Vec<f64>,
     /// Its transform on the padded grid.
-    #[educe(Debug(method(counted)))]
     spectrum: Vec<Complex64>,
     weights: Weights,
 }
+
+debug_by!(self: Source => field: Counted(&self.field), spectrum: Counted(&self.spectrum), weights: self.weights);
 
 impl SubsurfaceStress {
     /// The stress in the body of `kernel` with the constant Poisson's ratio `poisson_ratio`, under `pressure` \[Pa\], one value

@@ -1,6 +1,4 @@
-use educe::Educe;
-
-use crate::values::counted;
+use crate::values::Counted;
 use std::fmt;
 
 use super::{FittedSeries, MaterialFunction, Sample};
@@ -79,17 +77,20 @@ impl fmt::Display for FitWarning {
 /// assert!(creep.report().max_misfit() <= 1.0e-4);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitReport {
-    #[educe(Debug(method(counted)))]
     samples: Vec<FitSample>,
     terms: usize,
     wrong_way: f64,
-    #[educe(Debug(method(counted)))]
     interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
+}
+
+debug_by! {
+    self: FitReport =>
+    samples: Counted(&self.samples), terms: self.terms, wrong_way: self.wrong_way, interval: Counted(&self.interval),
+    warning: self.warning
 }
 
 impl FitReport {

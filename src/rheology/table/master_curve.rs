@@ -1,10 +1,8 @@
-use educe::Educe;
-
 use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
 use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
-use crate::values::counted;
+use crate::values::Counted;
 
 /// Measurements at one temperature.
 ///
@@ -16,15 +14,19 @@ use crate::values::counted;
 /// assert_eq!(at_60.temperature(), 333.15);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 pub struct Isotherm {
     temperature: f64,
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
-    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
+}
+
+debug_by! {
+    self: Isotherm =>
+    temperature: self.temperature, experiment: self.experiment, deformation: self.deformation,
+    rows: Counted(&self.rows)
 }
 
 impl Isotherm {

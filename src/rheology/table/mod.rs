@@ -7,12 +7,10 @@ mod master_curve;
 pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
-use educe::Educe;
-
 use crate::error::{Place, Result, TableError};
 use crate::rheology::CreepSeries;
 use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
-use crate::values::counted;
+use crate::values::Counted;
 pub use data::Experiment;
 use data::{Deformation, Row, validated};
 
@@ -42,18 +40,21 @@ const NOTICEABLE: f64 = 12.0;
 /// assert!(body.creep_compliance(200.0).is_nan()); // never measured
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Clone, PartialEq, Educe)]
-#[educe(Debug)]
+#[derive(Clone, PartialEq)]
 pub struct Measurements {
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
-    #[educe(Debug(method(counted)))]
     rows: Vec<Row>,
-    #[educe(Debug(method(counted)))]
     samples: Vec<Sample>,
     /// Greatest deviation of the samples from a monotone curve.
     wrong_way: f64,
+}
+
+debug_by! {
+    self: Measurements =>
+    experiment: self.experiment, deformation: self.deformation, rows: Counted(&self.rows),
+    samples: Counted(&self.samples), wrong_way: self.wrong_way
 }
 
 impl Measurements {
