@@ -8,6 +8,14 @@
 //! Passes are extrapolated by Anderson's method (J. ACM 12, 1965). An extrapolated s is kept only where the energy falls; else the plain pass
 //! follows. So a step descends from the state before it, and ends in the valley that this state belongs to.
 
+mod energy;
+mod passes;
+
+pub use passes::PassReport;
+pub(in crate::contact) use passes::Passes;
+
+use passes::KEPT;
+
 use crate::adhesion::Attraction;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
@@ -17,10 +25,9 @@ use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
 use crate::contact::window::window::Window;
 use crate::error::{AdhesionError, Result, StepError};
-use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::for_each_band;
-use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, RigidMotion, Solution, Stop};
+use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Stop};
 
 /// Greatest number of passes of a step.
 const MAX_PASSES: usize = 500;
@@ -29,121 +36,11 @@ const CHANGE: f64 = 100.0;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;
 const LOOSEST: f64 = 1e-3;
-/// Passes that are extrapolated from.
-const KEPT: usize = 3;
-/// Share of the square of a change, independent of the other changes, that counts as zero.
-const DEPENDENT: f64 = 1e-10;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
 const GREATEST_CHANGE: f64 = 0.5;
-
-/// Between the [response](PassReport::response) to a smooth change, on spheres at Tabor's numbers 0.5 to 3 at most 13, and to a jump, at least
-/// 19.
-const LEAST_OF_JUMP: f64 = 15.0;
-
-/// What the passes of a step work in, besides the trial, and how the last step went.
-#[derive(Debug, Clone)]
-pub(in crate::contact) struct Passes {
-    /// K s.
-    image: Vec<f64>,
-    /// The gap before any traction.
-    open: Vec<f64>,
-    /// s of passes that were kept, and s at the gaps that they led to, the last first.
-    kept: [[Vec<f64>; 2]; KEPT],
-    known: usize,
-    /// The change of s in the first pass.
-    first: Vec<f64>,
-    pub(in crate::contact) report: PassReport,
-}
-
-/// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at the gap that the one
-/// before it led to ([`ViscoelasticContact::passes`](crate::ViscoelasticContact::passes)).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[non_exhaustive]
-pub struct PassReport {
-    /// Passes.
-    pub passes: usize,
-    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up.
-    pub rejected: usize,
-    /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
-    pub rise: f64,
-    /// The energy of the state before the step, under the load and the creep of its end, less that of the state at its end \[J\]: what a jump loses.
-    /// Where nothing jumps, it is of second order in the length of the step, of either sign.
-    pub released: f64,
-    /// By how many times the response of the surfaces enlarges a change of the attraction: 1 where it is weak, above 15 in a jump
-    /// ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)).
-    pub response: f64,
-}
-
-impl PassReport {
-    /// Whether the surfaces snapped together or apart.
-    pub(in crate::contact) fn jumped(&self) -> bool {
-        self.response > LEAST_OF_JUMP
-    }
-}
-
-/// Sums over the cells of a pass.
-struct Found {
-    /// Energy over the area of a cell.
-    energy: f64,
-    /// The sum of its parts, and of c z K z.
-    scale: f64,
-    /// The greatest change of s over the greatest traction.
-    change: f64,
-}
-
-impl Passes {
-    /// Fields for each cell, with s of the trial.
-    pub(in crate::contact) const FIELDS: usize = 3 + 2 * KEPT + 1;
-
-    fn new(cells: usize) -> Passes {
-        let field = || vec![0.0; cells];
-        let kept = std::array::from_fn(|_| [field(), field()]);
-        Passes { image: field(), open: field(), kept, known: 0, first: field(), report: PassReport::default() }
-    }
-
-    /// |z − s| at the end of a step that was solved, at its start, and at the start of the step before.
-    pub(in crate::contact) fn weights(&self) -> [&[f64]; 3] {
-        self.kept.each_ref().map(|[weights, _]| &weights[..])
-    }
-
-    fn keep_weights(&mut self, solutions: [&Solution; 3]) {
-        for ([weights, _], Solution { pressure, attraction, .. }) in self.kept.iter_mut().zip(solutions) {
-            for (weight, (z, s)) in weights.iter_mut().zip(pressure.iter().zip(attraction)) {
-                // no cell counts as one that the bodies have yet to meet
-                *weight = (z - s).abs().max(f64::MIN_POSITIVE);
-            }
-        }
-    }
-
-    /// The next s: from the kept passes, the last of which led from s to g, with g − Σ γ (g − g′), where γ makes the change f = g − s
-    /// less Σ γ (f − f′) as small as it can.
-    fn extrapolate(&self, state: &State, greatest: f64, next: &mut [f64]) {
-        const OTHERS: usize = KEPT - 1;
-        let [[s, g], others @ ..] = &self.kept;
-        let known = self.known - 1;
-        let change = |k: usize, j: usize| (g[k] - s[k]) - (others[j][1][k] - others[j][0][k]);
-        let sums = state.region.rows().sum_terms(|k| {
-            let mut terms = [0.0; OTHERS * (OTHERS + 1)];
-            for i in 0..known {
-                let own = change(k, i);
-                terms[OTHERS * OTHERS + i] = own * (g[k] - s[k]);
-                (0..known).for_each(|j| terms[OTHERS * i + j] = own * change(k, j));
-            }
-            Some(terms)
-        });
-        let gram: [[f64; OTHERS]; OTHERS] = std::array::from_fn(|i| std::array::from_fn(|j| sums[OTHERS * i + j]));
-        let weights = solve_normal_equations(&gram, std::array::from_fn(|i| sums[OTHERS * OTHERS + i]), DEPENDENT);
-        for_each_band([next], |first, [next]| {
-            for (next, k) in next.iter_mut().zip(first..) {
-                let moved = (0..known).map(|j| weights[j] * (g[k] - others[j][1][k])).sum::<f64>();
-                *next = (g[k] - moved).clamp(0.0, greatest);
-            }
-        });
-    }
-}
 
 /// A step of surfaces that attract each other.
 pub(super) struct AttractedStep<'a> {
@@ -363,91 +260,6 @@ impl AttractedStep<'_> {
         let step =
             Step { interval: self.step.interval, loads: &loads, indenter, tolerance, cancelled: self.step.cancelled };
         solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
-    }
-
-    /// Keeps s of the pass and s at the gap that it led to; energy and change of the pass. The energy is that of the Lagrangian, in which the
-    /// error of the pass enters with its square.
-    fn find(&self, wanted: Freedom, own: &mut Passes, trial: &Trial) -> Found {
-        let AttractedStep { state, law, given: [c, _], .. } = *self;
-        let (rows, solution, gap) = (state.region.rows(), &trial.solution, &trial.gap);
-        let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
-        let height = |k: usize| gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
-        let [s, g] = &mut own.kept[0];
-        s.copy_from_slice(&solution.attraction);
-        for_each_band([&mut *g], |first, [g]| {
-            for (g, k) in g.iter_mut().zip(first..) {
-                let h = if solution.pressure[k] > 0.0 { 0.0 } else { height(k).max(0.0) };
-                *g = if h.is_finite() { law.traction(h) } else { 0.0 };
-            }
-        });
-        let (s, g, image) = (&*s, &*g, &own.image);
-        let cell = |k: usize| {
-            let (z, h) = (solution.pressure[k], height(k));
-            let [open, wall] = if z > 0.0 { [0.0, z * h] } else { [h.max(0.0), 0.0] };
-            [z - s[k], solution.potential[k] - image[k], open, wall]
-        };
-        let [energy, parts] = self.energy(wanted, modes.physical(motion), cell);
-        let pressed = rows.sum_of_pairs(&solution.pressure, &solution.potential, |z, v| c * z * v);
-        let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
-        let change = changes.fold(0.0, f64::max) / law.traction(0.0);
-        Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change }
-    }
-
-    /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from z − s, K (z − s), the gap and the
-    /// work of the wall of a cell.
-    fn energy(&self, wanted: Freedom, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> [f64; 2] {
-        let AttractedStep { state, law, given: [c, _], .. } = *self;
-        let [elastic, attracted, wall] = state.region.rows().sum_terms(|k| {
-            let [traction, potential, open, wall] = cell(k);
-            open.is_finite().then(|| [0.5 * c * traction * potential, law.energy(open), wall])
-        });
-        let of_load = match self.step.loads[0] {
-            Load::Force { .. } => -wanted.total * motion.at(wanted.point),
-            Load::Spring { stiffness, drive, .. } => {
-                let extended = drive - self.step.indenter.gap().datum - motion.approach;
-                0.5 * stiffness * extended * extended / self.area()
-            }
-            Load::Approach { .. } => 0.0,
-        };
-        [elastic - attracted - wall + of_load, elastic.abs() + attracted + of_load.abs()]
-    }
-
-    /// The energy over the area of a cell of the state before the step, under the load and the creep of its end.
-    fn energy_at_start(&self, wanted: Freedom, own: &Passes, trial: &Trial) -> f64 {
-        let (state, step, c) = (self.state, self.step, self.given[0]);
-        let Solution { pressure, attraction, potential, .. } = &state.current.solution;
-        let (RigidMotion { approach, tilt }, prescribed) = (state.current.motions[0], step.prescribed(0));
-        let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
-        let freedom = trial.free[0];
-        let motion = RigidMotion {
-            approach: free(freedom.translation, approach - step.indenter.gap().datum - prescribed.approach),
-            tilt: [0, 1].map(|axis| free(freedom.tilt[axis], tilt[axis] - prescribed.tilt[axis])),
-        };
-        let cell = |k: usize| {
-            let h = own.open[k] + c * potential[k] - motion.at(state.region.center(k));
-            let traction = pressure[k] - attraction[k];
-            // the wall of the state before holds its cells while the gap changes by what the step begins with
-            let [open, wall] = if pressure[k] > 0.0 { [0.0, traction * h] } else { [h.max(0.0), 0.0] };
-            [traction, potential[k], open, wall]
-        };
-        self.energy(wanted, motion, cell)[0]
-    }
-
-    /// How the surfaces respond: of the change e of s from its guess, a first pass finds r, and e·e/(e·r) is 1/(1 − λ) for the rate λ of the
-    /// passes.
-    fn response(&self, own: &Passes, trial: &Trial) -> f64 {
-        let (state, reach) = (self.state, trial.reach);
-        if state.is_undisturbed() {
-            return 1.0;
-        }
-        let [now, before] = [&state.current.solution.attraction, &state.previous.solution.attraction];
-        let [square, first] = state.region.rows().sum_terms(|k| {
-            let change = trial.solution.attraction[k] - (now[k] + reach * (now[k] - before[k]));
-            Some([change * change, change * own.first[k]])
-        });
-        let ratio = square / first;
-        // no change has no ratio
-        if ratio < 0.0 { f64::INFINITY } else { ratio.max(1.0) }
     }
 
     /// Force over Σ p \[m²\].
