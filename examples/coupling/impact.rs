@@ -298,7 +298,7 @@ fn restitution(args: &Args, dots: [Vec<(f64, f64)>; 2]) -> Result<(), Box<dyn Er
         Legend::LowerLeft,
     );
     chart.scale = Scale::LogX;
-    let ratios: Vec<f64> = (0..=36).map(|k| 10f64.powf(-2.0 + f64::from(k) / 9.0)).collect();
+    let ratios: Vec<f64> = (0..=108).map(|k| 10f64.powf(-2.0 + f64::from(k) / 27.0)).collect();
     let names = ["Maxwell, foundation", "relaxes to a third (Zener), foundation"];
     for ((name, maxwell), color) in names.into_iter().zip([true, false]).zip(COLORS) {
         let mut curve = Vec::new();

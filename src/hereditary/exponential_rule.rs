@@ -2,7 +2,7 @@
 
 use educe::Educe;
 
-use crate::hereditary::moments::{moments as moments_of, slopes as slopes_of};
+use crate::hereditary::moments::{Relaxed, RelaxedSteps, moments as moments_of, slopes as slopes_of};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 /// How the displacement is taken to change with time within a step.
@@ -65,6 +65,8 @@ pub(crate) struct ExponentialRule {
     pub(super) greatest: f64,
     /// How often a prediction was made again, because u_old was negative somewhere.
     pub(super) repeated: u64,
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    relaxed: RelaxedSteps,
 }
 
 /// What a step does to a field that follows the rule.
@@ -98,8 +100,6 @@ pub(crate) struct Weights {
     known: usize,
 }
 
-/// e^(−700) is near the smallest normal number: what decays further counts as zero.
-const MAX_EXPONENT: f64 = 700.0;
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
 const LONGEST_CONTINUED: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
@@ -115,6 +115,7 @@ impl ExponentialRule {
     pub(crate) fn new(creep: &CreepSpectrum) -> ExponentialRule {
         let relaxation = creep.relaxation();
         let branches = vec![[0.0; 4]; relaxation.terms().len()];
+        let relaxed = RelaxedSteps::new(branches.len());
         let weights = Weights { degree: 1, branches, span: 1.0, ..Weights::default() };
         ExponentialRule {
             relaxation,
@@ -127,6 +128,7 @@ impl ExponentialRule {
             tried: weights,
             greatest: 0.0,
             repeated: 0,
+            relaxed,
         }
     }
 
@@ -188,7 +190,8 @@ impl ExponentialRule {
         let dt = self.tried.dt;
         let past = if self.known > 0 { self.spans[0] / dt } else { 0.0 };
         let terms = self.relaxation.terms();
-        let moments = move |&(modulus, tau): &(f64, f64)| moments_of(dt / tau, past).map(|moment| modulus * moment);
+        let moments =
+            move |&(modulus, tau): &(f64, f64)| moments_of(Relaxed::new(dt / tau), past).map(|moment| modulus * moment);
         let missing = self.missing().map(|(degree, _)| degree - 1);
         let whole = missing.map_or(f64::INFINITY, |k| {
             slopes_of(past)[k] * self.viscous() + terms.iter().map(|term| moments(term)[k]).sum::<f64>()
@@ -308,14 +311,18 @@ impl ExponentialRule {
         let viscosity = if self.has_dashpot() { self.relaxation.viscosity() / dt } else { 0.0 };
 
         let (mut gains, mut defects) = ([0.0; 3], [0.0; 2]);
-        for (weights, &(modulus, tau)) in self.tried.branches.iter_mut().zip(self.relaxation.terms()) {
-            let z = dt / tau;
-            let decay = if z < MAX_EXPONENT { (-z).exp() } else { 0.0 };
-            let moments = if jump { [1.0, 0.0, 0.0] } else { moments_of(z, past) };
+        let terms = self.tried.branches.iter_mut().zip(self.relaxation.terms());
+        for (branch, (weights, &(modulus, tau))) in terms.enumerate() {
+            let (decay, moments) = if jump {
+                (1.0, [1.0, 0.0, 0.0])
+            } else {
+                let relaxed = self.relaxed.of(branch, dt / tau);
+                (relaxed.decay, moments_of(relaxed, past))
+            };
             let mut own = [0, 1, 2].map(|k| if k < degree { modulus * moments[k] / products[k] } else { 0.0 });
             (0..2).for_each(|k| defects[k] += modulus * moments[k + 1] / products[k + 1]);
             if lacking > 0 {
-                let late = moments_of(self.spans[0] / tau, late_past);
+                let late = moments_of(self.relaxed.of(branch, self.spans[0] / tau), late_past);
                 // over Δ^k instead of Δ′^k
                 own[lacking - 1] +=
                     decay * modulus * late[lacking - 1] * past.powi(lacking as i32) / products[lacking - 1];

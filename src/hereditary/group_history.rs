@@ -4,30 +4,29 @@ use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 
 /// Rounding of a displacement between 0 and 1.
 const ROUNDING: f64 = 1e-12;
+/// Pasts that differ by less are one.
+const ALIKE: f64 = 1e-14;
 
 /// Displacements W of groups of elements that follow one [`ExponentialRule`]: 1 is the displacement of an element in contact, 0 that of
 /// an undisturbed one.
-///
-/// Each group has a row: W, its differences d₁ and d₂, then q_i for each relaxation time.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct GroupHistory {
     rule: ExponentialRule,
-    rows: Vec<f64>,
+    /// W of each group, its differences d₁ and d₂, then q_i of each relaxation time.
+    columns: Vec<Vec<f64>>,
+    /// The third difference over the step being committed.
+    twists: Vec<f64>,
 }
 
-/// Numbers of a row before its q_i.
+/// Number of columns before the q_i.
 const HEAD: usize = 3;
 
 impl GroupHistory {
     /// No groups, with room for some.
     pub(crate) fn new(rule: ExponentialRule, groups: usize) -> GroupHistory {
-        let rows = Vec::with_capacity(groups * (HEAD + rule.branches()));
-        GroupHistory { rule, rows }
-    }
-
-    fn stride(&self) -> usize {
-        HEAD + self.rule.branches()
+        let columns = (0..HEAD + rule.branches()).map(|_| Vec::with_capacity(groups)).collect();
+        GroupHistory { rule, columns, twists: Vec::with_capacity(groups) }
     }
 
     /// The rule; its compliance is that of the step predicted last.
@@ -43,7 +42,7 @@ impl GroupHistory {
     /// Copies another without reallocating where there is room.
     pub(crate) fn copy_from(&mut self, other: &GroupHistory) {
         self.rule.clone_from(&other.rule);
-        self.rows.clone_from(&other.rows);
+        self.columns.clone_from(&other.columns);
     }
 
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial of lower degree is
@@ -58,27 +57,34 @@ impl GroupHistory {
         }
     }
 
+    /// Each column is as long as the others, and the loops over groups compile to vector instructions.
     fn free_displacements(&self, free: &mut Vec<f64>) {
         let tried = &self.rule.tried;
         free.clear();
-        free.extend(self.rows.chunks_exact(self.stride()).map(|row| {
-            let (head, branches) = row.split_at(HEAD);
-            let stress: f64 = branches.iter().zip(&tried.branches).map(|(q, weights)| weights[0] * q).sum();
-            tried.past.iter().zip(head).map(|(weight, value)| weight * value).sum::<f64>() - tried.c * stress
-        }));
+        free.extend(self.columns[0].iter().map(|w| tried.past[0] * w));
+        let of_stress = tried.branches.iter().map(|weights| -tried.c * weights[0]);
+        let weights = tried.past[1..].iter().copied().chain(of_stress);
+        for (weight, column) in weights.zip(&self.columns[1..]).filter(|(weight, _)| *weight != 0.0) {
+            free.iter_mut().zip(column).for_each(|(free, value)| *free += weight * value);
+        }
     }
 
     /// Accepts the step predicted last, which ends at the displacements `now`.
     pub(crate) fn commit(&mut self, now: &[f64]) {
         self.rule.commit();
-        let committed = &self.rule.committed;
-        let stride = self.stride();
-        for (row, &now) in self.rows.chunks_exact_mut(stride).zip(now) {
-            let change = now - row[0];
-            let bend = change - committed.ratios[0] * row[1];
-            let twist = bend - committed.ratios[1] * row[2];
-            row[..HEAD].copy_from_slice(&[now, change, bend]);
-            for (q, &[decay, one, two, three]) in row[HEAD..].iter_mut().zip(&committed.branches) {
+        let GroupHistory { rule, columns, twists } = self;
+        let [displacements, changes, bends, stresses @ ..] = &mut columns[..] else { return };
+        let [of_change, of_bend] = rule.committed.ratios;
+        twists.resize(now.len(), 0.0);
+        for (k, &now) in now.iter().enumerate() {
+            let change = now - displacements[k];
+            let bend = change - of_change * changes[k];
+            twists[k] = bend - of_bend * bends[k];
+            (displacements[k], changes[k], bends[k]) = (now, change, bend);
+        }
+        for (column, &[decay, one, two, three]) in stresses.iter_mut().zip(&rule.committed.branches) {
+            let differences = changes.iter().zip(&*bends).zip(&*twists);
+            for (q, ((change, bend), twist)) in column.iter_mut().zip(differences) {
                 *q = decay * *q + one * change + two * bend + three * twist;
             }
         }
@@ -87,44 +93,34 @@ impl GroupHistory {
     /// Whether it may be the history of so many groups by the rule of `other`; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &GroupHistory, groups: usize) -> bool {
-        let is_finite = self.rows.iter().all(|value| value.is_finite());
-        self.rule.fits(&other.rule) && self.rows.len() == groups * self.stride() && is_finite
+        let is_whole = |column: &Vec<f64>| column.len() == groups && column.iter().all(|value| value.is_finite());
+        self.rule.fits(&other.rule) && self.columns.len() == other.columns.len() && self.columns.iter().all(is_whole)
     }
 
     /// The displacement of each group.
-    pub(crate) fn displacements(&self) -> impl Iterator<Item = f64> + '_ {
-        self.rows.chunks_exact(self.stride()).map(|row| row[0])
+    pub(crate) fn displacements(&self) -> &[f64] {
+        &self.columns[0]
     }
 
     /// Adds an undisturbed group after the others.
     pub(crate) fn push(&mut self) {
-        self.rows.resize(self.rows.len() + self.stride(), 0.0);
+        self.columns.iter_mut().for_each(|column| column.push(0.0));
     }
 
     /// Splits a group into two with the same past.
     pub(crate) fn split(&mut self, group: usize) {
-        let (stride, end) = (self.stride(), self.rows.len());
-        let start = group * stride;
-        self.rows.resize(end + stride, 0.0);
-        self.rows.copy_within(start..end, start + stride);
+        self.columns.iter_mut().for_each(|column| column.insert(group, column[group]));
     }
 
     /// Merges a group into the one before it, whose past is kept.
     pub(crate) fn merge(&mut self, group: usize) {
-        let stride = self.stride();
-        self.rows.drain(group * stride..(group + 1) * stride);
+        self.columns.iter_mut().for_each(|column| _ = column.remove(group));
     }
 
     /// Whether a group and the one before it have the same past to rounding.
     pub(crate) fn is_like_the_one_before(&self, group: usize) -> bool {
-        let stride = self.stride();
-        let [before, row] = [group - 1, group].map(|group| &self.rows[group * stride..(group + 1) * stride]);
-        let same = |scale: f64, a: f64, b: f64| (a - b).abs() <= 1e-14 * scale;
-        before[..HEAD].iter().zip(&row[..HEAD]).all(|(&a, &b)| same(1.0, a, b))
-            && before[HEAD..]
-                .iter()
-                .zip(&row[HEAD..])
-                .zip(self.rule.moduli())
-                .all(|((&a, &b), modulus)| same(modulus, a, b))
+        let scales = [1.0; HEAD].into_iter().chain(self.rule.moduli());
+        let mut columns = self.columns.iter().zip(scales);
+        columns.all(|(column, scale)| (column[group] - column[group - 1]).abs() <= ALIKE * scale)
     }
 }

@@ -1,5 +1,7 @@
 //! Integrals of polynomials against a relaxation.
 
+/// e^(−700) is near the smallest normal number: what decays further counts as zero.
+const MAX_EXPONENT: f64 = 700.0;
 /// Terms of the series of φ₄ for z < 1: the last is below the rounding of 1.
 const SERIES_TERMS: usize = 18;
 
@@ -20,14 +22,62 @@ fn phi(z: f64) -> [f64; 4] {
     [first, second, third, (1.0 / 6.0 - third) / z]
 }
 
+/// What a relaxation leaves of a step of length z relaxation times.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Relaxed {
+    z: f64,
+    /// e^(−z), 0 where that is near the smallest normal number.
+    pub(super) decay: f64,
+    phi: [f64; 4],
+}
+
+impl Relaxed {
+    pub(super) fn new(z: f64) -> Relaxed {
+        Relaxed { z, decay: if z < MAX_EXPONENT { (-z).exp() } else { 0.0 }, phi: phi(z) }
+    }
+}
+
+/// The last few [`Relaxed`] of each relaxation time: a rule asks for a step again where it is tried with less degree, and when
+/// the next step corrects it. Copies begin empty.
+#[derive(Debug, Default)]
+pub(super) struct RelaxedSteps(Vec<([Relaxed; KEPT], usize)>);
+
+/// A step, its half, and the step before.
+const KEPT: usize = 3;
+
+impl Clone for RelaxedSteps {
+    fn clone(&self) -> RelaxedSteps {
+        RelaxedSteps::new(self.0.len())
+    }
+
+    fn clone_from(&mut self, _: &RelaxedSteps) {}
+}
+
+impl RelaxedSteps {
+    /// For this number of relaxation times.
+    pub(super) fn new(times: usize) -> RelaxedSteps {
+        RelaxedSteps(vec![Default::default(); times])
+    }
+
+    pub(super) fn of(&mut self, branch: usize, z: f64) -> Relaxed {
+        let Some((kept, next)) = self.0.get_mut(branch) else { return Relaxed::new(z) };
+        if let Some(relaxed) = kept.iter().find(|relaxed| relaxed.z == z && z > 0.0) {
+            return *relaxed;
+        }
+        kept[*next] = Relaxed::new(z);
+        let relaxed = kept[*next];
+        *next = (*next + 1) % KEPT;
+        relaxed
+    }
+}
+
 /// I_k = ∫ e^(−z (1 − s/Δ)) N_k′(s) ds over a step of length Δ, over Δ^k, for the polynomials of Newton's form
 ///
 /// N₁ = s, N₂ = s (s − Δ), N₃ = s (s − Δ)(s + Δ′),
 ///
 /// where `past` = Δ′/Δ is the step before. All are positive: by parts I_k = −(z/Δ) ∫ e^… N_k ds for k > 1, where N₂ and N₃ are
 /// negative inside the step. That form serves for z < 1, where the other cancels.
-pub(super) fn moments(z: f64, past: f64) -> [f64; 3] {
-    let [first, second, third, fourth] = phi(z);
+pub(super) fn moments(Relaxed { z, phi: [first, second, third, fourth], .. }: Relaxed, past: f64) -> [f64; 3] {
     if z < 1.0 {
         let bend = z * (second - 2.0 * third);
         [first, bend, z * (past * second - 2.0 * (past - 1.0) * third - 6.0 * fourth)]
@@ -76,7 +126,7 @@ mod tests {
         for exponent in -12..=8 {
             let z = 10f64.powf(0.5 * f64::from(exponent));
             for r in [0.0, 0.2, 1.0, 5.0] {
-                let m = moments(z, r);
+                let m = moments(Relaxed::new(z), r);
                 let exact = [
                     quadrature(z, 1.0, |_| 1.0),
                     quadrature(z, 0.0, |s| 2.0 * s - 1.0),
@@ -93,11 +143,11 @@ mod tests {
     /// Both forms meet where one takes over, and the limits are right at zero time and at very long times.
     #[test]
     fn moments_have_their_limits() {
-        let (below, above) = (moments(1.0 - 1e-12, 0.8), moments(1.0, 0.8));
+        let (below, above) = (moments(Relaxed::new(1.0 - 1e-12), 0.8), moments(Relaxed::new(1.0), 0.8));
         below.iter().zip(&above).for_each(|(a, b)| assert!((a / b - 1.0).abs() < 1e-11, "{a:e} {b:e}"));
-        assert_eq!(moments(0.0, 1.0), [1.0, 0.0, 0.0]);
+        assert_eq!(moments(Relaxed::new(0.0), 1.0), [1.0, 0.0, 0.0]);
         for z in [1e12, 1e200, f64::INFINITY] {
-            for (m, slope) in moments(z, 2.0).into_iter().zip(slopes(2.0)) {
+            for (m, slope) in moments(Relaxed::new(z), 2.0).into_iter().zip(slopes(2.0)) {
                 let limit = slope / z; // what is remembered is the slope at the end
                 assert!((m - limit).abs() <= 3e-12 * limit, "{z:e}: {m:e} {limit:e}");
             }

@@ -45,11 +45,13 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
         ("level", column(|state| state.level)),
         ("approach", column(|state| state.approach)),
         ("stiffness", column(|state| state.stiffness)),
+        ("load_stiffness", column(|state| state.load_stiffness)),
         ("area", column(|state| state.area)),
         ("cells", column(|state| state.cells as f64)),
         ("patches", column(|state| state.patches as f64)),
     ];
-    let tilts: Vec<f64> = table.iter().flat_map(|state| state.tilt).collect();
+    let [tilts, tilt_rates] = [|state: &ElasticState| state.tilt, |state: &ElasticState| state.tilt_rate]
+        .map(|of| table.iter().flat_map(of).collect::<Vec<f64>>());
     let Rest { approach, tilt: [tilt1, tilt2] } = states.rest;
     let given = states.tilt.map(|tilt| match tilt {
         Tilt::Fixed(angle) => [0.0, angle],
@@ -62,6 +64,7 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
             archive.add(name, &[count], values)?;
         }
         archive.add("tilt", &[count, 2], &tilts)?;
+        archive.add("tilt_rate", &[count, 2], &tilt_rates)?;
         archive.add("rest", &[3], &[approach, tilt1, tilt2])?;
         archive.add("given_tilt", &[2, 2], given.as_flattened())?;
         archive.add("error_first_level_poisson", &[3], &sizes)?;
@@ -103,13 +106,16 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let count = arrays.get("level").map_or(0, Vec::len);
     let [levels, approaches, stiffnesses] =
         [array("level", count)?, array("approach", count)?, array("stiffness", count)?];
-    let [areas, cells, patches] = [array("area", count)?, array("cells", count)?, array("patches", count)?];
-    let tilts = array("tilt", 2 * count)?;
+    let [load_stiffnesses, areas] = [array("load_stiffness", count)?, array("area", count)?];
+    let [cells, patches] = [array("cells", count)?, array("patches", count)?];
+    let [tilts, tilt_rates] = [array("tilt", 2 * count)?, array("tilt_rate", 2 * count)?];
     let states = (0..count).map(|k| ElasticState {
         level: levels[k],
         approach: approaches[k],
         tilt: [tilts[2 * k], tilts[2 * k + 1]],
         stiffness: stiffnesses[k],
+        load_stiffness: load_stiffnesses[k],
+        tilt_rate: [tilt_rates[2 * k], tilt_rates[2 * k + 1]],
         area: areas[k],
         cells: cells[k] as usize,
         patches: patches[k] as usize,

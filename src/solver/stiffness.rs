@@ -7,23 +7,28 @@ use crate::kernel::LocalKernel;
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
 const MAX_ITERATIONS: usize = 500;
 
-/// Σ q over the cells, with K q = 1 on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid
-/// displacement of a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their number of
-/// iterations and the residual reached.
-pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) -> Result<f64, (usize, f64)> {
+/// q with K q = `motion` on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid motion of a body of unit
+/// compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their number of iterations and the residual
+/// reached.
+pub(crate) fn flat_punch(
+    kernel: &LocalKernel,
+    touches: impl Fn(usize) -> bool,
+    motion: impl Fn(usize) -> f64,
+) -> Result<Vec<f64>, (usize, f64)> {
     let (cells, rows) = (kernel.grid().len(), kernel.rows());
     let mut work = kernel.workspace();
     let mut preconditioner = Preconditioner::new(kernel, &mut work);
     let inside: Vec<f64> = (0..cells).map(|k| f64::from(u8::from(touches(k)))).collect();
     let restrict = |field: &mut [f64]| field.iter_mut().zip(&inside).for_each(|(value, inside)| *value *= inside);
-    let (mut q, mut residual, mut image) = (vec![0.0; cells], inside.clone(), vec![0.0; cells]);
+    let mut residual: Vec<f64> = inside.iter().enumerate().map(|(k, inside)| inside * motion(k)).collect();
+    let (mut q, mut image) = (vec![0.0; cells], vec![0.0; cells]);
     let (mut direction, mut last) = (vec![0.0; cells], 0.0);
-    let limit = FLAT_PUNCH_TOLERANCE * FLAT_PUNCH_TOLERANCE * rows.sum(&inside);
+    let limit = FLAT_PUNCH_TOLERANCE * FLAT_PUNCH_TOLERANCE * rows.sum_of_pairs(&residual, &residual, |a, b| a * b);
     let mut iterations = 0;
     loop {
         let square = rows.sum_of_pairs(&residual, &residual, |a, b| a * b);
         if square <= limit {
-            return Ok(rows.sum(&q));
+            return Ok(q);
         }
         let failure = (iterations, (square / limit).sqrt() * FLAT_PUNCH_TOLERANCE);
         iterations += 1;

@@ -108,6 +108,8 @@ impl ElasticStates {
             approach,
             tilt: [0.0; 2],
             stiffness,
+            load_stiffness: stiffness,
+            tilt_rate: [0.0; 2],
             area,
             cells: 0,
             patches: 0,

@@ -97,8 +97,8 @@ impl StatesContact {
         self.step_to(self.time + dt, dt, load)
     }
 
-    /// Advances by `dt` to `time`.
-    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
+    /// The demand of a load, the level that the end of a step to it has, and the reduced time there.
+    fn predict(&mut self, time: f64, dt: f64, load: Load) -> Result<(Demand, Wanted, f64)> {
         non_negative("time step", dt)?;
         load.validate_in(false)?;
         let length = match &self.scene.temperature {
@@ -119,6 +119,18 @@ impl StatesContact {
             self.solve(wanted)?;
             wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
         }
+        Ok((demand, wanted, reduced))
+    }
+
+    /// Depth and force that a step to `time` ends with; takes no step.
+    pub(super) fn outcome(&mut self, time: f64, load: Load) -> Result<[f64; 2]> {
+        let (demand, wanted, _) = self.predict(time, time - self.time, load)?;
+        Ok(self.levels.outcome(&self.states, demand, wanted.level))
+    }
+
+    /// Advances by `dt` to `time`.
+    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
+        let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted.level);
         (self.time, self.reduced_time) = (time, reduced);
         Ok(StepReport {

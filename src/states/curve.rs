@@ -1,5 +1,6 @@
 //! The elastic states of a contact, and what lies between them.
 
+use std::f64::consts::PI;
 use std::fmt;
 
 use crate::Grid;
@@ -7,11 +8,14 @@ use crate::contact::Builder;
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
 use crate::states::elastic::Solved;
-use crate::states::interpolation::{hermite, hermite_slope, root, slope_of_parabola};
+use crate::states::interpolation::{hermite, hermite_slope, root};
 use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-12;
+/// Least dln δ/dln l of the power below the first state: far below that of any shape that contacts are made of.
+const LEAST_SLOPE: f64 = 0.01;
+
 /// An elastic contact of unit compliance at one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -26,6 +30,10 @@ pub struct ElasticState {
     /// Stiffness over the contact modulus, dl/dy for a motion of the body without tilt \[m\]: 2a for a circle of
     /// radius a. Infinite on periodic bodies in full contact.
     pub stiffness: f64,
+    /// dl/dδ of the load point, about which the body tilts where its tilt is free \[m\]: the stiffness of an upright body.
+    pub load_stiffness: f64,
+    /// Growth of the tilts with the level \[rad/m²\].
+    pub tilt_rate: [f64; 2],
     /// Contact area, fractions of cells included \[m²\].
     pub area: f64,
     /// Number of cells in contact.
@@ -37,7 +45,7 @@ pub struct ElasticState {
 /// The elastic states of one contact, by ascending level, from a [`Sweep`](crate::states::Sweep).
 ///
 /// Between states the logarithm of the approach is a cubic of the logarithm of the level, area and stiffness are powers
-/// of the level, and tilts are linear in its logarithm; below the first state all are powers of the level.
+/// of the level, and tilts cubics of its logarithm; below the first state all are powers of the level.
 #[derive(Clone)]
 pub struct ElasticStates {
     pub(crate) states: Vec<ElasticState>,
@@ -112,8 +120,8 @@ impl ElasticStates {
             positive("level of an elastic state", state.level)?;
             positive("depth of an elastic state", depth)?;
             positive("area of an elastic state", state.area)?;
-            if state.stiffness != f64::INFINITY {
-                positive("stiffness of an elastic state", state.stiffness)?; // but infinite in full contact
+            for stiffness in [state.stiffness, state.load_stiffness].into_iter().filter(|s| *s != f64::INFINITY) {
+                positive("stiffness of an elastic state", stiffness)?; // but infinite in full contact
             }
         }
         let levels = self.states.iter().map(|state| state.level);
@@ -181,22 +189,23 @@ impl ElasticStates {
         approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach
     }
 
+    /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times those of the chords beside them, so that
+    /// cubics rise (Fritsch & Carlson 1980) whatever a table holds.
     fn nodes(&self) -> Vec<Node> {
-        let point = |state: &ElasticState| [state.level.ln(), self.depth_of(state).ln()];
-        let slope = |k: usize| {
-            let state = &self.states[k];
-            if self.is_upright() {
-                return state.level / (self.depth_of(state) * state.stiffness);
-            }
-            // a parabola through three neighbours
-            let first = k.saturating_sub(1).min(self.states.len().saturating_sub(3));
-            slope_of_parabola(self.states[first..].iter().take(3).map(point), state.level.ln())
+        let node = |state: &ElasticState| {
+            let depth = self.depth_of(state);
+            Node { level: state.level.ln(), depth: depth.ln(), slope: state.level / (depth * state.load_stiffness) }
         };
-        let node = |(k, state): (usize, &ElasticState)| {
-            let [level, depth] = point(state);
-            Node { level, depth, slope: slope(k) }
-        };
-        self.states.iter().enumerate().map(node).collect()
+        let mut nodes: Vec<Node> = self.states.iter().map(node).collect();
+        for k in 1..nodes.len() {
+            let [a, b] = [nodes[k - 1], nodes[k]];
+            let most = 3.0 * (b.depth - a.depth) / (b.level - a.level);
+            (nodes[k - 1].slope, nodes[k].slope) = (a.slope.min(most), b.slope.min(most));
+        }
+        if let Some(first) = nodes.first_mut() {
+            first.slope = first.slope.clamp(LEAST_SLOPE, 1.0);
+        }
+        nodes
     }
 
     /// The greatest level of the sweep \[m²\].
@@ -228,20 +237,25 @@ impl ElasticStates {
         hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
     }
 
-    /// Error of the interpolation at a state, in ln δ: of the depth, or, where stiffnesses give slopes, an eighth of
-    /// the slope's over the interval. A kink between two states shows in the slope where the depth happens to agree.
+    /// Error of the interpolation at a state in the middle, in ln l, of two others, relative to the depth: of the depth, of what the
+    /// tilts lift at the edge of the contact and at the origin, or of what the slopes contribute. Each cell that joins is a kink of δ(l),
+    /// and slopes scatter by as much; depths may then agree in the middle alone. So each slope is compared with the slope of the parabola
+    /// through the three depths. A cubic over half of the interval errs by 4/27 of its length times the error of a slope.
     pub(super) fn error_at(&self, state: &ElasticState) -> f64 {
         let (level, depth) = (state.level.ln(), self.depth_of(state));
-        let value = (self.depth(state.level) / depth).ln().abs();
-        let Some((k, s)) = self.between(level).filter(|_| self.is_upright()) else { return value };
+        let (found, at) = (self.motions(state.level), self.load_point());
+        let reach = (state.area / PI).sqrt();
+        let lift = |axis: usize| {
+            (found.tilt[axis] - (state.tilt[axis] - self.rest.tilt[axis])).abs() * (at[axis].abs() + reach) / depth
+        };
+        let value = (found.depth / depth).ln().abs().max(lift(0)).max(lift(1));
+        let Some((k, _)) = self.between(level) else { return value };
         let [a, b] = [self.nodes[k], self.nodes[k + 1]];
-        let length = b.level - a.level;
-        let slope = hermite_slope([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * length), s);
-        value.max(0.125 * (slope - length * state.level / (depth * state.stiffness)).abs())
-    }
-
-    fn is_upright(&self) -> bool {
-        self.tilt.iter().all(|tilt| matches!(tilt, Tilt::Fixed(_)))
+        let (length, [first, second]) = (b.level - a.level, [depth.ln() - a.depth, b.depth - depth.ln()]);
+        let parabola = [3.0 * first - second, first + second, 3.0 * second - first];
+        let slopes = [a.slope, state.level / (depth * state.load_stiffness), b.slope];
+        let scatter = parabola.iter().zip(slopes).map(|(parabola, slope)| (parabola - length * slope).abs());
+        value.max(2.0 / 27.0 * scatter.sum::<f64>())
     }
 
     /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, NaN beyond the last state.
@@ -288,15 +302,15 @@ impl ElasticStates {
         }
     }
 
-    /// δ(l), and the tilts, which are linear in ln l, and below the first state in l.
+    /// δ(l), and the tilts, which are cubics of ln l, and below the first state linear in l.
     pub(super) fn motions(&self, level: f64) -> Motions {
         let at = if level > 0.0 { self.between(level.ln()) } else { None };
         let tilt = |axis: usize| {
             let turned = |k: usize| self.states[k].tilt[axis] - self.rest.tilt[axis];
-            at.map_or_else(
-                || turned(0) * level / self.states[0].level,
-                |(k, s)| (1.0 - s) * turned(k) + s * turned(k + 1),
-            )
+            let slope = |k: usize, length: f64| self.states[k].tilt_rate[axis] * self.states[k].level * length;
+            let Some((k, s)) = at else { return turned(0) * level / self.states[0].level };
+            let length = self.nodes[k + 1].level - self.nodes[k].level;
+            hermite([k, k + 1].map(turned), [k, k + 1].map(|k| slope(k, length)), s)
         };
         Motions { depth: self.depth(level), tilt: [tilt(0), tilt(1)] }
     }

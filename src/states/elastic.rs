@@ -3,7 +3,7 @@
 use crate::Grid;
 use crate::contact::{Builder, ViscoelasticContact};
 use crate::error::{Result, StatesError};
-use crate::load::Load;
+use crate::load::{Load, Tilt};
 use crate::states::curve::{ElasticState, ElasticStates};
 use crate::states::pressed::Pressed;
 
@@ -35,11 +35,15 @@ impl ElasticContact {
     pub(super) fn solve(&mut self, load: Load) -> Result<Solved> {
         let contact = self.under(load)?;
         let level = if let Load::Force { normal, .. } = load { normal } else { contact.force() };
+        let free = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None });
+        let (stiffness, [compliance, tilt_rate @ ..]) = contact.stiffnesses(free)?;
         let state = ElasticState {
             level,
             approach: contact.approach(),
             tilt: contact.tilt(),
-            stiffness: contact.stiffness_over_modulus()?,
+            stiffness,
+            load_stiffness: 1.0 / compliance,
+            tilt_rate,
             area: contact.contact_area(),
             cells: contact.contact_cells(),
             patches: contact.patches()?.all.len(),

@@ -35,17 +35,3 @@ pub(super) fn hermite_slope([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f
     let (r, d) = (1.0 - s, f1 - f0);
     d + (r - s) * (r * (m0 - d) - s * (m1 - d)) - s * r * (m0 + m1 - 2.0 * d)
 }
-
-/// Slope at `x` of the parabola through three points, of the line through two, 1 for fewer.
-pub(super) fn slope_of_parabola(points: impl Iterator<Item = [f64; 2]>, x: f64) -> f64 {
-    let points: Vec<[f64; 2]> = points.collect();
-    let chord = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
-    match points[..] {
-        [a, b, c] => {
-            let [first, second] = [chord(a, b), chord(b, c)];
-            first + (second - first) / (c[0] - a[0]) * (2.0 * x - a[0] - b[0])
-        }
-        [a, b] => chord(a, b),
-        _ => 1.0,
-    }
-}

@@ -9,6 +9,8 @@ const ROUNDING: f64 = 1e-9;
 const SAME_LEVEL: f64 = 1e-15;
 /// Room for so many groups is made at once.
 const GROUPS: usize = 256;
+/// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
+const MORE: [usize; 2] = [8, 8];
 
 /// What is prescribed at the end of a step.
 #[derive(Debug, Clone, Copy)]
@@ -40,11 +42,13 @@ struct Group {
 }
 
 /// Groups by ascending levels, their past, and the state that they make.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Levels {
     history: GroupHistory,
     groups: Vec<Group>,
+    /// Number of groups from which on those with the same past are merged.
+    merge_from: usize,
     /// W of each group at the end of the step being tried.
     trial: Vec<f64>,
     /// Level up to which the groups are held \[m²\].
@@ -57,11 +61,21 @@ pub(super) struct Levels {
     pub(super) lift: f64,
 }
 
+/// With room for as many groups as another has.
+impl Clone for Levels {
+    fn clone(&self) -> Levels {
+        let mut levels = Levels::new(self.history.rule().clone());
+        levels.copy_from(self);
+        levels
+    }
+}
+
 impl Levels {
     pub(super) fn new(rule: ExponentialRule) -> Levels {
         Levels {
             history: GroupHistory::new(rule, GROUPS),
             groups: Vec::with_capacity(GROUPS),
+            merge_from: 0,
             trial: Vec::with_capacity(GROUPS),
             level: 0.0,
             force: 0.0,
@@ -75,6 +89,7 @@ impl Levels {
         self.history.copy_from(&other.history);
         self.groups.clone_from(&other.groups);
         self.trial.clone_from(&other.trial);
+        self.merge_from = other.merge_from;
         (self.level, self.force, self.motions, self.lift) = (other.level, other.force, other.motions, other.lift);
     }
 
@@ -99,7 +114,7 @@ impl Levels {
     /// The top of each group, w and W.
     pub(super) fn groups(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let displacements = self.history.displacements();
-        self.groups.iter().zip(displacements).map(|(group, displacement)| (group.top, group.traction, displacement))
+        self.groups.iter().zip(displacements).map(|(group, &displacement)| (group.top, group.traction, displacement))
     }
 
     /// The past does not determine how the groups continue, as after a corner of the load.
@@ -145,6 +160,20 @@ impl Levels {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
         Ok(wanted)
+    }
+
+    /// Depth and force at the end of the step of [`Levels::wanted`].
+    pub(super) fn outcome(&self, states: &ElasticStates, demand: Demand, level: f64) -> [f64; 2] {
+        if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
+            return [depth, 0.0];
+        }
+        let held = states.depth(level);
+        let (mut depth, mut carried) = (held, (level - self.bottom(self.groups.len()).0).max(0.0));
+        for (bottom, lower, group, free) in self.spans() {
+            carried += (1.0 - free) * (group.top.min(level) - bottom).max(0.0);
+            depth += free * (group.motions.depth - lower.depth.max(held)).max(0.0);
+        }
+        [depth, carried / self.history.rule().compliance()]
     }
 
     /// Accepts the step of [`Levels::wanted`].
@@ -226,24 +255,27 @@ impl Levels {
     fn hold(&mut self, level: f64) {
         let compliance = self.history.rule().compliance();
         let held = self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL));
-        let (mut force, mut motions) = (0.0, Motions::default());
-        for k in 0..self.groups.len() {
-            let (bottom, lower) = self.bottom(k);
-            let group = &mut self.groups[k];
-            group.traction = if k < held { (1.0 - self.trial[k]) / compliance } else { 0.0 };
+        let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
+        for (k, (group, displacement)) in self.groups.iter_mut().zip(&mut self.trial).enumerate() {
+            group.traction = if k < held { (1.0 - *displacement) / compliance } else { 0.0 };
             if k < held {
-                self.trial[k] = 1.0;
+                *displacement = 1.0;
             }
             force += group.traction * (group.top - bottom);
-            motions.add(self.trial[k], lower, group.motions);
+            motions.add(*displacement, lower, group.motions);
+            (bottom, lower) = (group.top, group.motions);
         }
         self.history.commit(&self.trial);
         (self.level, self.force, self.motions, self.lift) = (level, force, motions, 0.0);
+        if self.groups.len() < self.merge_from {
+            return;
+        }
         for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
             if self.history.is_like_the_one_before(group) {
                 self.history.merge(group);
                 self.groups.remove(group - 1);
             }
         }
+        self.merge_from = self.groups.len() + self.groups.len() / MORE[0] + MORE[1];
     }
 }

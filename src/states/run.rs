@@ -19,8 +19,11 @@ const MIN_GROWTH: f64 = 0.1;
 /// Shares of the tolerance that the error of a step aims at, and that it may have: errors of several steps add up.
 const AIM: f64 = 0.1;
 const ALLOWED: f64 = 0.3;
-/// Order of a corrected step, so that two halves err by a seventh of their difference to the whole.
+/// Order of a corrected step, by which its length is chosen.
 const ORDER: f64 = 3.0;
+/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
+/// curvature.
+const OF_HALVES: f64 = 1.0 / 3.0;
 
 /// A run of a [`StatesContact`] along a load history, made by [`StatesContact::follow`]. Each call of
 /// [`StatesRun::next_step`] takes one step.
@@ -53,9 +56,8 @@ pub struct StatesRun<'a> {
     load: Option<Load>,
     /// Length of the next adaptive step; 0 after a jump or a corner.
     next: f64,
-    /// State at the start of the last step, and after an adaptive one was taken whole.
+    /// State at the start of the last step.
     before: StatesContact,
-    whole: StatesContact,
     /// Greatest depth and force of the run, for errors relative to them.
     greatest: [f64; 2],
     rejected: u64,
@@ -75,7 +77,6 @@ impl StatesContact {
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> StatesRun<'a> {
         let (start, before) = (self.time(), self.clone());
-        let whole = before.clone();
         let (load, steps, next, greatest, rejected) = (None, 0, 0.0, [0.0; 2], 0);
         StatesRun {
             contact: self,
@@ -87,7 +88,6 @@ impl StatesContact {
             load,
             next,
             before,
-            whole,
             greatest,
             rejected,
             taken: 0,
@@ -266,14 +266,14 @@ impl<'a> StatesRun<'a> {
             if !(now < middle && middle < end) {
                 return Err(Error::Step(StepError::StepTooShort { time: now, dt: length, tolerance }));
             }
-            let report = match self.whole_and_halves([now, middle, end]) {
-                Ok(report) => report,
+            let (report, difference) = match self.whole_and_halves([now, middle, end]) {
+                Ok(taken) => taken,
                 Err(error) => {
                     self.contact.copy_from(&self.before);
                     return Err(error);
                 }
             };
-            let error = self.error_of_whole() / (2f64.powf(ORDER) - 1.0);
+            let error = OF_HALVES * difference;
             let growth = (AIM * tolerance / error).powf(1.0 / ORDER).clamp(MIN_GROWTH, MAX_GROWTH);
             if error <= ALLOWED * tolerance {
                 self.next = growth.max(0.5) * (end - now).max(length.min(stop - now));
@@ -285,27 +285,21 @@ impl<'a> StatesRun<'a> {
         }
     }
 
-    /// Takes a step whole, then again in two halves.
-    fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<StepReport> {
-        self.step_to(now, end)?;
-        self.whole.copy_from(self.contact);
-        self.contact.copy_from(&self.before);
+    /// Takes a step in two halves. Returns how far the whole step differs from them: in depth and force, relative to values that are
+    /// not small in this run.
+    fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<(StepReport, f64)> {
+        let whole = self.contact.outcome(end, self.history.before(end).validated_at(end)?)?;
         self.step_to(now, middle)?;
-        self.step_to(middle, end)
-    }
-
-    /// Difference of depth and force between the whole step and its halves, relative to values that are not small in this run.
-    fn error_of_whole(&mut self) -> f64 {
-        let [whole, halves] = [&self.whole, &*self.contact].map(|contact| [contact.depth(), contact.force()]);
-        let mut error = 0.0f64;
-        for k in 0..2 {
-            self.greatest[k] = self.greatest[k].max(halves[k].abs());
-            let scale = halves[k].abs().max(0.1 * self.greatest[k]);
+        let report = self.step_to(middle, end)?;
+        let mut difference = 0.0f64;
+        for (k, halves) in [self.contact.depth(), report.force].into_iter().enumerate() {
+            self.greatest[k] = self.greatest[k].max(halves.abs());
+            let scale = halves.abs().max(0.1 * self.greatest[k]);
             if scale > 0.0 {
-                error = error.max((whole[k] - halves[k]).abs() / scale);
+                difference = difference.max((whole[k] - halves).abs() / scale);
             }
         }
-        error
+        Ok((report, difference))
     }
 
     /// Number of steps rejected for their error, with [`Stepping::adaptive`].

@@ -47,7 +47,9 @@ const LEAST_LEVEL: f64 = 1e-12;
 /// The level, over the greatest, below which a contact that stays the same is the smallest.
 const LINEAR_LEVEL: f64 = 1e-6;
 /// Levels closer than by this factor have no state between them.
-const FINEST: f64 = 1.01;
+const FINEST: f64 = 1.001;
+/// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
+const SAFETY: f64 = 2.0;
 /// Greatest fall of a pressure, over the greatest pressure, that is taken for an error of the solver.
 const ALLOWED_FALL: f64 = 1e-4;
 
@@ -276,7 +278,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         let pair = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
         let middle = self.solve((lower.state.level * upper.state.level).sqrt())?;
         let error = pair.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
-        let is_fine = error <= self.accuracy || upper.state.level < FINEST * lower.state.level;
+        let is_fine = SAFETY * error <= self.accuracy || upper.state.level < FINEST * lower.state.level;
         if self.add(&middle).is_break() || is_fine {
             self.error = self.error.max(error);
             self.check_growth(lower, &middle)?;

@@ -77,6 +77,39 @@ pub fn tilting_steps_allocate_nothing() {
     assert!(fallback.iter().sum::<usize>() > 0, "no step needs the fall-back");
 }
 
+/// Steps on elastic states, of given length and adaptive, under forces, approaches and springs, as long as there is room for the groups of
+/// levels; and snapshots.
+pub fn steps_on_states_allocate_nothing() {
+    let terms: Vec<(f64, f64)> = (0..12).map(|k| (1.0e5, 10f64.powf(0.3 * f64::from(k) - 3.0))).collect();
+    let body = Material::incompressible(GeneralizedMaxwell::new(1.0e5, &terms).unwrap());
+    let states = ElasticStates::sphere(10.0e-3).unwrap();
+    let mut contact = StatesContact::new(&states, &body).unwrap();
+    let mut snapshot = contact.snapshot();
+    allocates_nothing("steps on states", || {
+        for step in 0..150 {
+            let wave = 1.0 + (0.7 * f64::from(step)).sin();
+            let load = match step % 3 {
+                0 => Load::force(wave),
+                1 => Load::approach(2.0e-4 * wave),
+                _ => Load::spring(1.0e4, 2.0e-4 * wave),
+            };
+            contact.step(if step % 5 == 0 { 0.0 } else { 0.02 }, load).unwrap();
+            if step % 7 == 0 {
+                contact.snapshot_into(&mut snapshot);
+            }
+            if step % 11 == 0 {
+                contact.restore(&snapshot).unwrap();
+            }
+        }
+    });
+    let ramp = Ramp::new(Load::force(0.1), Load::force(1.0), 1.0).unwrap();
+    for stepping in [Stepping::fixed(0.02), Stepping::adaptive(1.0e-4)] {
+        let mut contact = StatesContact::new(&states, &body).unwrap();
+        let mut run = contact.follow(&ramp, stepping, 2.0);
+        allocates_nothing(stepping, || while run.next_step().unwrap().is_some() {});
+    }
+}
+
 pub fn steps_allocate_nothing() {
     let scene = StepLoadedSphere::zener();
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {

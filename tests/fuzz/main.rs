@@ -20,6 +20,8 @@ mod pictures;
 mod plans;
 mod scenes;
 mod source;
+#[cfg(feature = "npy")]
+mod states;
 mod tables;
 
 use std::time::{Duration, Instant};
@@ -35,6 +37,8 @@ fn targets() -> Vec<Target> {
     targets.extend(scenes::targets());
     targets.extend(plans::targets());
     targets.extend(files::targets());
+    #[cfg(feature = "npy")]
+    targets.extend(states::targets());
     #[cfg(feature = "plot")]
     targets.extend(pictures::targets());
     #[cfg(feature = "checkpoint")]

@@ -12,6 +12,7 @@ mod returns;
 mod samples;
 mod springs;
 mod states;
+mod states_accuracy;
 mod states_kept;
 mod states_outside;
 mod temperature;

@@ -224,3 +224,15 @@ fn runs_on_states_show_their_progress_and_can_be_cancelled() {
     }
     assert_eq!(last, 1.0);
 }
+
+/// Between the states of a table whose stiffnesses contradict its depths, the depth rises nevertheless.
+#[test]
+fn depths_rise_whatever_a_table_holds() {
+    for stiffnesses in [[1e-9, 1e3, 1e-9], [1e3, 1e-9, 1e3], [1e-9; 3]] {
+        let rows = [(1e-6, 1e-5), (2e-6, 1.5e-5), (1e-5, 2e-5)];
+        let table: Vec<_> = rows.iter().zip(stiffnesses).map(|(&(l, d), stiffness)| (l, d, stiffness, 1e-9)).collect();
+        let states = ElasticStates::from_table(&table).unwrap();
+        let depths: Vec<f64> = (0..=400).map(|k| states.approach(1e-8 * 10f64.powf(f64::from(k) / 133.4))).collect();
+        assert!(depths.is_sorted() && depths.iter().all(|depth| depth.is_finite()), "{stiffnesses:?}");
+    }
+}

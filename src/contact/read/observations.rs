@@ -2,12 +2,16 @@
 
 use crate::contact::{Solver, State, ViscoelasticContact};
 use crate::error::{Convergence, Error, Result, StepError, finite};
+use crate::linalg::solve_normal_equations;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
 use crate::observe::profile::line_through;
 use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 use crate::{Axis, memory};
+
+/// Share of a motion, by its square, that is taken for dependent on the others: of a body that tilts on two cells.
+const DEPENDENT: f64 = 1e-9;
 
 impl ViscoelasticContact {
     /// Area of contact \[m²\].
@@ -87,23 +91,46 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the iteration does not converge.
     pub fn stiffness_over_modulus(&self) -> Result<f64> {
+        self.stiffnesses([None; 2]).map(|(upright, _)| upright)
+    }
+
+    /// [`ViscoelasticContact::stiffness_over_modulus`], and how a load point and the tilts move under a unit of force over the modulus,
+    /// while the body tilts freely about it along each axis of which the point is given: (S⁻¹)_i0 of the matrix S_ij = ∬ q_j ξ_i, K q_j =
+    /// ξ_j on the contact, ξ = 1, x1 − e1, x2 − e2.
+    pub(crate) fn stiffnesses(&self, load_point: [Option<f64>; 2]) -> Result<(f64, [f64; 3])> {
         let State { clock, region, current, .. } = &self.computation.state;
-        let kernel = &self.computation.window.kernel;
+        let (kernel, rows) = (&self.computation.window.kernel, region.rows());
         if current.contact_cells == 0 {
-            return Ok(0.0);
+            return Ok((0.0, [f64::INFINITY, 0.0, 0.0]));
         }
         if kernel.whole.mean_is_held() && current.contact_cells == self.grid().len() {
-            return Ok(f64::INFINITY);
+            return Ok((f64::INFINITY, [0.0; 3]));
         }
-        match kernel.rows().together(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0)))? {
-            Ok(sum) => Ok(sum * self.grid().cell_area() * region.images() as f64),
-            Err((iterations, residual)) => {
-                let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
-                let convergence =
-                    Convergence::new(Vec::new(), tolerance, self.settings().solver == Solver::ActiveSet, false).into();
-                Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
+        // a body that is even along an axis does not tilt along it
+        let tilts = |axis: usize| load_point[axis].filter(|_| !region.folded()[axis]);
+        let motion = |motion: usize, k: usize| match motion.checked_sub(1) {
+            Some(axis) => tilts(axis).map_or(0.0, |at| region.center(k)[axis] - at),
+            None => 1.0,
+        };
+        let mut matrix = [[0.0; 3]; 3];
+        for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
+            let q = kernel
+                .rows()
+                .together(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
+                .map_err(|(iterations, residual)| {
+                    let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
+                    let is_active_set = self.settings().solver == Solver::ActiveSet;
+                    let convergence = Convergence::new(Vec::new(), tolerance, is_active_set, false).into();
+                    Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+                })?;
+            let area = self.grid().cell_area() * region.images() as f64;
+            matrix[0][j] = rows.sum(&q) * area;
+            for i in (1..3).filter(|i| tilts(i - 1).is_some()) {
+                let moments: Vec<f64> = q.iter().enumerate().map(|(k, q)| q * motion(i, k)).collect();
+                matrix[i][j] = rows.sum(&moments) * area;
             }
         }
+        Ok((matrix[0][0], solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT)))
     }
 
     /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](ViscoelasticContact::contact_area); 0 without

@@ -1,4 +1,4 @@
-//! Random valid models, as strategies of [`proptest`](mod@proptest).
+//! Random valid models, as strategies of [`proptest`](https://docs.rs/proptest).
 //!
 //! Each takes the scales of its models, finite, positive and within 1e±50, so that they suit the scenario of a test.
 //! The simplest models come first: failures shrink towards them.
