@@ -288,7 +288,7 @@ impl<'a> StatesRun<'a> {
     /// Takes a step in two halves. Returns how far the whole step differs from them: in depth and force, relative to values that are
     /// not small in this run.
     fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<(StepReport, f64)> {
-        let whole = self.contact.outcome(end, self.history.before(end).validated_at(end)?)?;
+        let whole = self.contact.outcome(end, self.history.before(end).validated_at(end, false)?)?;
         self.step_to(now, middle)?;
         let report = self.step_to(middle, end)?;
         let mut difference = 0.0f64;
