@@ -2,7 +2,12 @@
 
 mod adhesion;
 mod adhesion_adaptive;
+mod adhesion_balance;
+mod adhesion_bodies;
+mod adhesion_dense;
 mod adhesion_population;
+mod adhesion_steps;
+mod adhesion_zone;
 mod conditions;
 mod differential;
 mod extremes;
