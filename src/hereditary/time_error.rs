@@ -60,7 +60,7 @@ pub(crate) struct TimeError {
     pub(crate) relative: f64,
     /// Whether it comes of cells that joined.
     pub(crate) by_kinks: bool,
-    /// The greatest defect of v in a cell in contact, relative to the mean of v.
+    /// The greatest defect of v in a cell in contact, or in a cell that bodies may come back to, relative to the mean of v.
     pub(crate) greatest: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
     pub(crate) sizes: [f64; 2],
@@ -134,7 +134,7 @@ impl History {
         }
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
-        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface] } =
+        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
             sums.defect(rule, measure.resolution);
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
@@ -166,6 +166,8 @@ impl History {
         let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
         let error_on_return =
             RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
+        // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
+        let on_meeting = relative(peak, of_surface) * (on_return + error_on_return);
         let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
@@ -173,7 +175,7 @@ impl History {
             by_kinks: error >= error_on_return
                 && error > error_on_switch
                 && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
-            greatest: relative(greatest, scales[1]),
+            greatest: relative(greatest, scales[1]).max(on_meeting),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,
@@ -221,6 +223,7 @@ impl History {
                     let surface = depth * size;
                     sums.surface += surface.copysign(last);
                     sums.absolute_surface += surface;
+                    sums.peak = if depth > 0.0 { sums.peak.max(size) } else { sums.peak };
                 }
                 if touches {
                     sums.steepest = sums.steepest.max(size);
@@ -272,6 +275,8 @@ named_sums! {
         surface: +,
         /// Sum, over cells out of contact, of these depths times |d|.
         absolute_surface: +,
+        /// The greatest |d| of these cells.
+        peak: max,
     }
 }
 
@@ -286,6 +291,8 @@ struct Defect {
     greatest: f64,
     /// Of a surface that bodies may come back to, and of its absolute value.
     surface: [f64; 2],
+    /// The greatest of a cell of this surface.
+    peak: f64,
 }
 
 impl Sums {
@@ -309,6 +316,7 @@ impl Sums {
             greatest: self.sharpest.max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
+            peak: scale * self.peak,
         }
     }
 }

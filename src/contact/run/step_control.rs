@@ -143,7 +143,7 @@ impl StepControl {
     }
 
     /// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where a body is
-    /// free to tilt on a small contact, whose errors are greater by its lever at the end of the grid.
+    /// free to tilt: errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at the ends of a grid of length L.
     pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
         let clock = &tried.state.clock;
         let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
@@ -151,8 +151,8 @@ impl StepControl {
         let tilts = tried.trial.free.iter().any(Freedom::tilts);
         let reach = if tilts { tried.pressed().1 } else { None };
         let lever = |Extent { low, high }: Extent| {
-            let levers = [0, 1].map(|axis| 0.5 * scene.grid.cells()[axis] as f64 / (high[axis] + 1 - low[axis]) as f64);
-            levers[0].max(levers[1]).max(1.0)
+            let levers = [0, 1].map(|axis| scene.grid.cells()[axis] as f64 / (high[axis] - low[axis]).max(1) as f64);
+            levers[0].max(levers[1])
         };
         of_turn * reach.map_or(1.0, lever)
     }
