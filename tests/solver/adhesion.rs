@@ -167,7 +167,7 @@ fn a_force_pulls_the_bodies_off() {
     assert!(matches!(plain.step(1.0, Load::force(-1.0)), Err(Error::OutOfRange { .. })));
 }
 
-/// A spring carries the force of its length, pulling too, and lets go where it must.
+/// A spring carries the force of its length, pulling too, and separates where it must.
 #[test]
 fn a_spring_pulls() {
     let mut contact = sphere(32, 8.0, elastic(), ExponentialAttraction::new(1.0, 1.0).unwrap());

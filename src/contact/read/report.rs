@@ -208,7 +208,8 @@ bitflags! {
         /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count.
         const STEEP = 1 << 10;
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
-        /// reached: the force at which they let go errs by a percent or more. Refine the mesh, or take an attraction of longer range.
+        /// reached: the force of a slow pull-off errs by a percent or more. A fast pull finds a stiffer body, and a longer zone. Refine the mesh,
+        /// or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
         /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:
         /// sides of a map or a grid in µm that are read as metres are that long for their heights.

@@ -89,10 +89,8 @@ pub(super) fn collect_warnings(
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = scene.settings.time_rule == TimeRule::Rectangle
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
-    let coarse = scene
-        .attraction
-        .as_deref()
-        .is_some_and(|law| cells_in_zone(law, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE);
+    let coarse = scene.softening > 0.0
+        && cells_in_zone(scene.softening, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE;
     // a body without elastic response has no modulus at once
     let at_once = material.contact_compliance(0.0);
     let reasons = [
