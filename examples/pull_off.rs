@@ -1,6 +1,6 @@
 //! A ball that sticks to a creeping body: it rests until the body has relaxed, and is pulled off at speeds over five decades.
 //!
-//! Slowly pulled, the ball lets go as from an elastic body of the relaxed modulus E*. At once the body is k times as stiff. A fast
+//! Slowly pulled, the ball separates as from an elastic body of the relaxed modulus E*. At once the body is k times as stiff. A fast
 //! pull finds the stiff body in the shape that the pressure p₀ gave it at rest, at the approach ω₀ and the relaxed compliance C.
 //! Where the bodies still touch, C K p₀ + (C/k) K (p − p₀) = ω − r²/2R and C K p₀ = ω₀ − r²/2R, so that
 //! (C/k) K p = ω − (1 − 1/k) ω₀ − r²/2kR: the contact of a stiff body with a ball of radius kR. By JKR it holds up to 3π k w R/2, as

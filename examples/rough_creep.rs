@@ -322,7 +322,7 @@ impl Files {
                     (Format::Vtk, "vtk"),
                 ];
                 let series = formats.map(|(format, folder)| {
-                    FrameSeries::create_or_replace(args.output.join(folder), format, scene, &Field::ALL)
+                    FrameSeries::create_or_replace(args.output.join(folder), format, scene, Field::of(contact))
                 });
                 series.into_iter().collect::<Result<_>>()?
             },

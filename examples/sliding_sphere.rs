@@ -165,7 +165,8 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     {
         use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, &Field::ALL)?.record(&contact)?;
+        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, Field::of(&contact))?
+            .record(&contact)?;
     }
     Ok(())
 }

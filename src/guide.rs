@@ -8,6 +8,7 @@
 //! | [`data`] | units, moduli in tension, tables of DMA |
 //! | [`curves`] | smooth curves of an adaptive run |
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
+//! | [`adhesion`] | surfaces that stick: law, range, resolution, loads that pull |
 //! | [`elastic_states`] | a surface solved once, for many materials and histories: when to take which |
 //! | [`long_runs`] | saved and resumed runs, many contacts on threads |
 //! | [`results`] | files in pandas, NumPy and PyVista; views as arrays and matrices |
@@ -24,4 +25,4 @@ macro_rules! pages {
         }
     )*};
 }
-pages! { tour accuracy own_models data curves coupling elastic_states long_runs results }
+pages! { tour accuracy own_models data curves coupling adhesion elastic_states long_runs results }

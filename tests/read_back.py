@@ -17,7 +17,7 @@ import numpy
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-UNITS = {"pressure": "Pa", "displacement": "m", "gap": "m"}
+UNITS = {"pressure": "Pa", "displacement": "m", "gap": "m", "traction": "Pa"}
 checks, differences = 0, 0
 
 

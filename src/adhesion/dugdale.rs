@@ -2,8 +2,8 @@ use crate::adhesion::{Attraction, Scales};
 use crate::error::{Result, within};
 
 /// The constant attraction of Dugdale and Maugis, s = w/ρ up to the gap ρ, with an end of stated width: over the gaps ρ (1 ± b/2) it falls
-/// linearly to zero. At a sharp end single cells would jump, each at a load of its own, and pull harder than the law: the end of
-/// b E* ρ²/w must be as long as 4 cells or more.
+/// linearly to zero. At a sharp end single cells would jump, each at a load of its own, and pull harder than the law: the zone in which the
+/// traction falls, of the length b E* ρ²/w, must have 4 cells or more.
 ///
 /// ```
 /// use viscocontact::adhesion::{Attraction, Dugdale};

@@ -11,7 +11,7 @@
 //! | [`Dugdale`] | w/ρ up to h = ρ, with a linear end of stated width |
 //!
 //! Every law is given by w and either ρ ([`Attraction::range`]) or the greatest traction s(0). Laws of the same w and ρ differ little in
-//! the force at which they let go. A Lennard-Jones law with its repulsive branch is not offered: in place of the wall it would
+//! the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of the wall it would
 //! put a stiff spring.
 
 mod dugdale;
@@ -70,6 +70,22 @@ pub trait Attraction: Debug + Send + Sync {
     }
 }
 
+/// The slope at which an attraction softens \[Pa/m\]: the greater of w/ρ², its slope on average, and of the steepest slope −s′ up to the gap
+/// 4ρ. On a body of contact modulus E* the attraction acts over a zone of the length E* over this slope.
+pub(crate) fn softening(law: &dyn Attraction) -> f64 {
+    /// Differences for each range: 5 over the narrowest end of Dugdale's law.
+    const PER_RANGE: u32 = 500;
+    let (work, range) = (law.work(), law.range());
+    let step = range / f64::from(PER_RANGE);
+    let (mut before, mut steepest) = (law.traction(0.0), 0.0_f64);
+    for k in 1..=4 * PER_RANGE {
+        let traction = law.traction(f64::from(k) * step);
+        steepest = steepest.max((before - traction) / step);
+        before = traction;
+    }
+    steepest.max(work / range / range)
+}
+
 /// Implements [`Attraction`] for a wrapper by the law inside.
 macro_rules! forward_attraction {
     ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
@@ -124,7 +140,7 @@ impl Scales {
 }
 
 /// Tabor's number μ = (R w²/(E*² ρ³))^⅓ of a sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\]: where it is great, the
-/// contact lets go as [`Jkr`](crate::analytic::Jkr) has it, where it is small, as [`Dmt`](crate::analytic::Dmt).
+/// contact separates as [`Jkr`](crate::analytic::Jkr) has it, where it is small, as [`Dmt`](crate::analytic::Dmt).
 ///
 /// ```
 /// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};

@@ -22,6 +22,8 @@ pub(crate) struct Scene {
     pub(super) temperature: Option<TemperatureHistory>,
     /// The attraction between the surfaces.
     pub(super) attraction: Option<Arc<dyn Attraction>>,
+    /// The slope at which it softens \[Pa/m\]; 0 without one.
+    pub(super) softening: f64,
     /// Number of rigid bodies.
     pub(super) bodies: usize,
     /// Fingerprint of the gap as built.

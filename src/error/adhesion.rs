@@ -15,11 +15,11 @@ pub enum AdhesionError {
 
     /// The mesh does not resolve the zone in which the attraction acts.
     #[error(
-        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of separation changes the force at which bodies let go by little while Tabor's number stays above 3)",
+        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of separation changes the pull-off force by little while Tabor's number stays above 3)",
         rounded(*.spacing, 3), rounded(*.range, 3)
     )]
     ZoneNotResolved {
-        /// Cells in the zone, E* ρ²/w over the side of a cell.
+        /// Cells in the zone: E* at once over the steepest slope of the attraction, or over w/ρ² if that is more, and over the side of a cell.
         cells: f64,
         /// Least number of cells.
         least: f64,

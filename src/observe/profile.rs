@@ -1,4 +1,4 @@
-//! Pressure, displacement and gap along a line of cells.
+//! Pressure, displacement, gap and net traction along a line of cells.
 
 use crate::Grid;
 use crate::error::{Result, within};
@@ -12,7 +12,7 @@ pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static st
     Ok((((at + half) / grid.spacing()[across]) as usize).min(grid.cells()[across] - 1))
 }
 
-/// Pressure, displacement and gap along a line of cells, see
+/// Pressure, displacement, gap and net traction along a line of cells, see
 /// [`ViscoelasticContact::profile`](crate::ViscoelasticContact::profile).
 #[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -28,12 +28,14 @@ pub struct LineProfile {
     pub displacement: Vec<f64>,
     /// Gap \[m\]; +∞ where there is nothing to touch.
     pub gap: Vec<f64>,
+    /// Net traction \[Pa\]: the pressure less the [attraction](crate::adhesion).
+    pub traction: Vec<f64>,
 }
 
 debug_by! {
     self: LineProfile =>
     at: self.at, positions: Counted(&self.positions), pressure: Counted(&self.pressure),
-    displacement: Counted(&self.displacement), gap: Counted(&self.gap)
+    displacement: Counted(&self.displacement), gap: Counted(&self.gap), traction: Counted(&self.traction)
 }
 
 #[cfg(test)]

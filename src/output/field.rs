@@ -20,14 +20,24 @@ pub enum Field {
     /// [`ViscoelasticContact::gap_into`](crate::ViscoelasticContact::gap_into) \[m\]; +∞ where the
     /// initial gap is infinite.
     Gap,
+    /// [`ViscoelasticContact::traction_into`](crate::ViscoelasticContact::traction_into): the net traction \[Pa\], < 0 where the bodies
+    /// pull at each other; without attraction the pressure.
+    Traction,
 }
 
 /// Name in files and SI unit of each field.
-const NAMES_AND_UNITS: [(&str, &str); 3] = [("pressure", "Pa"), ("displacement", "m"), ("gap", "m")];
+const NAMES_AND_UNITS: [(&str, &str); 4] =
+    [("pressure", "Pa"), ("displacement", "m"), ("gap", "m"), ("traction", "Pa")];
 
 impl Field {
     /// All fields.
-    pub const ALL: [Field; 3] = [Field::Pressure, Field::Displacement, Field::Gap];
+    pub const ALL: [Field; 4] = [Field::Pressure, Field::Displacement, Field::Gap, Field::Traction];
+
+    /// The fields of a contact: all of them where surfaces [attract](crate::adhesion) each other, else all but [`Field::Traction`], which
+    /// is the pressure then.
+    pub fn of(contact: &ViscoelasticContact) -> &'static [Field] {
+        if contact.attraction().is_some() { &Field::ALL } else { &Field::ALL[..3] }
+    }
 
     /// Name in files.
     pub fn name(self) -> &'static str {
@@ -48,6 +58,12 @@ impl Field {
             Field::Gap => {
                 buffer.resize(contact.pressure().len(), 0.0);
                 contact.gap_into(buffer)?;
+                Ok(buffer)
+            }
+            Field::Traction if contact.attraction().is_none() => Ok(contact.pressure()),
+            Field::Traction => {
+                buffer.resize(contact.pressure().len(), 0.0);
+                contact.traction_into(buffer)?;
                 Ok(buffer)
             }
         }

@@ -32,6 +32,15 @@ impl Map {
         Map::field(contact, Field::Displacement)?.outline_contact(contact)
     }
 
+    /// The net traction between the bodies, grey where there is nothing to touch, with the contact outlined: pressure less [attraction](crate::adhesion), < 0 where the bodies
+    /// pull at each other. [`Map::pressure`] is the pressure of the wall alone.
+    ///
+    /// # Errors
+    /// If a traction exceeds 1e100 Pa in magnitude.
+    pub fn traction(contact: &ViscoelasticContact) -> Result<Map> {
+        Map::field(contact, Field::Traction)?.outline_contact(contact)
+    }
+
     /// Outlines the cells of `contact` that are in contact.
     ///
     /// # Errors
@@ -49,11 +58,16 @@ impl Map {
             // cells out of contact stay blank
             values.iter_mut().filter(|p| **p <= 0.0).for_each(|p| *p = f64::NAN);
         }
+        if field == Field::Traction {
+            // cells without anything to touch stay blank
+            let gap = Field::Gap.values(contact, &mut buffer)?;
+            values.iter_mut().zip(gap).filter(|(_, h)| !h.is_finite()).for_each(|(value, _)| *value = f64::NAN);
+        }
         let mut map = Map::new(contact.grid(), values, Quantity::new(field.name(), field.unit()))?;
-        if field != Field::Displacement && map.range[1] > 0.0 {
+        if matches!(field, Field::Pressure | Field::Gap) && map.range[1] > 0.0 {
             map.range[0] = 0.0;
         }
-        if field == Field::Gap {
+        if matches!(field, Field::Gap | Field::Traction) {
             map.blank = Color::GREY;
         }
         map.title = time_title(contact);
@@ -62,7 +76,8 @@ impl Map {
 }
 
 impl Chart {
-    /// The pressure along a line of cells, see [`ViscoelasticContact::profile`].
+    /// The pressure along a line of cells, see [`ViscoelasticContact::profile`], and beside it the net traction where surfaces
+    /// [attract](crate::adhesion) each other.
     ///
     /// # Errors
     /// If `at` lies outside the grid.
@@ -75,8 +90,13 @@ impl Chart {
         let (x, y) = (Quantity::new(name, "m"), Quantity::new("pressure", "Pa"));
         let title = format!("{}, {across} = {}", time_title(contact), measure(at, "m"));
         let mut chart = Chart::new(title, x, y, Legend::UpperRight);
-        let points = profile.positions.into_iter().zip(profile.pressure).collect();
-        chart.add("", COLORS[0], Style::LineAndDots, points);
+        let points = |values: Vec<f64>| profile.positions.iter().copied().zip(values).collect();
+        if contact.attraction().is_some() {
+            chart.add("pressure of the wall", COLORS[0], Style::LineAndDots, points(profile.pressure));
+            chart.add("net traction", COLORS[1], Style::LineAndDots, points(profile.traction));
+        } else {
+            chart.add("", COLORS[0], Style::LineAndDots, points(profile.pressure));
+        }
         Ok(chart)
     }
 }

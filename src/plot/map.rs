@@ -23,7 +23,7 @@ const MIN_BAR: u32 = 200;
 
 /// A field on a grid as colours, dark for small values and light for large ones.
 ///
-/// [`Map::pressure`], [`Map::gap`] and [`Map::displacement`] are the maps of a contact.
+/// [`Map::pressure`], [`Map::gap`], [`Map::displacement`] and [`Map::traction`] are the maps of a contact.
 ///
 /// ```
 /// use viscocontact::{Grid, plot::{Map, Quantity}};

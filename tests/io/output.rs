@@ -40,7 +40,8 @@ fn stressed() -> (ViscoelasticContact, [f64; 3], StressVolume) {
 
 fn values(contact: &ViscoelasticContact, field: Field) -> Vec<f64> {
     match field {
-        Field::Pressure => contact.pressure().to_vec(),
+        // nothing attracts here
+        Field::Pressure | Field::Traction => contact.pressure().to_vec(),
         Field::Displacement => contact.displacement().to_vec(),
         _ => {
             let mut gap = vec![0.0; contact.grid().len()];
@@ -117,7 +118,7 @@ mod npy {
         run(&mut contact, |contact, _| {
             let path = series.record(contact).unwrap();
             let mut archive = Archive(zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap());
-            assert_eq!(archive.0.len(), 11);
+            assert_eq!(archive.0.len(), 12);
             for field in Field::ALL {
                 let (shape, found) = archive.numbers(field.name());
                 assert_eq!(shape, [24, 17]);

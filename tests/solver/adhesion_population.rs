@@ -58,7 +58,7 @@ fn material(draws: &mut Draws) -> (bool, Material) {
 }
 
 /// The state satisfies the equations of a step.
-fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attraction, elastic: bool) {
+pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attraction, elastic: bool) {
     let cells = contact.grid().len();
     let (mut traction, mut gap, mut image) = (vec![0.0; cells], vec![0.0; cells], vec![0.0; cells]);
     contact.traction_into(&mut traction).unwrap();

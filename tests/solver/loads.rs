@@ -1,4 +1,4 @@
-//! Loads that tilt, prescribe the approach, let go and come back, on elastic and creeping bodies.
+//! Loads that tilt, prescribe the approach, separate and come back, on elastic and creeping bodies.
 
 use crate::common::{E_STAR, contact_of, elastic};
 use approx::assert_abs_diff_eq;
@@ -142,7 +142,7 @@ fn approach_driven_force_is_the_foundations() {
     }
     println!("force {:.2e} of its peak", worst / peak);
     assert!(worst < 3e-3 * peak);
-    // the surface has not come back: the withdrawn indenter lets go before it is out
+    // the surface has not come back: the withdrawn indenter separates before it is out
     assert_eq!((contact.force(), contact.contact_cells()), (0.0, 0));
 }
 

@@ -58,7 +58,7 @@ fn bodies() -> [Material; 3] {
     [maxwell(), Material::incompressible(two), elastic()]
 }
 
-/// A small contact that grows, jumps, is let go and comes again.
+/// A small contact that grows, jumps, separates and comes again.
 #[test]
 fn sparing_cells_changes_nothing_where_contacts_grow_and_vanish() {
     for material in bodies() {

@@ -34,7 +34,7 @@ impl Jkr {
         [force, a * a / length - (2.0 * PI * work * a / modulus).sqrt()]
     }
 
-    /// The least force, −(3/2)π w R: a greater pull lets go \[N\].
+    /// The least force, −(3/2)π w R: a greater pull separates the bodies \[N\].
     pub fn pull_off_force(&self) -> f64 {
         -1.5 * PI * self.0.work * self.0.length
     }
@@ -45,7 +45,7 @@ impl Jkr {
         (1.125 * PI * work * length * length / modulus).cbrt()
     }
 
-    /// The contact radius at the least approach, where the force is −(5/6)π w R: a contact of given approach lets go there \[m\].
+    /// The contact radius at the least approach, where the force is −(5/6)π w R: a contact of given approach separates there \[m\].
     pub fn radius_at_least_approach(&self) -> f64 {
         self.radius_at_pull_off() / 9f64.cbrt()
     }

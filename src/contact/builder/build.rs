@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::adhesion::Attraction;
+use crate::adhesion::{Attraction, softening};
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
@@ -80,6 +80,7 @@ impl Builder {
             material,
             settings,
             temperature,
+            softening: attraction.as_deref().map_or(0.0, softening),
             attraction,
         };
         let attracts = scene.attraction.is_some();
@@ -268,22 +269,30 @@ pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kerne
 /// Fewer cells in the zone of an attraction are refused.
 const LEAST_ZONE: f64 = 2.0;
 
-/// The length of the zone in which an attraction acts at the edge of a contact, E* ρ²/w with E* = 1/`compliance`, over the longer side of a cell.
-pub(in crate::contact) fn cells_in_zone(law: &dyn Attraction, compliance: f64, grid: &Grid) -> f64 {
-    let side = grid.spacing().into_iter().fold(0.0, f64::max);
-    law.range() / side * (law.range() / law.work() / compliance)
+/// A zone shorter by rounding is not refused.
+const ROUNDING: f64 = 1e-9;
+
+/// The length of the zone in which an attraction of this [`softening`] acts at the edge of a contact, over the longer side of a cell. The
+/// pull-off force errs by this figure alike for all laws (docs/accuracy.md).
+pub(in crate::contact) fn cells_in_zone(softening: f64, compliance: f64, grid: &Grid) -> f64 {
+    1.0 / (longer_side(grid) * softening * compliance)
+}
+
+/// The longer side of a cell, of the sides along which there are several cells: a line contact is the same along its one cell.
+fn longer_side(grid: &Grid) -> f64 {
+    let sides = grid.spacing().into_iter().zip(grid.cells()).filter(|(_, cells)| *cells > 1);
+    sides.map(|(side, _)| side).reduce(f64::max).unwrap_or(grid.spacing()[0])
 }
 
 /// Rejects a mesh on which even the elastic response has too short a zone.
 fn zone_is_resolved(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<()> {
     positive("work of separation", law.work())?;
     length("range of the attraction", law.range())?;
-    let cells = cells_in_zone(law, material.checked_compliance(0.0, (0.0, 0.0))?, grid);
-    if cells >= LEAST_ZONE {
+    let cells = cells_in_zone(softening(law), material.checked_compliance(0.0, (0.0, 0.0))?, grid);
+    if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
         return Ok(());
     }
-    let side = grid.spacing().into_iter().fold(0.0, f64::max);
-    let (spacing, range) = (side * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
+    let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
     Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())
 }
 

@@ -144,7 +144,7 @@ impl Builder {
         Builder { temperature: Some(history), ..self }
     }
 
-    /// The attraction between the surfaces: loads may then pull, and hold until the contact lets go ([`adhesion`](crate::adhesion)). A
+    /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate ([`adhesion`](crate::adhesion)). A
     /// scene without one costs nothing more.
     ///
     /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`ViscoelasticContact::traction_into`] the net traction, which carries
@@ -152,9 +152,10 @@ impl Builder {
     /// under a given force fails with [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a
     /// spring it comes off within a step.
     ///
-    /// The mesh must resolve the zone in which the attraction acts, of E* ρ²/w: with 6 cells in it the force at which a sphere lets go errs by
-    /// about 0.3 %, with 3 by 1.2 %; below 4 steps warn ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)), below 2 `build` fails.
-    /// A longer range at the same work of separation needs fewer cells.
+    /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest slope of the law if that is
+    /// less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with 3 by up to 2.5 %, with 2 by up to 10 %. Below 4, at
+    /// the modulus that the body has reached, steps warn ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)); below 2, at the modulus
+    /// at once, `build` fails. A longer range at the same work of separation needs fewer cells.
     ///
     /// ```
     /// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
