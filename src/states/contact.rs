@@ -18,8 +18,8 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
 /// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every
-/// step adds a group at most; groups with the same past merge. A step allocates nothing unless there are more groups
-/// than ever before.
+/// step adds a group at most; groups merge where the difference of their pasts counts for nothing. A step allocates
+/// nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
     scene: Arc<Scene>,
