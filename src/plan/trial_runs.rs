@@ -228,7 +228,7 @@ impl TrialScene<'_> {
         let (mut force, mut approach) = (0.0_f64, 0.0_f64);
         for k in 0..=64 {
             let time = self.until * f64::from(k) / 64.0;
-            match self.history.at(time).validated_at(time)? {
+            match self.history.at(time).validated_at(time, false)? {
                 Load::Force { normal, .. } => force = force.max(normal),
                 Load::Approach { approach: depth, .. } => approach = approach.max(depth),
                 // either is a bound

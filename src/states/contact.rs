@@ -100,7 +100,7 @@ impl StatesContact {
     /// The demand of a load, the level that the end of a step to it has, and the reduced time there.
     fn predict(&mut self, time: f64, dt: f64, load: Load) -> Result<(Demand, Wanted, f64)> {
         non_negative("time step", dt)?;
-        load.validate()?;
+        load.validate_in(false)?;
         let length = match &self.scene.temperature {
             Some(history) => history.reduced_time(self.time, time)?,
             None => dt,

@@ -51,6 +51,8 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
+/// Surfaces that attract each other end their passes at a hundred tolerances of the solver.
+const SHARE_OF_PASSES: f64 = 0.03;
 /// An error of the solver counts so many times as much as its response to the surface that the body meets later: the errors of many
 /// steps add up.
 const SOLVER_ON_MEETING: f64 = 3.0;
@@ -123,9 +125,10 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no given approach is to come.
-    pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
-        wanted.max(SOLVER_SHARE * self.tolerance)
+    /// Tolerance of the solver that suits the tolerance in time, at least that of the settings, where no given approach is to come.
+    pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
+        let share = if scene.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
+        scene.settings.tolerance.max(share * self.tolerance)
     }
 
     /// Tolerance of the solver in a step of length `dt` to the time `now`, at most `tolerance`: where a given approach is to come,
@@ -161,7 +164,7 @@ impl StepControl {
     pub(super) fn begin(&mut self, scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<()> {
         let (now, reduced) = (state.clock.time, state.clock.reduced_time);
         if self.nodes.is_empty() {
-            self.nodes.push((reduced, history.at(now).validated_at(now)?));
+            self.nodes.push((reduced, history.at(now).validated_at(now, scene.attraction.is_some())?));
             self.since = reduced;
         }
         if self.scale.is_none() {
