@@ -112,15 +112,15 @@ impl GroupHistory {
         self.columns.iter_mut().for_each(|column| column.insert(group, column[group]));
     }
 
-    /// Merges a group into the one before it, whose past is kept.
-    pub(crate) fn merge(&mut self, group: usize) {
+    /// Removes the past of a group.
+    pub(crate) fn remove(&mut self, group: usize) {
         self.columns.iter_mut().for_each(|column| _ = column.remove(group));
     }
 
-    /// Whether a group and the one before it have the same past to rounding.
-    pub(crate) fn is_like_the_one_before(&self, group: usize) -> bool {
+    /// Whether a group and the one before it have the same past to rounding, where their difference counts with a `share` only.
+    pub(crate) fn is_like_the_one_before(&self, group: usize, share: f64) -> bool {
         let scales = [1.0; HEAD].into_iter().chain(self.rule.moduli());
         let mut columns = self.columns.iter().zip(scales);
-        columns.all(|(column, scale)| (column[group] - column[group - 1]).abs() <= ALIKE * scale)
+        columns.all(|(column, scale)| (column[group] - column[group - 1]).abs() * share <= ALIKE * scale)
     }
 }

@@ -187,26 +187,26 @@ impl Load {
         [main, first, if free[1] { "load point along x2" } else { "tilt along x2" }, "stiffness of the spring"]
     }
 
-    /// Accepts loads with finite values and a force ≥ 0.
-    pub(crate) fn validate(&self) -> Result<()> {
-        self.validate_in(false)
-    }
-
     /// Accepts loads with finite values, and a force ≥ 0 unless surfaces attract each other.
     pub(crate) fn validate_in(&self, attracts: bool) -> Result<()> {
-        let (names, values) = (self.names(), self.values());
         if let (Load::Force { normal, .. }, false) = (*self, attracts) {
-            non_negative(names[0], normal)?;
+            non_negative(self.names()[0], normal)?;
         }
+        self.validate()
+    }
+
+    /// Accepts loads with finite values: forces may pull, which only a contact of surfaces that attract each other allows.
+    pub(crate) fn validate(&self) -> Result<()> {
+        let (names, values) = (self.names(), self.values());
         if let Load::Spring { stiffness, .. } = *self {
             positive("stiffness of the spring", stiffness)?;
         }
         names.into_iter().zip(values).try_for_each(|(name, value)| finite(name, value).map(drop))
     }
 
-    /// [`Load::validate`] for the load that a history returned for `time`.
-    pub(crate) fn validated_at(self, time: f64) -> Result<Load> {
-        match self.validate() {
+    /// [`Load::validate_in`] for the load that a history returned for `time`.
+    pub(crate) fn validated_at(self, time: f64, attracts: bool) -> Result<Load> {
+        match self.validate_in(attracts) {
             Ok(()) => Ok(self),
             Err(Error::OutOfRange { field, value, allowed }) => {
                 Err(LoadError::OutOfRange { time, field, value, allowed }.into())

@@ -93,7 +93,7 @@ fn sampled(scene: &TrialScene<'_>) -> Result<Vec<Load>> {
     let mut all = Vec::new();
     for k in 0..=PARTS {
         let time = until * f64::from(k) / f64::from(PARTS);
-        all.push(history.at(time).validated_at(time)?);
+        all.push(history.at(time).validated_at(time, false)?);
     }
     let mut corner = 0.0;
     for _ in 0..MAX_CORNERS {
@@ -101,7 +101,10 @@ fn sampled(scene: &TrialScene<'_>) -> Result<Vec<Load>> {
             Some(next) if next > corner && next <= until => corner = next,
             _ => break,
         }
-        all.extend([history.before(corner).validated_at(corner)?, history.at(corner).validated_at(corner)?]);
+        all.extend([
+            history.before(corner).validated_at(corner, false)?,
+            history.at(corner).validated_at(corner, false)?,
+        ]);
     }
     Ok(all)
 }

@@ -18,8 +18,8 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
 /// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every
-/// step adds a group at most; groups with the same past merge. A step allocates nothing unless there are more groups
-/// than ever before.
+/// step adds a group at most; groups merge where the difference of their pasts counts for nothing. A step allocates
+/// nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
     scene: Arc<Scene>,
@@ -104,7 +104,7 @@ impl StatesContact {
     /// The demand of a load, the level that the end of a step to it has, and the reduced time there.
     fn predict(&mut self, time: f64, dt: f64, load: Load) -> Result<(Demand, Wanted, f64)> {
         non_negative("time step", dt)?;
-        load.validate()?;
+        load.validate_in(false)?;
         let length = match &self.scene.temperature {
             Some(history) => history.reduced_time(self.time, time)?,
             None => dt,

@@ -270,9 +270,18 @@ impl Levels {
         if self.groups.len() < self.merge_from {
             return;
         }
+        let Some(last) = self.groups.last().copied() else { return };
         for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
-            if self.history.is_like_the_one_before(group) {
-                self.history.merge(group);
+            // a difference counts with the share of the thinner group, in levels or in depth
+            let [before, own] = [group - 1, group].map(|k| {
+                let ((bottom, lower), Group { top, motions, .. }) = (self.bottom(k), &self.groups[k]);
+                ((top - bottom) / last.top).max((motions.depth - lower.depth) / last.motions.depth)
+            });
+            if self.history.is_like_the_one_before(group, before.min(own)) {
+                self.history.remove(if before < own { group - 1 } else { group });
+                if before >= own {
+                    self.groups[group].traction = self.groups[group - 1].traction;
+                }
                 self.groups.remove(group - 1);
             }
         }

@@ -193,7 +193,7 @@ impl<'a> StatesRun<'a> {
         if self.cancelled.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Error::Cancelled { what: "a step" });
         }
-        let load = self.history.at(now).validated_at(now)?;
+        let load = self.history.at(now).validated_at(now, false)?;
         if self.load != Some(load) {
             self.before.copy_from(self.contact);
             let report = self.contact.step(0.0, load)?;
@@ -236,7 +236,7 @@ impl<'a> StatesRun<'a> {
         let middle = start + 0.5 * (end - start);
         let halved = matches!(self.stepping, Stepping::Adaptive { .. }) && time > middle;
         for stop in [halved.then_some(middle), (time > start).then_some(time)].into_iter().flatten() {
-            contact.step_to(stop, stop - contact.time(), self.history.at(stop).validated_at(stop)?)?;
+            contact.step_to(stop, stop - contact.time(), self.history.at(stop).validated_at(stop, false)?)?;
         }
         Ok(contact)
     }
@@ -252,7 +252,7 @@ impl<'a> StatesRun<'a> {
 
     /// Advances to a time under the load there, or just before it where it jumps.
     fn step_to(&mut self, now: f64, time: f64) -> Result<StepReport> {
-        let load = self.history.before(time).validated_at(time)?;
+        let load = self.history.before(time).validated_at(time, false)?;
         self.load = Some(load);
         self.contact.step_to(time, time - now, load)
     }
@@ -288,7 +288,7 @@ impl<'a> StatesRun<'a> {
     /// Takes a step in two halves. Returns how far the whole step differs from them: in depth and force, relative to values that are
     /// not small in this run.
     fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<(StepReport, f64)> {
-        let whole = self.contact.outcome(end, self.history.before(end).validated_at(end)?)?;
+        let whole = self.contact.outcome(end, self.history.before(end).validated_at(end, false)?)?;
         self.step_to(now, middle)?;
         let report = self.step_to(middle, end)?;
         let mut difference = 0.0f64;

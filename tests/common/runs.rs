@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
@@ -74,6 +75,14 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         let temperature = TemperatureHistory::function(law, |t| 290.0 + 4.0 * t, &[0.5]).unwrap();
         builder_on(grid(), three_times()).temperature(temperature).build().unwrap()
     };
+    let attracted = move || {
+        let law = ExponentialAttraction::new(1.0, 2.0e-5).unwrap();
+        let settings = Settings::default().with_edge(Edge::Allow);
+        builder_on(grid(), three_times()).attraction(law).settings(settings).build().unwrap()
+    };
+    let pulled = |contact: &mut ViscoelasticContact, k: u32| {
+        contact.step(0.02, Load::approach(1.0e-5 * f64::from(k * k % 7) - 3.7e-5)).unwrap()
+    };
     vec![
         ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
         ("folded", Box::new(with(Settings::default().with_window(false))), Box::new(wandering)),
@@ -96,5 +105,6 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         ("strip, sliding", Box::new(strip), Box::new(sliding)),
         ("tilting", Box::new(with(Settings::default())), Box::new(tilting)),
         ("two bodies", Box::new(two), Box::new(in_turn)),
+        ("attracted", Box::new(attracted), Box::new(pulled)),
     ]
 }

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::runs::{scenes, wandering};
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
@@ -110,9 +111,9 @@ fn damaged_files_are_refused() {
     }
     let mut newer = bytes.clone();
     newer[8] = 99;
-    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 9 });
+    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 10 });
     newer[8] = 1;
-    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 9 });
+    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 10 });
     assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
     let longer = [&bytes[..], &[0]].concat();
     assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));
@@ -180,7 +181,12 @@ fn other_scenes_are_refused_by_what_differs() {
         sphere_on(grid(), material, Settings::default().with_time_rule(TimeRule::Backward))
     };
     type Scene<'a> = &'a dyn Fn(f64) -> ViscoelasticContact;
-    let scenes: [(Scene, [f64; 2], &str); 5] = [
+    let attracted = |range: f64| {
+        let law = ExponentialAttraction::new(1.0, range).unwrap();
+        builder_on(grid(), three_times()).attraction(law).build().unwrap()
+    };
+    let scenes: [(Scene, [f64; 2], &str); 6] = [
+        (&attracted, [4.0e-5, 4.1e-5], "attraction"),
         (&own, [1.0e-4, 2.0e-4], "influence"),
         (&layered, [3.0, 1.0], "influence"),
         (&closure, [0.0, 0.1], "contact compliance"),

@@ -1,6 +1,7 @@
 //! Is the contact problem of a step solved, whatever the scene, the load, the solver and the region?
 
 mod adhesion;
+mod adhesion_adaptive;
 mod adhesion_balance;
 mod adhesion_bodies;
 mod adhesion_dense;

@@ -68,7 +68,6 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
-        self.not_attracted("a checkpoint", "take snapshots, or begin again")?;
         let State { region, indenter, .. } = &self.computation.state;
         let above = &indenter.gap().above;
         region.rows().replace_file(path, |out| {
@@ -108,7 +107,6 @@ impl ViscoelasticContact {
     /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved
     /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
-        self.not_attracted("a checkpoint", "take snapshots, or begin again")?;
         let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
         rows.together(|| {
             let (mut state, progress) = self.read(path, &rows)?;

@@ -107,6 +107,9 @@ fn check(state: &State, contact: &ViscoelasticContact) -> Result<(), CheckpointE
     let (scene, built) = (&contact.scene, &contact.computation.state.history);
     let State { clock, loads, indenter, region, history, current, previous, start, .. } = state;
     let (bodies, gap, covers) = (scene.bodies, indenter.gap(), region.covers());
+    if state.attracts != scene.attraction.is_some() {
+        return malformed("another attraction");
+    }
     if !region.is_of(&scene.grid) || !(covers || windowed(&scene.settings, built, &scene.kernel)) {
         return malformed("its region is not part of the grid");
     }

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 
+use crate::adhesion::Attraction;
 use crate::contact::{Region, Scene, Settings};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
@@ -78,6 +79,12 @@ impl Built {
     }
 }
 
+/// Traction and energy of an attraction at some gaps.
+fn of_attraction(law: &dyn Attraction) -> Vec<f64> {
+    let gaps = [0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0].map(|ranges| ranges * law.range());
+    gaps.into_iter().flat_map(|gap| [law.traction(gap), law.energy(gap)]).collect()
+}
+
 /// The cells of several bodies in words; cells without anything to touch belong to no body.
 fn owners_of(gap: &Gap, owner: &[u16]) -> String {
     let (mut cells, mut hasher) = (Vec::new(), Hasher::new());
@@ -140,10 +147,10 @@ impl Mark {
 
 /// A scene, as far as it must not change. Solver, tolerance and limits may.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Fingerprint([Mark; 13]);
+pub(super) struct Fingerprint([Mark; 14]);
 
 /// The properties that are compared, by name.
-fn marks(scene: &Scene) -> [(&'static str, Mark); 13] {
+fn marks(scene: &Scene) -> [(&'static str, Mark); 14] {
     let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.settings;
     let ([n1, n2], [d1, d2]) = (scene.grid.cells(), scene.grid.spacing());
     [
@@ -158,6 +165,7 @@ fn marks(scene: &Scene) -> [(&'static str, Mark); 13] {
         ("temperature", Mark::Text(format!("{:?}", scene.temperature))),
         ("influence", Mark::Numbers(scene.kernel.mark())),
         ("contact compliance", scene.built.creep(&scene.material).clone()),
+        ("attraction", Mark::Numbers(scene.attraction.as_deref().map(of_attraction).unwrap_or_default())),
         ("geometry", Mark::Numbers(scene.built.shape.clone())),
         ("assignment of cells to rigid bodies", Mark::Text(scene.built.owners.clone())),
     ]

@@ -211,9 +211,13 @@ bitflags! {
         /// reached: the force of a slow pull-off errs by a percent or more. A fast pull finds a stiffer body, and a longer zone. Refine the mesh,
         /// or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
+        /// Surfaces that attract each other snapped together or apart within the step, or nearly so: its end is known, not the moment within it
+        /// ([`PassReport::response`](crate::contact::PassReport::response)); [`PassReport::released`](crate::contact::PassReport::released) is the
+        /// energy that was lost. Adaptive steps are shortened until the moment no longer matters.
+        const JUMP = 1 << 12;
         /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:
         /// sides of a map or a grid in µm that are read as metres are that long for their heights.
-        const FLAT = 1 << 12;
+        const FLAT = 1 << 13;
     }
 }
 
@@ -227,7 +231,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// The message of each warning.
-const MESSAGES: [(Warnings, &str); 13] = [
+const MESSAGES: [(Warnings, &str); 14] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
@@ -247,6 +251,7 @@ const MESSAGES: [(Warnings, &str); 13] = [
         Warnings::COARSE_ZONE,
         "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
     ),
+    (Warnings::JUMP, "surfaces snapped together or apart in this step"),
 ];
 
 /// The warnings, separated by semicolons; nothing if there are none.

@@ -11,7 +11,7 @@ use crate::contact::settings::Settings;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, StepError};
+use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
 
@@ -27,6 +27,8 @@ const DECADES: i32 = 40;
 /// First step of a body without elastic response, as a fraction of the remaining time: such a body has no shortest
 /// time.
 const FIRST_FRACTION: f64 = 1e-6;
+/// Greatest factor by which the response of surfaces that attract each other enlarges the error of a step. It has no bound at a jump.
+const MOST_RESPONSE: f64 = 10.0;
 /// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
 /// them.
 const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
@@ -55,7 +57,7 @@ pub(super) fn adaptive_step(
     let ViscoelasticContact { scene, computation, .. } = &*contact;
     let now = computation.state.clock.time;
     control.begin(scene, &computation.state, history, until)?;
-    let tolerance = control.solver_tolerance(scene.settings.tolerance);
+    let tolerance = control.solver_tolerance(scene);
     let touch = control.first_touch(&computation.state, history, course.stop);
     let (kink, stop) = (course.kink.min(touch), course.stop.min(touch));
     let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
@@ -70,11 +72,11 @@ pub(super) fn adaptive_step(
             return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance: control.tolerance }));
         }
         tried = time;
-        let loads = [history.before(time).validated_at(time)?];
+        let loads = [history.before(time).validated_at(time, scene.attraction.is_some())?];
         let mut step = contact.request(time, dt, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         let straying = control.watch(history, [now, time], |time| scene.reduced_time(clock, time))?;
-        let parted = state.current.contact_cells == 0 && control.stays_away(history, now, time);
+        let parted = !state.attracts && state.current.contact_cells == 0 && control.stays_away(history, now, time);
         if straying > control.tolerance && !parted {
             control.judge(step.interval.dt, straying, order, dashpot);
             continue;
@@ -91,6 +93,12 @@ pub(super) fn adaptive_step(
                 add_work(&mut wasted, &contact.computation);
                 continue;
             }
+            // the bodies separate within the step: a shorter one shows when
+            Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if dt > outlook.resolution => {
+                control.shorten(step.interval.dt);
+                add_work(&mut wasted, &contact.computation);
+                continue;
+            }
             other => other?,
         };
         let ViscoelasticContact { scene, computation, .. } = &*contact;
@@ -102,7 +110,13 @@ pub(super) fn adaptive_step(
             error.relative = error.relative.max(straying);
         }
         let excess = StepControl::excess(scene, computed, step.interval.dt);
-        error.relative *= excess;
+        error.relative *=
+            excess * computed.trial.passes.as_ref().map_or(1.0, |passes| passes.report.response.min(MOST_RESPONSE));
+        // a jump takes no time: shorter steps would show nothing but its moment
+        let jumps = scene.attraction.is_some() && dt <= outlook.resolution && error.relative > control.tolerance;
+        if jumps {
+            error.relative = 0.0;
+        }
         let by_kinks = error.by_kinks && error.relative > control.tolerance;
         let order = if by_kinks || excess > 1.0 { ORDER_OF_KINKS } else { order };
         if !control.judge(step.interval.dt, error.relative, order, dashpot) {
@@ -115,6 +129,9 @@ pub(super) fn adaptive_step(
         let is_kink = time == kink && !is_held(history, [now, time]);
         control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], is_kink, order);
         let mut report = contact.accept(attempt, step, error)?;
+        if jumps {
+            contact.computation.state.history.reset_differences();
+        }
         // bodies apart do not respond to a given approach before they touch
         let apart = !matches!(loads[0], Load::Force { .. }) && report.contact_cells == 0 && time < touch;
         if is_kink && !apart {
@@ -168,7 +185,7 @@ impl StepControl {
             let deviation = if jumped {
                 (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
             } else {
-                let load = history.before(now + dt).validated_at(now + dt)?;
+                let load = history.before(now + dt).validated_at(now + dt, scene.attraction.is_some())?;
                 let change = (magnitude(&load) - held - slope * reduced).abs();
                 let scale =
                     self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
@@ -208,7 +225,8 @@ impl StepControl {
         [now, time]: [f64; 2],
         reduced: impl Fn(f64) -> Result<f64>,
     ) -> Result<f64> {
-        let end = history.before(time).validated_at(time)?;
+        let attracts = self.scale.as_ref().is_some_and(|scale| scale.attracts);
+        let end = history.before(time).validated_at(time, attracts)?;
         let mut nodes = [(reduced(time)?, end); NODES + 1];
         let known = self.nodes.len().min(NODES);
         nodes[1..=known].copy_from_slice(&self.nodes[..known]);
@@ -218,7 +236,7 @@ impl StepControl {
         let mut most = 0.0_f64;
         for share in SHARES {
             let between = now + share * (time - now);
-            let load = history.at(between).validated_at(between)?;
+            let load = history.at(between).validated_at(between, attracts)?;
             let like = load.is_like(&start) && load.is_like(&end);
             most = most.max(if like { load.deviation(reduced(between)?, nodes, scale) } else { f64::INFINITY });
         }

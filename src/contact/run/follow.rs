@@ -193,12 +193,8 @@ impl<'a> Run<'a> {
 
     fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
-        if matches!(self.stepping, Stepping::Adaptive { .. }) {
-            self.contact.not_attracted("Stepping::adaptive", "take Stepping::fixed")?;
-        }
-
         let now = self.contact.time();
-        let load = self.history.at(now).validated_at(now)?;
+        let load = self.history.at(now).validated_at(now, self.contact.scene.attraction.is_some())?;
         if load != self.contact.load() {
             if let Some(control) = &mut self.progress.control {
                 control.jump();
@@ -230,7 +226,7 @@ impl<'a> Run<'a> {
         }
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
         let time = self.next_time(now, dt, corner)?;
-        let load = self.history.before(time).validated_at(time)?;
+        let load = self.history.before(time).validated_at(time, self.contact.scene.attraction.is_some())?;
         let report = self.step_to(time, time - now, load)?;
         if time == corner {
             self.contact.computation.state.history.reset_differences();
@@ -262,8 +258,8 @@ impl<'a> Run<'a> {
     }
 
     pub(in crate::contact) fn solver_tolerance(&self) -> f64 {
-        let wanted = self.contact.settings().tolerance;
-        self.progress.control.as_ref().map_or(wanted, |control| control.solver_tolerance(wanted))
+        let scene = &self.contact.scene;
+        self.progress.control.as_ref().map_or(scene.settings.tolerance, |control| control.solver_tolerance(scene))
     }
 
     /// The first of the times to stop at after `now`.

@@ -27,6 +27,8 @@ const LEAST: f64 = 1e-290;
 pub(super) struct RunScale {
     /// Approach at first touch.
     touch: f64,
+    /// Whether bodies pull at each other, so that heights above first touch are loads, too.
+    pub(super) attracts: bool,
     /// Greatest force.
     force: f64,
     /// Greatest prescribed depth below first touch, and an estimate of the greatest v that it requires.
@@ -50,7 +52,7 @@ impl RunScale {
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
-        let mut scale = RunScale { touch, ..RunScale::default() };
+        let mut scale = RunScale { touch, attracts: state.attracts, ..RunScale::default() };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
@@ -67,7 +69,7 @@ impl RunScale {
         let mut last = None;
         for time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let load = load(history, time).validated_at(time)?;
+                let load = load(history, time).validated_at(time, scene.attraction.is_some())?;
                 scale.include(&load);
                 let is_force = |load: &Load| matches!(load, Load::Force { .. });
                 let before = last.replace(load);
@@ -114,7 +116,10 @@ impl RunScale {
     /// load.
     pub(super) fn magnitude(&self, load: &Load) -> f64 {
         match load {
-            Load::Force { normal, .. } => *normal,
+            Load::Force { normal, .. } => normal.abs(),
+            Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } if self.attracts => {
+                (depth - self.touch).abs()
+            }
             Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => (depth - self.touch).max(0.0),
         }
     }
@@ -234,7 +239,7 @@ impl Rises {
         let (mut rises, mut again, mut last) = (Rises::default(), false, None);
         for &time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let approach = match load(history, time).validated_at(time)? {
+                let approach = match load(history, time).validated_at(time, scene.attraction.is_some())? {
                     Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth,
                     Load::Force { .. } => {
                         // a force may have receded, too

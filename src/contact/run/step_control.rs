@@ -51,6 +51,8 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
+/// Surfaces that attract each other end their passes at a hundred tolerances of the solver.
+const SHARE_OF_PASSES: f64 = 0.03;
 /// An error of the solver counts so many times as much as its response to the surface that the body meets later: the errors of many
 /// steps add up.
 const SOLVER_ON_MEETING: f64 = 3.0;
@@ -123,9 +125,10 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no given approach is to come.
-    pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
-        wanted.max(SOLVER_SHARE * self.tolerance)
+    /// Tolerance of the solver that suits the tolerance in time, at least that of the settings, where no given approach is to come.
+    pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
+        let share = if scene.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
+        scene.settings.tolerance.max(share * self.tolerance)
     }
 
     /// Tolerance of the solver in a step of length `dt` to the time `now`, at most `tolerance`: where a given approach is to come,
@@ -143,16 +146,21 @@ impl StepControl {
     }
 
     /// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where a body is
-    /// free to tilt: errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at the ends of a grid of length L.
+    /// free to tilt on a small contact, whose errors are greater by its lever at the end of the grid. Where cells leave on one side,
+    /// errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at the ends of a grid of length L.
     pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
         let clock = &tried.state.clock;
         let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
         let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
         let tilts = tried.trial.free.iter().any(Freedom::tilts);
-        let reach = if tilts { tried.pressed().1 } else { None };
+        let (cells, reach) = if tilts { tried.pressed() } else { (0, None) };
+        let leave = cells < tried.state.current.contact_cells;
         let lever = |Extent { low, high }: Extent| {
-            let levers = [0, 1].map(|axis| scene.grid.cells()[axis] as f64 / (high[axis] - low[axis]).max(1) as f64);
-            levers[0].max(levers[1])
+            let lever = |axis: usize| {
+                let (length, width) = (scene.grid.cells()[axis] as f64, (high[axis] - low[axis]) as f64);
+                if leave { length / width.max(1.0) } else { 0.5 * length / (width + 1.0) }
+            };
+            lever(0).max(lever(1)).max(1.0)
         };
         of_turn * reach.map_or(1.0, lever)
     }
@@ -161,7 +169,7 @@ impl StepControl {
     pub(super) fn begin(&mut self, scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<()> {
         let (now, reduced) = (state.clock.time, state.clock.reduced_time);
         if self.nodes.is_empty() {
-            self.nodes.push((reduced, history.at(now).validated_at(now)?));
+            self.nodes.push((reduced, history.at(now).validated_at(now, scene.attraction.is_some())?));
             self.since = reduced;
         }
         if self.scale.is_none() {

@@ -33,7 +33,6 @@ pub(crate) struct State {
     /// Displacement and past of the bodies.
     pub(super) history: History,
     /// Whether the surfaces attract each other.
-    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(super) attracts: bool,
     pub(super) current: Equilibrium,
     /// At the start of the last step.

@@ -201,7 +201,7 @@ impl Run<'_> {
 
     /// [`Run::within_step`], and the rectangle of the pressed cells.
     pub(in crate::contact) fn reached_within_step(&self, time: f64) -> Result<(ViscoelasticContact, Option<Extent>)> {
-        let load = || Ok(vec![self.history.at(time).validated_at(time)?]);
+        let load = || Ok(vec![self.history.at(time).validated_at(time, self.contact.scene.attraction.is_some())?]);
         self.contact.advanced_within_step(time, self.solver_tolerance(), |_| load())
     }
 }

@@ -1,7 +1,7 @@
 //! Acceptance of a computed step, and its warnings.
 
 use crate::contact::builder::build::cells_in_zone;
-use crate::contact::{Computation, Edge, Scene, State, Step, TimeRule, Warnings};
+use crate::contact::{Computation, Edge, Scene, Step, TimeRule, Warnings};
 use crate::extent::Extent;
 use crate::rheology::is_known;
 use crate::solver::RigidMotion;
@@ -61,10 +61,11 @@ const STIFFEST: f64 = 1e13;
 /// The warnings of the step accepted last, with all pressed cells in `reach`, and the greatest slope in contact if it is steep.
 pub(super) fn collect_warnings(
     scene: &Scene,
-    state: &State,
+    computation: &Computation,
     reach: Option<Extent>,
     max_slope: Option<f64>,
 ) -> Warnings {
+    let Computation { state, trial, .. } = computation;
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
     let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
@@ -106,6 +107,7 @@ pub(super) fn collect_warnings(
         (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
         (Warnings::MODULUS, at_once * SOFTEST > 1.0 || (at_once > 0.0 && at_once * STIFFEST < 1.0)),
         (Warnings::STEEP, max_slope.is_some()),
+        (Warnings::JUMP, trial.passes.as_ref().is_some_and(|passes| passes.report.jumped())),
         (Warnings::FLAT, state.indenter.is_too_flat(&scene.grid)),
     ];
     reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()

@@ -20,6 +20,14 @@ impl Computation {
         released && trial.free[body].translation
     }
 
+    /// By what errors are weighted: the pressure at the end of the step tried, at its start, and at the start of the step before, or the net
+    /// traction where surfaces attract each other.
+    fn weights(&self) -> [&[f64]; 3] {
+        let Computation { state, trial, .. } = self;
+        let solutions = [&trial.solution, &state.current.solution, &state.previous.solution];
+        trial.passes.as_ref().map_or(solutions.map(|solution| &solution.pressure[..]), |passes| passes.weights())
+    }
+
     /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
     /// the datum of the gap; NaN if that is not known.
     fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
@@ -137,9 +145,12 @@ pub(in crate::contact) fn error_in_time(
     let amplified = |one: f64, all: f64| if one > 0.0 { (all / one).clamp(1.0, steps.max(1.0)) } else { 1.0 };
     let amplification = amplified(young, old);
     let on_switch = one * (1.0 + agreement * (amplified(one, all) - 1.0));
-    let pressure = [&pressure[..], &before.pressure, &state.previous.solution.pressure];
+    let pressure = tried.weights();
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
-    let matters = [forces > 0, forces < trial.free.len() || has_stiff_spring(scene, state, step)];
+    // an attraction pulls at a surface whose displacement is free
+    let attracted = scene.attraction.is_some();
+    let matters =
+        [forces > 0 || attracted, forces < trial.free.len() || attracted || has_stiff_spring(scene, state, step)];
     let gap = &tried.window.gap(&step.indenter).above;
     let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
     let rests_at = from_rest.then(|| first_touch(tried, gap));
@@ -192,8 +203,7 @@ pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'
     };
     let jumped = state.clock.last_dt == 0.0;
     let [now, before] = [&state.current, &state.previous].map(|ends| &ends.solution.potential);
-    let (pressure, potential, displacement) =
-        (&trial.solution.pressure, &trial.solution.potential, state.history.trial());
+    let ([pressure, ..], potential, displacement) = (tried.weights(), &trial.solution.potential, state.history.trial());
     // products of great pressures and displacements would overflow
     let rows = state.region.rows();
     let most = rows.greatest(greatest(pressure));

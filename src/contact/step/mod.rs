@@ -177,7 +177,7 @@ impl ViscoelasticContact {
             dt: state.clock.last_length,
             time_error,
             estimated: Estimated::under(&state.loads),
-            warnings: collect_warnings(scene, state, reach, max_slope),
+            warnings: collect_warnings(scene, &self.computation, reach, max_slope),
             max_slope,
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,

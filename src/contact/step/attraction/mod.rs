@@ -8,6 +8,14 @@
 //! Passes are extrapolated by Anderson's method (J. ACM 12, 1965). An extrapolated s is kept only where the energy falls; else the plain pass
 //! follows. So a step descends from the state before it, and ends in the valley that this state belongs to.
 
+mod energy;
+mod passes;
+
+pub use passes::PassReport;
+pub(in crate::contact) use passes::Passes;
+
+use passes::KEPT;
+
 use crate::adhesion::Attraction;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
@@ -17,7 +25,6 @@ use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
 use crate::contact::window::window::Window;
 use crate::error::{AdhesionError, Result, StepError};
-use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Stop};
@@ -29,88 +36,11 @@ const CHANGE: f64 = 100.0;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;
 const LOOSEST: f64 = 1e-3;
-/// Passes that are extrapolated from.
-const KEPT: usize = 3;
-/// Share of the square of a change, independent of the other changes, that counts as zero.
-const DEPENDENT: f64 = 1e-10;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
 const GREATEST_CHANGE: f64 = 0.5;
-
-/// What the passes of a step work in, besides the trial, and how the last step went.
-#[derive(Debug, Clone)]
-pub(in crate::contact) struct Passes {
-    /// K s.
-    image: Vec<f64>,
-    /// The gap before any traction.
-    open: Vec<f64>,
-    /// s of passes that were kept, and s at the gaps that they led to, the last first.
-    kept: [[Vec<f64>; 2]; KEPT],
-    known: usize,
-    pub(in crate::contact) report: PassReport,
-}
-
-/// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at the gap that the one
-/// before it led to ([`ViscoelasticContact::passes`](crate::ViscoelasticContact::passes)).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[non_exhaustive]
-pub struct PassReport {
-    /// Passes.
-    pub passes: usize,
-    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up.
-    pub rejected: usize,
-    /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
-    pub rise: f64,
-}
-
-/// Sums over the cells of a pass.
-struct Found {
-    /// Energy over the area of a cell.
-    energy: f64,
-    /// The sum of its parts, and of c z K z.
-    scale: f64,
-    /// The greatest change of s over the greatest traction.
-    change: f64,
-}
-
-impl Passes {
-    /// Fields for each cell, with s of the trial.
-    pub(in crate::contact) const FIELDS: usize = 2 + 2 * KEPT + 1;
-
-    fn new(cells: usize) -> Passes {
-        let field = || vec![0.0; cells];
-        let kept = std::array::from_fn(|_| [field(), field()]);
-        Passes { image: field(), open: field(), kept, known: 0, report: PassReport::default() }
-    }
-
-    /// The next s: from the kept passes, the last of which led from s to g, with g − Σ γ (g − g′), where γ makes the change f = g − s
-    /// less Σ γ (f − f′) as small as it can.
-    fn extrapolate(&self, state: &State, greatest: f64, next: &mut [f64]) {
-        const OTHERS: usize = KEPT - 1;
-        let [[s, g], others @ ..] = &self.kept;
-        let known = self.known - 1;
-        let change = |k: usize, j: usize| (g[k] - s[k]) - (others[j][1][k] - others[j][0][k]);
-        let sums = state.region.rows().sum_terms(|k| {
-            let mut terms = [0.0; OTHERS * (OTHERS + 1)];
-            for i in 0..known {
-                let own = change(k, i);
-                terms[OTHERS * OTHERS + i] = own * (g[k] - s[k]);
-                (0..known).for_each(|j| terms[OTHERS * i + j] = own * change(k, j));
-            }
-            Some(terms)
-        });
-        let gram: [[f64; OTHERS]; OTHERS] = std::array::from_fn(|i| std::array::from_fn(|j| sums[OTHERS * i + j]));
-        let weights = solve_normal_equations(&gram, std::array::from_fn(|i| sums[OTHERS * OTHERS + i]), DEPENDENT);
-        for_each_band([next], |first, [next]| {
-            for (next, k) in next.iter_mut().zip(first..) {
-                let moved = (0..known).map(|j| weights[j] * (g[k] - others[j][1][k])).sum::<f64>();
-                *next = (g[k] - moved).clamp(0.0, greatest);
-            }
-        });
-    }
-}
 
 /// A step of surfaces that attract each other.
 pub(super) struct AttractedStep<'a> {
@@ -165,7 +95,7 @@ impl AttractedStep<'_> {
             let pulled = self.add_to_load(wanted, trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
             if !carried && plain {
-                let force = wanted.total * self.scene.grid.cell_area() * state.region.images() as f64;
+                let force = wanted.total * self.area();
                 return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
             }
             let tolerance = inner.max(stop.tolerance);
@@ -188,6 +118,10 @@ impl AttractedStep<'_> {
                 (plain, wait, penalty) = (true, penalty, 2 * penalty);
                 continue;
             };
+            if own.report.passes == 1 {
+                let Passes { first, kept: [[s, g], ..], .. } = own;
+                first.iter_mut().zip(s.iter().zip(g)).for_each(|(first, (s, g))| *first = *g - *s);
+            }
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
@@ -202,6 +136,9 @@ impl AttractedStep<'_> {
                 trial.solution.counts = counts;
                 let net = &mut trial.solution.potential;
                 net.iter_mut().zip(&own.image).for_each(|(net, image)| *net -= image);
+                own.report.released = self.area() * (self.energy_at_start(wanted, own, trial) - found.energy);
+                own.report.response = self.response(own, trial);
+                own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
                 return Ok(());
             }
             if change <= limit {
@@ -303,7 +240,7 @@ impl AttractedStep<'_> {
         if wanted.tilts() {
             trial.solution.motions[0] = region.modes(trial.free[0]).coefficients(motion);
         }
-        sum * self.scene.grid.cell_area() * region.images() as f64
+        sum * self.area()
     }
 
     /// One contact problem with the attraction of the trial, which pulls with the force `pulled` \[N\].
@@ -325,43 +262,9 @@ impl AttractedStep<'_> {
         solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
     }
 
-    /// Keeps s of the pass and s at the gap that it led to; energy and change of the pass. The energy is that of the Lagrangian, in which the
-    /// error of the pass enters with its square.
-    fn find(&self, wanted: Freedom, own: &mut Passes, trial: &Trial) -> Found {
-        let AttractedStep { state, law, given: [c, _], .. } = *self;
-        let (rows, solution, gap) = (state.region.rows(), &trial.solution, &trial.gap);
-        let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
-        let height = |k: usize| gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
-        let [s, g] = &mut own.kept[0];
-        s.copy_from_slice(&solution.attraction);
-        for_each_band([&mut *g], |first, [g]| {
-            for (g, k) in g.iter_mut().zip(first..) {
-                let h = if solution.pressure[k] > 0.0 { 0.0 } else { height(k).max(0.0) };
-                *g = if h.is_finite() { law.traction(h) } else { 0.0 };
-            }
-        });
-        let (s, g, image) = (&*s, &*g, &own.image);
-        let [elastic, attracted, wall, pressed] = rows.sum_terms(|k| {
-            let (z, h) = (solution.pressure[k], height(k));
-            let stored = 0.5 * c * (z - s[k]) * (solution.potential[k] - image[k]);
-            let open = if z > 0.0 { 0.0 } else { h.max(0.0) };
-            let wall = if z > 0.0 { z * h } else { 0.0 };
-            h.is_finite().then(|| [stored, law.energy(open), wall, c * z * solution.potential[k]])
-        });
-        let area = self.scene.grid.cell_area() * state.region.images() as f64;
-        let position = modes.physical(motion);
-        let of_load = match self.step.loads[0] {
-            Load::Force { .. } => -wanted.total * position.at(wanted.point),
-            Load::Spring { stiffness, drive, .. } => {
-                let extended = drive - self.step.indenter.gap().datum - motion.0[0];
-                0.5 * stiffness * extended * extended / area
-            }
-            Load::Approach { .. } => 0.0,
-        };
-        let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
-        let change = changes.fold(0.0, f64::max) / law.traction(0.0);
-        let scale = elastic.abs() + attracted + pressed.abs() + of_load.abs() + f64::MIN_POSITIVE;
-        Found { energy: elastic - attracted - wall + of_load, scale, change }
+    /// Force over Σ p \[m²\].
+    fn area(&self) -> f64 {
+        self.scene.grid.cell_area() * self.state.region.images() as f64
     }
 }
 

@@ -1,0 +1,104 @@
+//! The energy of a pass, of the state before the step, and how the surfaces respond.
+
+use super::{AttractedStep, Passes};
+use crate::contact::step::request::Trial;
+use crate::load::Load;
+use crate::parallel::for_each_band;
+use crate::solver::{Freedom, RigidMotion, Solution};
+
+/// Sums over the cells of a pass.
+pub(super) struct Found {
+    /// Energy over the area of a cell.
+    pub(super) energy: f64,
+    /// The sum of its parts, and of c z K z.
+    pub(super) scale: f64,
+    /// The greatest change of s over the greatest traction.
+    pub(super) change: f64,
+}
+
+impl AttractedStep<'_> {
+    /// Keeps s of the pass and s at the gap that it led to; energy and change of the pass. The energy is that of the Lagrangian, in which the
+    /// error of the pass enters with its square.
+    pub(super) fn find(&self, wanted: Freedom, own: &mut Passes, trial: &Trial) -> Found {
+        let AttractedStep { state, law, given: [c, _], .. } = *self;
+        let (rows, solution, gap) = (state.region.rows(), &trial.solution, &trial.gap);
+        let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
+        let height = |k: usize| gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
+        let [s, g] = &mut own.kept[0];
+        s.copy_from_slice(&solution.attraction);
+        for_each_band([&mut *g], |first, [g]| {
+            for (g, k) in g.iter_mut().zip(first..) {
+                let h = if solution.pressure[k] > 0.0 { 0.0 } else { height(k).max(0.0) };
+                *g = if h.is_finite() { law.traction(h) } else { 0.0 };
+            }
+        });
+        let (s, g, image) = (&*s, &*g, &own.image);
+        let cell = |k: usize| {
+            let (z, h) = (solution.pressure[k], height(k));
+            let [open, wall] = if z > 0.0 { [0.0, z * h] } else { [h.max(0.0), 0.0] };
+            [z - s[k], solution.potential[k] - image[k], open, wall]
+        };
+        let [energy, parts] = self.energy(wanted, modes.physical(motion), cell);
+        let pressed = rows.sum_of_pairs(&solution.pressure, &solution.potential, |z, v| c * z * v);
+        let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
+        let change = changes.fold(0.0, f64::max) / law.traction(0.0);
+        Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change }
+    }
+
+    /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from z − s, K (z − s), the gap and the
+    /// work of the wall of a cell.
+    fn energy(&self, wanted: Freedom, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> [f64; 2] {
+        let AttractedStep { state, law, given: [c, _], .. } = *self;
+        let [elastic, attracted, wall] = state.region.rows().sum_terms(|k| {
+            let [traction, potential, open, wall] = cell(k);
+            open.is_finite().then(|| [0.5 * c * traction * potential, law.energy(open), wall])
+        });
+        let of_load = match self.step.loads[0] {
+            Load::Force { .. } => -wanted.total * motion.at(wanted.point),
+            Load::Spring { stiffness, drive, .. } => {
+                let extended = drive - self.step.indenter.gap().datum - motion.approach;
+                0.5 * stiffness * extended * extended / self.area()
+            }
+            Load::Approach { .. } => 0.0,
+        };
+        [elastic - attracted - wall + of_load, elastic.abs() + attracted + of_load.abs()]
+    }
+
+    /// The energy over the area of a cell of the state before the step, under the load and the creep of its end.
+    pub(super) fn energy_at_start(&self, wanted: Freedom, own: &Passes, trial: &Trial) -> f64 {
+        let (state, step, c) = (self.state, self.step, self.given[0]);
+        let Solution { pressure, attraction, potential, .. } = &state.current.solution;
+        let (RigidMotion { approach, tilt }, prescribed) = (state.current.motions[0], step.prescribed(0));
+        let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
+        let freedom = trial.free[0];
+        let motion = RigidMotion {
+            approach: free(freedom.translation, approach - step.indenter.gap().datum - prescribed.approach),
+            tilt: [0, 1].map(|axis| free(freedom.tilt[axis], tilt[axis] - prescribed.tilt[axis])),
+        };
+        let cell = |k: usize| {
+            let h = own.open[k] + c * potential[k] - motion.at(state.region.center(k));
+            let traction = pressure[k] - attraction[k];
+            // the wall of the state before holds its cells while the gap changes by what the step begins with
+            let [open, wall] = if pressure[k] > 0.0 { [0.0, traction * h] } else { [h.max(0.0), 0.0] };
+            [traction, potential[k], open, wall]
+        };
+        self.energy(wanted, motion, cell)[0]
+    }
+
+    /// How the surfaces respond: of the change e of s from its guess, a first pass finds r, and e·e/(e·r) is 1/(1 − λ) for the rate λ of the
+    /// passes.
+    pub(super) fn response(&self, own: &Passes, trial: &Trial) -> f64 {
+        let (state, reach) = (self.state, trial.reach);
+        if state.is_undisturbed() {
+            return 1.0;
+        }
+        let [now, before] = [&state.current.solution.attraction, &state.previous.solution.attraction];
+        let [square, first] = state.region.rows().sum_terms(|k| {
+            let change = trial.solution.attraction[k] - (now[k] + reach * (now[k] - before[k]));
+            Some([change * change, change * own.first[k]])
+        });
+        let ratio = square / first;
+        // no change has no ratio
+        if ratio < 0.0 { f64::INFINITY } else { ratio.max(1.0) }
+    }
+}
