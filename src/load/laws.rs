@@ -122,13 +122,14 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
     Ok(())
 }
 
-/// The loads are valid, finite with forces that press and springs that resist, before and after jumps and between the times.
+/// The loads are valid, finite with forces that press and springs that resist, before and after jumps and between the times. Forces that pull, which
+/// only surfaces that attract each other allow, break it.
 ///
 /// # Errors
 /// The first violation.
 pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for t in and_between(&moments(history, times)) {
-        for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
+        for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate_in(false).is_err()) {
             let (named, found) = (load.names(), load.values());
             let k = (0..VALUES).find(|&k| !found[k].is_finite()).unwrap_or(0);
             Violation::check(IS_A_LOAD, named[k], t, [found[k], 0.0], false)?;
