@@ -87,7 +87,9 @@ pub(super) fn adaptive_step(
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, tolerance, [time, step.interval.dt], &outlook);
         let attempt = match contact.attempt(&step) {
-            Err(Error::Step(StepError::NotConverged { .. })) if failures < MAX_SOLVER_RETRIES => {
+            Err(Error::Step(StepError::NotConverged { .. }) | Error::Adhesion(AdhesionError::NotConverged { .. }))
+                if failures < MAX_SOLVER_RETRIES =>
+            {
                 failures += 1;
                 control.shorten(step.interval.dt);
                 add_work(&mut wasted, &contact.computation);
