@@ -125,7 +125,7 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Tolerance of the solver that suits the tolerance in time, at least that of the settings, where no given approach is to come.
+    /// Tolerance of the solver that suits the tolerance in time, at least the tolerance of the settings, where no given approach is to come.
     pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
         let share = if scene.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
         scene.settings.tolerance.max(share * self.tolerance)

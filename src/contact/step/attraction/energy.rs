@@ -17,8 +17,8 @@ pub(super) struct Found {
 }
 
 impl AttractedStep<'_> {
-    /// Keeps s of the pass and s at the gap that it led to; energy and change of the pass. The energy is that of the Lagrangian, in which the
-    /// error of the pass enters with its square.
+    /// Keeps s of the pass and s at the gap that it led to; energy and change of the pass. The energy is the value of the Lagrangian, in which
+    /// the error of the pass enters with its square.
     pub(super) fn find(&self, wanted: Freedom, own: &mut Passes, trial: &Trial) -> Found {
         let AttractedStep { state, law, given: [c, _], .. } = *self;
         let (rows, solution, gap) = (state.region.rows(), &trial.solution, &trial.gap);

@@ -39,7 +39,7 @@ pub struct PassReport {
     pub rejected: usize,
     /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
     pub rise: f64,
-    /// The energy of the state before the step, under the load and the creep of its end, less that of the state at its end \[J\]: what a jump loses.
+    /// The energy of the state before the step, under the load and the creep of its end, less the energy of the state at its end \[J\]: the loss of a jump.
     /// Where nothing jumps, it is of second order in the length of the step, of either sign.
     pub released: f64,
     /// By how many times the response of the surfaces enlarges a change of the attraction: 1 where it is weak, above 15 in a jump
