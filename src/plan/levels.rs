@@ -254,7 +254,7 @@ pub(super) struct Trace {
     pub(super) level: f64,
     pub(super) levels: [f64; 2],
     /// p = w(c) p_e(c) − ∫ p_e dw: errors of the elastic pressure and the elastic force, relative to their values, times
-    /// these factors at most are those of the pressure and the force of the run.
+    /// these factors are bounds of the errors of the pressure and the force of the run.
     pub(super) pressure_amplification: f64,
     pub(super) force_amplification: f64,
     /// Difference of the contact radius between the run on cells and its elastic states, over the greatest: the pressures

@@ -13,7 +13,7 @@ use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-12;
-/// Least dln δ/dln l of the power below the first state: far below that of any shape that contacts are made of.
+/// Least dln δ/dln l of the power below the first state: far below the slope of any shape that contacts are made of.
 const LEAST_SLOPE: f64 = 0.01;
 
 /// An elastic contact of unit compliance at one level.
@@ -189,7 +189,7 @@ impl ElasticStates {
         approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach
     }
 
-    /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times those of the chords beside them, so that
+    /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times the slopes of the chords beside them, so that
     /// cubics rise (Fritsch & Carlson 1980) whatever a table holds.
     fn nodes(&self) -> Vec<Node> {
         let node = |state: &ElasticState| {
@@ -331,7 +331,7 @@ impl ElasticStates {
         self.power_law(level, |state| state.area, 2.0)
     }
 
-    /// Cells in contact at a level: those of the state there, or else below it.
+    /// Cells in contact at a level: the cells of the state there, or else of the state below it.
     pub(super) fn cells(&self, level: f64) -> usize {
         let above = self.states.partition_point(|state| state.level * (1.0 - NEAREST) <= level);
         if level > 0.0 { self.states[above.saturating_sub(1)].cells } else { 0 }

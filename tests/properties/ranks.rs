@@ -57,7 +57,7 @@ fn random_scenes_are_the_same_on_all_ranks() {
     assert!(2 * pressed > scenes as usize && 3 * failed < scenes as usize, "{pressed} pressed, {failed} failed");
 }
 
-/// The greatest slope is that of all rows, those at the ends of ranks included, whatever is folded; so is flatness.
+/// The greatest slope is found over all rows, the rows at the ends of ranks included, whatever is folded; so is flatness.
 #[test]
 fn slopes_are_warned_of_on_all_ranks() {
     for (mut scene, warning) in chosen_scenes::sloped() {

@@ -163,14 +163,14 @@ impl AttractedStep<'_> {
     /// Writes z, s and K z of a guess, and K s: extrapolated from the last two states, or the last state where s has changed much.
     fn guess(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, greatest: f64) -> Counts {
         let (state, step) = (self.state, self.step);
+        if state.is_undisturbed() {
+            return self.first_guess(own, window, trial);
+        }
         let (now, before) = (&state.current.solution, &state.previous.solution);
         let mut reach = state.extrapolation.reach(step.interval.dt);
         let changes = now.attraction.iter().zip(&before.attraction).map(|(now, before)| (now - before).abs());
         if changes.fold(0.0, f64::max) > GREATEST_CHANGE * greatest {
             reach = 0.0;
-        }
-        if state.is_undisturbed() {
-            return self.first_guess(own, window, trial);
         }
         trial.reach = reach;
         fill_guess(state, window, trial, |now, before| now + reach * (now - before));
