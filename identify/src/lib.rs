@@ -5,6 +5,9 @@
 
 mod error;
 mod experiment;
+mod forward;
+mod model;
 
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment, Protocol};
+pub use model::{Model, Scale};

@@ -1,0 +1,68 @@
+//! The elastic curve of a tip: force, stiffness and area over depth, for unit modulus.
+
+use std::sync::Arc;
+
+use viscocontact::states::ElasticStates;
+
+/// Relative distance of the levels from which a slope is taken.
+const NEAR: f64 = 1e-4;
+/// Least depth, relative to the greatest: there the stiffness is taken of a tip that just touches.
+const TOUCH: f64 = 1e-14;
+
+/// Elastic contact of unit modulus at one depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Elastic {
+    /// Force over modulus \[m²\].
+    pub(super) force: f64,
+    /// Growth of the force with the depth \[m\].
+    pub(super) stiffness: f64,
+}
+
+/// The elastic states of a tip by depth.
+#[derive(Clone, Debug)]
+pub(super) struct Tip {
+    states: Arc<ElasticStates>,
+    /// Approach at first touch \[m\].
+    rest: f64,
+    last_depth: f64,
+}
+
+impl Tip {
+    pub(super) fn new(states: &Arc<ElasticStates>) -> Tip {
+        let rest = states.approach(0.0);
+        let last = states.states().last().map_or(0.0, |state| state.level);
+        Tip { states: Arc::clone(states), rest, last_depth: states.approach(last) - rest }
+    }
+
+    /// Approach at first touch \[m\], from which depths are measured.
+    pub(super) fn rest(&self) -> f64 {
+        self.rest
+    }
+
+    /// Depth of the last state \[m\].
+    pub(super) fn last_depth(&self) -> f64 {
+        self.last_depth
+    }
+
+    /// The elastic contact at a depth; `None` beyond the last state.
+    pub(super) fn at(&self, depth: f64) -> Option<Elastic> {
+        if depth <= 0.0 {
+            return Some(self.first());
+        }
+        let level = self.states.level_at(self.rest + depth.min(self.last_depth));
+        let inside = depth <= self.last_depth * (1.0 + NEAR) && level.is_finite();
+        inside.then(|| Elastic { force: level, stiffness: self.stiffness(level) })
+    }
+
+    /// The elastic contact at first touch: a flat punch is stiff there.
+    pub(super) fn first(&self) -> Elastic {
+        let level = self.states.level_at(self.rest + TOUCH * self.last_depth);
+        Elastic { force: 0.0, stiffness: if level > 0.0 { self.stiffness(level) } else { 0.0 } }
+    }
+
+    /// dl/dδ between two levels nearby: the derivative of the curve that the states interpolate.
+    fn stiffness(&self, level: f64) -> f64 {
+        let [low, high] = [1.0 - NEAR, 1.0 + NEAR].map(|factor| self.states.approach(level * factor));
+        2.0 * NEAR * level / (high - low)
+    }
+}
