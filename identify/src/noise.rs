@@ -1,0 +1,129 @@
+//! Noise of the force, and data made white.
+
+use faer::{Mat, Side};
+
+use crate::error::{Error, Result, within};
+
+/// The noise of the measured forces.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Noise {
+    /// Independent from sample to sample, with one unknown standard deviation.
+    #[default]
+    White,
+    /// Each deviation is φ times the one before plus an independent part: amplifiers, filters, thermal motion of a
+    /// cantilever. φ is estimated from the residuals.
+    Autoregressive,
+    /// Autoregressive with a known φ, between −1 and 1.
+    AutoregressiveWith(f64),
+    /// The covariance matrix of the forces of each curve \[N²\], by rows.
+    Covariance(Vec<Vec<f64>>),
+}
+
+/// Makes the noise of one curve white: r ↦ L⁻¹ r where L Lᵀ is the covariance, up to a factor.
+#[derive(Clone, Debug)]
+pub(crate) enum Whitening {
+    /// First-order autoregressive noise; white if the coefficient is 0.
+    Autoregressive(f64),
+    /// By the Cholesky factor.
+    Factor(Mat<f64>),
+}
+
+impl Whitening {
+    pub(crate) fn of(noise: &Noise, curve: usize, len: usize) -> Result<Whitening> {
+        match noise {
+            Noise::White | Noise::Autoregressive => Ok(Whitening::Autoregressive(0.0)),
+            &Noise::AutoregressiveWith(phi) => {
+                within("autoregressive coefficient", phi, phi.abs() < 1.0, "between -1 and 1")?;
+                Ok(Whitening::Autoregressive(phi))
+            }
+            Noise::Covariance(matrices) => {
+                let matrix = matrices.get(curve).map_or(&[][..], |matrix| matrix);
+                if matrix.len() != len * len {
+                    let (len, expected) = (matrix.len(), len * len);
+                    return Err(Error::WrongLength { field: "covariance", len, expected });
+                }
+                let factor = Mat::from_fn(len, len, |i, j| matrix[i * len + j]).llt(Side::Lower);
+                let factor = factor.map_err(|_| Error::NotConverged {
+                    iterations: 0,
+                    reason: "the covariance of the noise is not positive definite: give variances on its diagonal",
+                })?;
+                Ok(Whitening::Factor(factor.L().to_owned()))
+            }
+        }
+    }
+
+    /// Makes a column white in place.
+    pub(crate) fn apply(&self, column: &mut [f64]) {
+        match self {
+            Whitening::Autoregressive(0.0) => {}
+            Whitening::Autoregressive(phi) => {
+                for k in (1..column.len()).rev() {
+                    column[k] -= phi * column[k - 1];
+                }
+                if let Some(first) = column.first_mut() {
+                    *first *= (1.0 - phi * phi).sqrt();
+                }
+            }
+            Whitening::Factor(factor) => {
+                for i in 0..column.len() {
+                    let known: f64 = (0..i).map(|j| factor[(i, j)] * column[j]).sum();
+                    column[i] = (column[i] - known) / factor[(i, i)];
+                }
+            }
+        }
+    }
+
+    /// −ln of the determinant of the covariance, up to the factor σ².
+    pub(crate) fn log_weight(&self) -> f64 {
+        match self {
+            Whitening::Autoregressive(phi) => (1.0 - phi * phi).ln(),
+            Whitening::Factor(factor) => -2.0 * (0..factor.nrows()).map(|i| factor[(i, i)].ln()).sum::<f64>(),
+        }
+    }
+}
+
+/// The autoregressive coefficient of residuals, by the correlation of neighbours with its bias to first order removed
+/// (Marriott & Pope 1954).
+pub(crate) fn autoregression<'a>(residuals: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let (mut product, mut square, mut count) = (0.0, 0.0, 0);
+    for curve in residuals {
+        product += curve.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+        square += curve.iter().map(|r| r * r).sum::<f64>();
+        count += curve.len();
+    }
+    let phi = if square > 0.0 { product / square } else { 0.0 };
+    (phi + (1.0 + 3.0 * phi) / count.max(1) as f64).clamp(-0.99, 0.99)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whitening_inverts_the_covariance() {
+        // covariance φ^|i−j|/(1 − φ²) of an autoregressive process, both ways
+        let (phi, len) = (0.6_f64, 7);
+        let matrix: Vec<f64> = (0..len * len)
+            .map(|k| phi.powi((k / len).abs_diff(k % len) as i32) / (1.0 - phi * phi))
+            .collect();
+        let noise = Noise::Covariance(vec![matrix]);
+        for k in 0..len {
+            let mut one = vec![0.0; len];
+            one[k] = 1.0;
+            let mut other = one.clone();
+            Whitening::of(&noise, 0, len).unwrap().apply(&mut one);
+            Whitening::Autoregressive(phi).apply(&mut other);
+            assert!(one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14), "{one:?} {other:?}");
+        }
+        let given = Whitening::of(&noise, 0, len).unwrap().log_weight();
+        assert!((given - Whitening::Autoregressive(phi).log_weight()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn refuses_what_is_no_covariance() {
+        assert!(Whitening::of(&Noise::Covariance(vec![vec![1.0, 2.0, 2.0, 1.0]]), 0, 2).is_err());
+        assert!(Whitening::of(&Noise::Covariance(vec![]), 0, 2).is_err());
+        assert!(Whitening::of(&Noise::AutoregressiveWith(1.0), 0, 2).is_err());
+    }
+}

@@ -1,0 +1,225 @@
+//! A least-squares problem: the model forces of all curves, less the measured ones, made white.
+
+use faer::Mat;
+
+use crate::error::Result;
+use crate::experiment::Experiment;
+use crate::forward::{Drive, Forward, Sample};
+use crate::model::{Model, Prony};
+use crate::noise::Whitening;
+use crate::parameters::{Kind, Parameter};
+
+/// Step of central differences in coordinates of order 1: the error is its square.
+const DIFFERENCE: f64 = 3e-5;
+
+/// One curve of a problem.
+#[derive(Clone, Debug)]
+pub(crate) struct Part<'a> {
+    pub(crate) experiment: &'a Experiment,
+    /// The measured forces; zeros where none are measured yet.
+    pub(crate) data: Vec<f64>,
+    pub(crate) whitening: Whitening,
+    forward: Forward,
+    /// Speed of the drive at each sample \[m/s\].
+    speed: Vec<f64>,
+}
+
+impl<'a> Part<'a> {
+    pub(crate) fn new(experiment: &'a Experiment, data: Vec<f64>, whitening: Whitening) -> Part<'a> {
+        let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
+        let last = times.len() - 1;
+        let speed = |k: usize| {
+            let [a, b] = [k.saturating_sub(1), (k + 1).min(last)];
+            (drive[b] - drive[a]) / (times[b] - times[a])
+        };
+        let speed = (0..times.len()).map(speed).collect();
+        Part { experiment, data, whitening, forward: Forward::new(&experiment.tip), speed }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.data.len()
+    }
+
+    /// Force of the contact, and where the tip is, at each sample. `record` is given the terms of each force, as in [`Forward::respond`].
+    pub(crate) fn respond(
+        &self,
+        curve: usize,
+        prony: &Prony,
+        contact_point: f64,
+        stiffness: f64,
+        mut record: impl FnMut(Sample, Option<&[f64]>),
+    ) -> Result<Vec<Sample>> {
+        let protocol = &self.experiment.protocol;
+        let drive: Vec<f64> = protocol.drive().iter().map(|z| z - contact_point).collect();
+        let mut samples = Vec::with_capacity(drive.len());
+        self.forward.respond(prony, Drive { times: protocol.times(), drive: &drive }, 1.0 / stiffness, curve, |s, terms| {
+            samples.push(s);
+            record(s, terms);
+        })?;
+        Ok(samples)
+    }
+}
+
+/// All curves, and the parameters of their forces.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem<'a> {
+    pub(crate) model: Model,
+    pub(crate) parts: Vec<Part<'a>>,
+    pub(crate) parameters: Vec<Parameter>,
+    /// Shortest interval between samples and longest curve \[s\].
+    pub(crate) window: [f64; 2],
+}
+
+impl<'a> Problem<'a> {
+    pub(crate) fn new(model: Model, parts: Vec<Part<'a>>, parameters: Vec<Parameter>) -> Problem<'a> {
+        let times = || parts.iter().map(|part| part.experiment.protocol.times());
+        let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
+        let longest = times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max);
+        Problem { model, parts, parameters, window: [shortest, longest] }
+    }
+
+    /// Number of samples of all curves.
+    pub(crate) fn len(&self) -> usize {
+        self.parts.iter().map(Part::len).sum()
+    }
+
+    /// The free parameters.
+    pub(crate) fn free(&self) -> impl Iterator<Item = &Parameter> {
+        self.parameters.iter().filter(|parameter| parameter.is_free)
+    }
+
+    /// Values of all parameters from the coordinates of the free ones.
+    pub(crate) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
+        let mut free = coordinates.iter();
+        let value = |parameter: &Parameter| match parameter.is_free {
+            true => free.next().map_or(f64::NAN, |&x| parameter.value(x)),
+            false => parameter.given.unwrap_or(f64::NAN),
+        };
+        self.parameters.iter().map(value).collect()
+    }
+
+    /// Coordinates of the free parameters of given values.
+    pub(crate) fn coordinates(&self, values: &[f64]) -> Vec<f64> {
+        let pairs = self.parameters.iter().zip(values).filter(|(parameter, _)| parameter.is_free);
+        pairs.map(|(parameter, &value)| parameter.coordinate(value)).collect()
+    }
+
+    /// The exponentials of the material of given values.
+    pub(crate) fn prony(&self, values: &[f64]) -> Result<Prony> {
+        let is_material = |parameter: &&Parameter| matches!(parameter.kind, Kind::Material(_));
+        let count = self.parameters.iter().filter(is_material).count();
+        self.model.prony(&values[..count], self.window)
+    }
+
+    /// The value of a parameter, if there is one of this kind.
+    pub(crate) fn value_of(&self, values: &[f64], kind: Kind) -> Option<f64> {
+        self.parameters.iter().position(|parameter| parameter.kind == kind).map(|at| values[at])
+    }
+
+    /// Stiffness of the spring of a curve.
+    pub(crate) fn stiffness(&self, curve: usize, values: &[f64]) -> f64 {
+        self.value_of(values, Kind::Stiffness).unwrap_or(self.parts[curve].experiment.stiffness)
+    }
+
+    /// Response of one curve.
+    pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
+        let contact_point = self.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
+        self.parts[curve].respond(curve, prony, contact_point, self.stiffness(curve, values), |_, _| {})
+    }
+
+    /// The force that a curve would measure, from the force of its contact.
+    pub(crate) fn measured(&self, curve: usize, values: &[f64], contact: impl Iterator<Item = f64>) -> Vec<f64> {
+        let value = |kind: Kind| self.value_of(values, kind).unwrap_or_default();
+        let [offset, drift, drag] = [Kind::Offset(curve), Kind::Drift(curve), Kind::Drag(curve)].map(value);
+        let part = &self.parts[curve];
+        let times = part.experiment.protocol.times();
+        let of = |(k, force): (usize, f64)| force + offset + drift * (times[k] - times[0]) + drag * part.speed[k];
+        contact.enumerate().map(of).collect()
+    }
+
+    /// The modelled force of one curve.
+    pub(crate) fn force(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
+        let samples = self.samples(curve, values, prony)?;
+        Ok(self.measured(curve, values, samples.iter().map(|sample| sample.force)))
+    }
+
+    /// Model less data of one curve, not made white.
+    fn deviations(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
+        let mut force = self.force(curve, values, prony)?;
+        for (force, data) in force.iter_mut().zip(&self.parts[curve].data) {
+            *force -= data;
+        }
+        Ok(force)
+    }
+
+    /// Model less data of each curve, not made white.
+    pub(crate) fn all_deviations(&self, values: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let prony = self.prony(values)?;
+        (0..self.parts.len()).map(|curve| self.deviations(curve, values, &prony)).collect()
+    }
+
+    /// Model less data of all curves, made white.
+    pub(crate) fn residuals(&self, coordinates: &[f64]) -> Result<Vec<f64>> {
+        let mut all = Vec::with_capacity(self.len());
+        for (part, mut deviations) in self.parts.iter().zip(self.all_deviations(&self.values(coordinates))?) {
+            part.whitening.apply(&mut deviations);
+            all.append(&mut deviations);
+        }
+        Ok(all)
+    }
+
+    /// Derivatives of the residuals by the free coordinates: central differences, or exact where the force is linear.
+    pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
+        let mut jacobian = Mat::zeros(self.len(), coordinates.len());
+        let values = self.values(coordinates);
+        for (column, parameter) in self.free().enumerate() {
+            let mut row = 0;
+            for (curve, part) in self.parts.iter().enumerate() {
+                if parameter.kind.curve().is_none_or(|only| only == curve) {
+                    let mut slopes = if parameter.kind.is_linear() {
+                        self.linear_slopes(curve, parameter)
+                    } else {
+                        self.differences(curve, coordinates, column, &values)?
+                    };
+                    part.whitening.apply(&mut slopes);
+                    for (k, slope) in slopes.into_iter().enumerate() {
+                        jacobian[(row + k, column)] = slope;
+                    }
+                }
+                row += part.len();
+            }
+        }
+        Ok(jacobian)
+    }
+
+    /// Derivative by a parameter in which the force is linear.
+    fn linear_slopes(&self, curve: usize, parameter: &Parameter) -> Vec<f64> {
+        let part = &self.parts[curve];
+        let times = part.experiment.protocol.times();
+        let of = |k: usize| match parameter.kind {
+            Kind::Offset(_) => 1.0,
+            Kind::Drift(_) => times[k] - times[0],
+            _ => part.speed[k],
+        };
+        (0..part.len()).map(|k| parameter.unit * of(k)).collect()
+    }
+
+    /// Derivative by central differences; one-sided at the limits of a model.
+    fn differences(&self, curve: usize, coordinates: &[f64], column: usize, values: &[f64]) -> Result<Vec<f64>> {
+        let at = |shift: f64| {
+            let mut moved = coordinates.to_vec();
+            moved[column] += shift;
+            let values = self.values(&moved);
+            self.prony(&values).and_then(|prony| self.force(curve, &values, &prony))
+        };
+        let here = || self.prony(values).and_then(|prony| self.force(curve, values, &prony));
+        let (up, down) = (at(DIFFERENCE), at(-DIFFERENCE));
+        let (upper, lower, width) = match (up, down) {
+            (Ok(up), Ok(down)) => (up, down, 2.0 * DIFFERENCE),
+            (Ok(up), Err(_)) => (up, here()?, DIFFERENCE),
+            (Err(_), Ok(down)) => (here()?, down, DIFFERENCE),
+            (Err(error), Err(_)) => return Err(error),
+        };
+        Ok(upper.iter().zip(&lower).map(|(up, down)| (up - down) / width).collect())
+    }
+}
