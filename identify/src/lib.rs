@@ -5,6 +5,8 @@
 
 mod error;
 mod experiment;
+mod protocol;
 
 pub use error::{Error, Result};
-pub use experiment::{Curve, Experiment, Protocol};
+pub use experiment::{Curve, Experiment};
+pub use protocol::{Protocol, ProtocolBuilder};
