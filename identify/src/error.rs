@@ -95,6 +95,10 @@ pub enum Error {
         names: String,
     },
 
+    /// An error of a measured curve.
+    #[error(transparent)]
+    Data(#[from] crate::data::DataError),
+
     /// An error of the contact, its tip or a file.
     #[error(transparent)]
     Contact(#[from] viscocontact::Error),

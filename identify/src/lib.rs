@@ -3,10 +3,12 @@
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
 
+mod data;
 mod error;
 mod experiment;
 mod protocol;
 
+pub use data::{DataError, Recording};
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
 pub use protocol::{Protocol, ProtocolBuilder};
