@@ -4,11 +4,13 @@
 #![warn(missing_debug_implementations)]
 
 mod data;
+mod dynamic;
 mod error;
 mod experiment;
 mod protocol;
 
 pub use data::{DataError, Recording};
+pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
 pub use protocol::{Protocol, ProtocolBuilder};

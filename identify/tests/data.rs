@@ -1,19 +1,15 @@
 use std::sync::Arc;
 
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
 use viscocontact::TextFormat;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, DataError, Error, Experiment, Protocol, Recording, Result};
 
+use crate::random::normal;
+
 fn read(text: &str) -> Result<Recording> {
     Recording::from_csv_reader(text.as_bytes(), TextFormat::default())
-}
-
-/// Numbers of a normal distribution.
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    let uniform = |rng: &mut ChaCha8Rng| (rng.next_u32() as f64 + 0.5) / 4294967296.0;
-    (-2.0 * uniform(rng).ln()).sqrt() * (std::f64::consts::TAU * uniform(rng)).cos()
 }
 
 /// A force curve from 1 µm above a Zener body to a position of 2 µm, with a bead of 5 µm on a spring of 0.1 N/m: positions in m
