@@ -39,6 +39,13 @@ pub enum Error {
         previous: f64,
     },
 
+    /// A load history prescribes the force, and the force is what an experiment measures.
+    #[error("the load at {time:e} s is a force: the drive is an approach, or the far end of a spring")]
+    DrivenByForce {
+        /// The time \[s\].
+        time: f64,
+    },
+
     /// There are not more data than free parameters.
     #[error(
         "{points} points in contact cannot determine {parameters} parameters: measure more points, or fix parameters"
@@ -51,7 +58,9 @@ pub enum Error {
     },
 
     /// The tip never touches the sample.
-    #[error("curve {curve}: the force nowhere rises above its scatter, so the tip never touches the sample: check the sign of the force and of the drive (both grow toward the sample), or give the contact point")]
+    #[error(
+        "curve {curve}: the force nowhere rises above its scatter, so the tip never touches the sample: check the sign of the force and of the drive (both grow toward the sample), or give the contact point"
+    )]
     NoContact {
         /// Index of the curve.
         curve: usize,
@@ -86,6 +95,10 @@ pub enum Error {
         names: String,
     },
 
+    /// An error of a measured curve.
+    #[error(transparent)]
+    Data(#[from] crate::data::DataError),
+
     /// An error of the contact, its tip or a file.
     #[error(transparent)]
     Contact(#[from] viscocontact::Error),
@@ -102,4 +115,9 @@ pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'s
 /// Accepts finite values above zero.
 pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, value > 0.0, "finite and > 0")
+}
+
+/// Accepts columns of equal length.
+pub(crate) fn same_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
+    if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected }) }
 }

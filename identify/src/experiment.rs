@@ -2,53 +2,11 @@
 
 use std::sync::Arc;
 
+use viscocontact::load::{Load, PiecewiseLinear};
 use viscocontact::states::ElasticStates;
 
-use crate::error::{Error, Result, positive, within};
-
-/// The drive over time: a depth, or the position of a base that carries the tip on a spring.
-///
-/// Between two times the drive is linear. It grows toward the sample.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Protocol {
-    pub(crate) times: Vec<f64>,
-    pub(crate) drive: Vec<f64>,
-}
-
-impl Protocol {
-    /// A drive \[m\] at ascending `times` \[s\].
-    ///
-    /// # Errors
-    /// If the lengths differ, there are fewer than two times, a value is not finite, or times do not ascend.
-    pub fn new(times: Vec<f64>, drive: Vec<f64>) -> Result<Protocol> {
-        same_length("drive", drive.len(), times.len())?;
-        if times.len() < 2 {
-            return Err(Error::TooFewPoints { points: times.len(), parameters: 1 });
-        }
-        for &value in &drive {
-            within("drive", value, true, "finite")?;
-        }
-        for (index, pair) in times.windows(2).enumerate() {
-            within("time", pair[1], true, "finite")?;
-            if pair[1] <= pair[0] || pair[0].is_nan() {
-                return Err(Error::TimesNotAscending { index: index + 1, value: pair[1], previous: pair[0] });
-            }
-        }
-        within("time", times[0], true, "finite")?;
-        Ok(Protocol { times, drive })
-    }
-
-    /// The times \[s\].
-    pub fn times(&self) -> &[f64] {
-        &self.times
-    }
-
-    /// The drive at each time \[m\].
-    pub fn drive(&self) -> &[f64] {
-        &self.drive
-    }
-}
+use crate::error::{Result, positive, same_length, within};
+use crate::protocol::Protocol;
 
 /// A drive and the tip it presses onto the sample: everything that is known before the force is measured.
 #[derive(Clone, Debug)]
@@ -81,6 +39,33 @@ impl Experiment {
     /// The drive over time.
     pub fn protocol(&self) -> &Protocol {
         &self.protocol
+    }
+
+    /// The drive as a load history of the main crate, for a run of a
+    /// [`StatesContact`](viscocontact::states::StatesContact) or the full stepper: an approach, or a spring and its far end.
+    ///
+    /// ```
+    /// use viscocontact::load::{Load, LoadHistory};
+    /// use viscocontact::states::ElasticStates;
+    /// use viscocontact_identify::{Experiment, Protocol};
+    ///
+    /// let protocol = Protocol::trapezoid(1.0e-6, [1.0, 5.0, 1.0], 0.1)?;
+    /// let history = Experiment::new(protocol, ElasticStates::sphere(5.0e-6)?).with_spring(0.1)?.load_history()?;
+    /// assert_eq!(history.at(3.0), Load::spring(0.1, 1.0e-6));
+    /// # Ok::<(), viscocontact_identify::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// None for a protocol that exists; those of [`PiecewiseLinear::new`].
+    pub fn load_history(&self) -> Result<PiecewiseLinear> {
+        let rest = self.tip.approach(0.0);
+        let load = |drive: f64| match self.stiffness {
+            f64::INFINITY => Load::approach(rest + drive),
+            stiffness => Load::spring(stiffness, rest + drive),
+        };
+        let (times, drive) = (self.protocol.times(), self.protocol.drive());
+        let table: Vec<_> = times.iter().zip(drive).map(|(&time, &drive)| (time, load(drive))).collect();
+        Ok(PiecewiseLinear::new(&table)?)
     }
 
     /// The elastic states of the tip.
@@ -118,8 +103,4 @@ impl Curve {
     pub fn force(&self) -> &[f64] {
         &self.force
     }
-}
-
-fn same_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
-    if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected }) }
 }

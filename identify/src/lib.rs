@@ -3,11 +3,33 @@
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
 
+mod bounds;
+mod data;
+mod dynamic;
 mod error;
 mod experiment;
+mod fit;
 mod forward;
+mod identification;
+mod least_squares;
 mod model;
+mod noise;
+mod parameters;
+mod problem;
+mod protocol;
+mod start;
+mod statistics;
 
+pub use bounds::Bounds;
+pub use data::{DataError, Recording};
+pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
-pub use experiment::{Curve, Experiment, Protocol};
+pub use experiment::{Curve, Experiment};
+pub use fit::{Estimate, Fit, FitWarning, ranked};
+pub use forward::Sample;
+pub use identification::Identification;
 pub use model::{Model, Scale};
+pub use noise::Noise;
+pub use parameters::Nuisance;
+pub use protocol::{Protocol, ProtocolBuilder};
+pub use statistics::ResidualTest;

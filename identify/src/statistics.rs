@@ -70,7 +70,7 @@ pub(crate) fn fisher(confidence: f64, freedom: f64) -> f64 {
 mod tests {
     use super::*;
     use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::{RngCore, SeedableRng};
+    use rand_chacha::rand_core::{Rng, SeedableRng};
 
     fn independent(seed: u64) -> Vec<f64> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -1,0 +1,60 @@
+//! Cramér–Rao bounds.
+
+use faer::{Mat, Side};
+use faer::linalg::solvers::DenseSolveCore;
+
+use crate::error::{Error, Result};
+use crate::problem::Problem;
+
+/// The least standard deviations of the parameters that any unbiased estimate from an experiment can have, on the scale on
+/// which a parameter is searched for: relative for moduli, times and stiffness.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Bounds {
+    /// Names of the free parameters.
+    pub names: Vec<String>,
+    /// Covariance of the parameters, by rows.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+impl Bounds {
+    pub(crate) fn new(problem: &Problem<'_>, _values: &[f64], jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
+        let units: Vec<f64> = problem.free().map(|parameter| parameter.unit).collect();
+        let inverse = inverse_gram(jacobian)?;
+        let row = |i: usize| (0..units.len()).map(|j| sigma * sigma * inverse[(i, j)] * units[i] * units[j]).collect();
+        let names = problem.free().map(|parameter| parameter.name.clone()).collect();
+        Ok(Bounds { names, covariance: (0..units.len()).map(row).collect() })
+    }
+
+    /// Least standard deviation of a parameter: of its logarithm for moduli, times and stiffness, of ln(α/(1 − α)) for exponents, and
+    /// in its unit for the others.
+    pub fn deviation(&self, name: &str) -> Option<f64> {
+        let at = self.names.iter().position(|other| other == name)?;
+        Some(self.covariance[at][at].sqrt())
+    }
+
+    /// Correlation of two parameters.
+    pub fn correlation(&self, one: &str, other: &str) -> Option<f64> {
+        let at = |name: &str| self.names.iter().position(|other| other == name);
+        let (i, j) = (at(one)?, at(other)?);
+        Some(self.covariance[i][j] / (self.covariance[i][i] * self.covariance[j][j]).sqrt())
+    }
+}
+
+/// (JᵀJ)⁻¹, by a matrix of unit diagonal.
+pub(crate) fn inverse_gram(jacobian: &Mat<f64>) -> Result<Mat<f64>> {
+    let gram = jacobian.transpose() * jacobian;
+    let count = gram.nrows();
+    let scale: Vec<f64> = (0..count).map(|j| gram[(j, j)].sqrt()).collect();
+    let singular = || {
+        let reason = "the data do not depend on a parameter, or only on a combination of several: fix one of them";
+        Error::NotConverged { iterations: 0, reason }
+    };
+    if scale.iter().any(|s| *s == 0.0 || !s.is_finite()) {
+        return Err(singular());
+    }
+    let scaled = Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j]));
+    let inverse = scaled.llt(Side::Lower).map_err(|_| singular())?.inverse();
+    Ok(Mat::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
+}

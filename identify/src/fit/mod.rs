@@ -1,0 +1,301 @@
+//! What was identified.
+
+mod intervals;
+mod report;
+
+use faer::Mat;
+use viscocontact::rheology::Material;
+
+use crate::bounds::inverse_gram;
+use crate::error::{Error, Result};
+use crate::experiment::Curve;
+use crate::forward::Sample;
+use crate::identification::Identification;
+use crate::least_squares::{Minimum, square};
+use crate::model::{Model, Prony, Scale};
+use crate::noise::Whitening;
+use crate::parameters::Kind;
+use crate::problem::Problem;
+use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
+pub use report::{FitWarning, ranked};
+
+/// One identified parameter.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Estimate {
+    /// Its name.
+    pub name: String,
+    /// Its value, in SI units.
+    pub value: f64,
+    /// The scale of the deviations.
+    pub scale: Scale,
+    /// Standard deviation on that scale: relative for moduli, times and stiffness.
+    pub deviation: f64,
+    /// The same from the scatter of the residuals as it is, without the assumption on the noise (sandwich estimate, with the correlations
+    /// of neighbours after Newey & West 1987).
+    pub robust_deviation: f64,
+    /// Interval of 95 % from the standard deviation.
+    pub interval: [f64; 2],
+}
+
+/// The result of a fit.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    identification: Identification,
+    curves: Vec<Curve>,
+    values: Vec<f64>,
+    prony: Prony,
+    estimates: Vec<Estimate>,
+    covariance: Mat<f64>,
+    samples: Vec<Vec<Sample>>,
+    forces: Vec<Vec<f64>>,
+    /// Measured less modelled force, by curve, and the same made white.
+    residuals: Vec<Vec<f64>>,
+    white: Vec<Vec<f64>>,
+    sigma: f64,
+    correlation: Option<f64>,
+    sum: f64,
+    log_weight: f64,
+    iterations: usize,
+}
+
+impl Fit {
+    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, minimum: Minimum) -> Result<Fit> {
+        let values = problem.values(&minimum.coordinates);
+        let prony = problem.prony(&values)?;
+        let count = minimum.coordinates.len();
+        let points = problem.len();
+        if points <= count {
+            return Err(Error::TooFewPoints { points, parameters: count });
+        }
+        let sum = square(&minimum.residuals);
+        let freedom = (points - count) as f64;
+        let sigma = identification.sigma().unwrap_or((sum / freedom).sqrt());
+        let inverse = if count > 0 { inverse_gram(&minimum.jacobian)? } else { Mat::zeros(0, 0) };
+        let lengths: Vec<usize> = problem.parts.iter().map(|part| part.len()).collect();
+        let sandwich = sandwich(&minimum, &inverse, &lengths);
+        let free: Vec<_> = problem.free().cloned().collect();
+        let estimates = free.iter().enumerate().map(|(k, parameter)| {
+            let coordinate = minimum.coordinates[k];
+            let deviation = sigma * inverse[(k, k)].sqrt();
+            let half = deviation * student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
+            Estimate {
+                name: parameter.name.clone(),
+                value: parameter.value(coordinate),
+                scale: parameter.scale,
+                deviation: deviation * parameter.unit,
+                robust_deviation: sandwich[(k, k)].sqrt() * parameter.unit,
+                interval: [coordinate - half, coordinate + half].map(|x| parameter.value(x)),
+            }
+        });
+        let estimates = estimates.collect();
+        let (mut samples, mut forces, mut residuals, mut white) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (curve, part) in problem.parts.iter().enumerate() {
+            let response = problem.samples(curve, &values, &prony)?;
+            let force = problem.measured(curve, &values, response.iter().map(|sample| sample.force));
+            let residual: Vec<f64> = part.data.iter().zip(&force).map(|(data, force)| data - force).collect();
+            let mut of_curve = residual.clone();
+            part.whitening.apply(&mut of_curve);
+            samples.push(response);
+            forces.push(force);
+            residuals.push(residual);
+            white.push(of_curve);
+        }
+        let correlation = match problem.parts[0].whitening {
+            Whitening::Autoregressive(phi) if phi != 0.0 => Some(phi),
+            _ => None,
+        };
+        let curve = |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
+        Ok(Fit {
+            identification: identification.clone(),
+            curves: problem.parts.iter().map(curve).collect(),
+            values,
+            prony,
+            estimates,
+            covariance: Mat::from_fn(count, count, |i, j| sigma * sigma * inverse[(i, j)] * free[i].unit * free[j].unit),
+            samples,
+            forces,
+            residuals,
+            white,
+            sigma,
+            correlation,
+            sum,
+            log_weight: problem.parts.iter().map(|part| part.whitening.log_weight()).sum(),
+            iterations: minimum.iterations,
+        })
+    }
+
+    /// The model that was fitted.
+    pub fn model(&self) -> Model {
+        self.identification.model()
+    }
+
+    /// The identified parameters: of the material first.
+    pub fn estimates(&self) -> &[Estimate] {
+        &self.estimates
+    }
+
+    /// The estimate of one parameter. With several curves, names of properties of a curve end with its index: `offset 1`.
+    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
+        self.estimates.iter().find(|estimate| estimate.name == name)
+    }
+
+    /// Covariance of two parameters, on their scales.
+    pub fn covariance(&self, one: &str, other: &str) -> Option<f64> {
+        let at = |name: &str| self.estimates.iter().position(|estimate| estimate.name == name);
+        Some(self.covariance[(at(one)?, at(other)?)])
+    }
+
+    /// Correlation of two parameters.
+    pub fn correlation(&self, one: &str, other: &str) -> Option<f64> {
+        let variance = |name: &str| self.covariance(name, name);
+        Some(self.covariance(one, other)? / (variance(one)? * variance(other)?).sqrt())
+    }
+
+    /// The contact modulus E*(t) at a time after a sudden step \[Pa\].
+    pub fn modulus(&self, t: f64) -> f64 {
+        self.prony.modulus(t)
+    }
+
+    /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\].
+    pub fn modulus_band(&self, t: f64) -> [f64; 2] {
+        let modulus = self.modulus(t);
+        let (count, window) = (self.model().parameters().len(), self.window());
+        // derivatives of ln E by the free parameters of the material
+        let names = self.model().parameters();
+        let slope = |estimate: &Estimate| {
+            let Some(at) = names.iter().position(|name| *name == estimate.name) else { return 0.0 };
+            let of = |shift: f64| {
+                let mut moved = self.values[..count].to_vec();
+                moved[at] = estimate.scale.back(estimate.scale.forward(moved[at]) + shift);
+                self.model().prony(&moved, window).map_or(f64::NAN, |prony| prony.modulus(t).ln())
+            };
+            let (up, down) = (of(1e-5), of(-1e-5));
+            if up.is_nan() || down.is_nan() { 0.0 } else { (up - down) / 2e-5 }
+        };
+        let slopes: Vec<f64> = self.estimates.iter().map(slope).collect();
+        let sum: f64 = (0..slopes.len())
+            .flat_map(|i| (0..slopes.len()).map(move |j| (i, j)))
+            .map(|(i, j)| slopes[i] * slopes[j] * self.covariance[(i, j)])
+            .sum();
+        [modulus, sum.max(0.0).sqrt()]
+    }
+
+    /// The shear modulus G(t) = E*(t) (1 − ν)/2 for a known constant Poisson's ratio \[Pa\]. One contact cannot tell ν.
+    ///
+    /// # Errors
+    /// If the ratio is outside (−1, 0.5].
+    pub fn shear_modulus(&self, t: f64, poisson: f64) -> Result<f64> {
+        crate::error::within("Poisson's ratio", poisson, poisson > -1.0 && poisson <= 0.5, "> -1 and at most 0.5")?;
+        Ok(0.5 * self.modulus(t) * (1.0 - poisson))
+    }
+
+    /// The material, against a rigid tip, for contacts of the main crate: incompressible, with the identified contact modulus. Its contact
+    /// with a rigid body is the contact of every material of this modulus.
+    ///
+    /// # Errors
+    /// If the modulus at t = 0 is not finite.
+    pub fn material(&self) -> Result<Material> {
+        self.prony.material()
+    }
+
+    /// Force and depth of the fit at each sample of a curve.
+    pub fn samples(&self, curve: usize) -> &[Sample] {
+        &self.samples[curve]
+    }
+
+    /// Force of the fit at each sample of a curve, offset, drift and drag included \[N\].
+    pub fn force(&self, curve: usize) -> &[f64] {
+        &self.forces[curve]
+    }
+
+    /// Measured less fitted force at each sample of a curve \[N\].
+    pub fn residuals(&self, curve: usize) -> &[f64] {
+        &self.residuals[curve]
+    }
+
+    /// The curves.
+    pub fn curves(&self) -> &[Curve] {
+        &self.curves
+    }
+
+    /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
+    pub fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    /// The autoregressive coefficient, if the noise has one.
+    pub fn autoregression(&self) -> Option<f64> {
+        self.correlation
+    }
+
+    /// Iterations of the search.
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// Samples with the tip in contact.
+    pub fn points_in_contact(&self) -> usize {
+        self.samples.iter().flatten().filter(|sample| sample.contact_depth > 0.0).count()
+    }
+
+    /// Runs of residuals of one sign: few of them mean that the model is wrong.
+    pub fn runs(&self) -> ResidualTest {
+        runs_test(&self.white)
+    }
+
+    /// Correlation of residuals: a small probability means that the model is wrong, of the material or of the noise.
+    pub fn correlations(&self) -> ResidualTest {
+        correlation_test(&self.white, usize::from(self.correlation.is_some()))
+    }
+
+    /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better.
+    pub fn aicc(&self) -> f64 {
+        let points = self.white.iter().map(Vec::len).sum::<usize>() as f64;
+        let known = self.identification.sigma();
+        let fitted = self.estimates.len() + usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
+        let count = fitted as f64;
+        let misfit = match known {
+            Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
+            None => points * (self.sum / points).ln(),
+        };
+        misfit - self.log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
+    }
+
+    /// Shortest interval and longest curve \[s\].
+    pub(crate) fn window(&self) -> [f64; 2] {
+        let times = || self.curves.iter().map(|curve| curve.experiment.protocol.times());
+        let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
+        [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)]
+    }
+
+    /// The value of the contact point of a curve \[m\].
+    pub fn contact_point(&self, curve: usize) -> f64 {
+        let name = if self.curves.len() == 1 { "contact point".to_string() } else { format!("contact point {curve}") };
+        self.estimate(&name).map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
+    }
+}
+
+/// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ, correlations of neighbours with falling weights included.
+fn sandwich(minimum: &Minimum, inverse: &Mat<f64>, lengths: &[usize]) -> Mat<f64> {
+    let count = inverse.nrows();
+    let mut middle = Mat::<f64>::zeros(count, count);
+    let mut first = 0;
+    for &len in lengths {
+        let score = |k: usize, j: usize| minimum.jacobian[(first + k, j)] * minimum.residuals[first + k];
+        let lags = (4.0 * (len as f64 / 100.0).powf(2.0 / 9.0)) as usize;
+        for lag in 0..=lags.min(len.saturating_sub(1)) {
+            let weight = (1.0 - lag as f64 / (lags + 1) as f64) * if lag == 0 { 0.5 } else { 1.0 };
+            for i in 0..count {
+                for j in 0..count {
+                    let sum: f64 = (lag..len).map(|k| score(k, i) * score(k - lag, j)).sum();
+                    middle[(i, j)] += weight * sum;
+                    middle[(j, i)] += weight * sum;
+                }
+            }
+        }
+        first += len;
+    }
+    inverse * &middle * inverse
+}

@@ -1,0 +1,77 @@
+//! Warnings, and the ranking of models.
+
+use crate::fit::Fit;
+
+/// What a fit shows that a user should know.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub enum FitWarning {
+    /// The residuals are not independent at the level of 1 %: the model of the material, of the tip or of the noise is wrong.
+    Misfit,
+    /// The data determine a parameter by no better than a factor of two.
+    Undetermined {
+        /// Name of the parameter.
+        parameter: String,
+    },
+    /// Two parameters are correlated by more than 0.99: the data determine only a combination of them.
+    Correlated {
+        /// Names of the parameters.
+        parameters: [String; 2],
+    },
+    /// A time lies outside the times of the data, so that it is extrapolated.
+    TimeOutside {
+        /// Name of the parameter.
+        parameter: String,
+    },
+}
+
+/// Probability below which a test of the residuals is a warning; there are two tests.
+const UNLIKELY: f64 = 0.005;
+/// ln 2.
+const FACTOR_OF_TWO: f64 = std::f64::consts::LN_2;
+
+impl Fit {
+    /// What a user should know before the parameters are used.
+    pub fn warnings(&self) -> Vec<FitWarning> {
+        let mut warnings = Vec::new();
+        if self.runs().probability < UNLIKELY && self.runs().statistic < 0.0 || self.correlations().probability < UNLIKELY {
+            warnings.push(FitWarning::Misfit);
+        }
+        let of_material = self.model().parameters();
+        let material = || self.estimates().iter().filter(|estimate| of_material.contains(&estimate.name));
+        for estimate in material() {
+            let parameter = estimate.name.clone();
+            if estimate.deviation > FACTOR_OF_TWO {
+                warnings.push(FitWarning::Undetermined { parameter: parameter.clone() });
+            }
+            let [shortest, longest] = self.window();
+            if parameter.starts_with("tau") && (estimate.value < 0.5 * shortest || estimate.value > 2.0 * longest) {
+                warnings.push(FitWarning::TimeOutside { parameter });
+            }
+        }
+        for (k, one) in self.estimates().iter().enumerate() {
+            for other in &self.estimates()[k + 1..] {
+                if self.correlation(&one.name, &other.name).is_some_and(|c| c.abs() > 0.99) {
+                    let parameters = [one.name.clone(), other.name.clone()];
+                    warnings.push(FitWarning::Correlated { parameters });
+                }
+            }
+        }
+        warnings
+    }
+}
+
+/// Fits of the same curves, best first, each with its difference of Akaike's criterion from the best and its weight: the share of the
+/// evidence among the candidates.
+pub fn ranked(fits: Vec<Fit>) -> Vec<(Fit, f64, f64)> {
+    let mut fits = fits;
+    fits.sort_by(|a, b| a.aicc().total_cmp(&b.aicc()));
+    let best = fits.first().map_or(0.0, Fit::aicc);
+    let total: f64 = fits.iter().map(|fit| (-0.5 * (fit.aicc() - best)).exp()).sum();
+    let of = |fit: Fit| {
+        let difference = fit.aicc() - best;
+        (fit, difference, (-0.5 * difference).exp() / total)
+    };
+    fits.into_iter().map(of).collect()
+}

@@ -1,0 +1,170 @@
+//! Where a search begins: the contact point by an elastic fit of the loading, the material by a coarse grid.
+
+use crate::error::{Error, Result};
+use crate::experiment::Experiment;
+use crate::model::Model;
+use crate::parameters::Kind;
+use crate::problem::Problem;
+
+/// A force whose range is below this many standard deviations of its scatter has no contact.
+const LEAST_RANGE: f64 = 9.0;
+/// Contact points tried at first, and then between the neighbours of the best.
+const CONTACT_POINTS: usize = 24;
+/// Searches at most.
+const STARTS: usize = 4;
+/// Values of a time, between the shortest interval and the length of the curve.
+const TIMES: usize = 6;
+
+/// Coordinates from which searches may begin, best first.
+pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
+    let initial = |parameter: &crate::parameters::Parameter| match (parameter.given, parameter.kind) {
+        (Some(value), _) => value,
+        (None, Kind::Stiffness) => problem.parts[0].experiment.stiffness,
+        (None, _) => 0.0,
+    };
+    let mut values: Vec<f64> = problem.parameters.iter().map(initial).collect();
+    for (curve, part) in problem.parts.iter().enumerate() {
+        let scatter = scatter(&part.data);
+        let [low, high] = part.data.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
+        if high - low <= LEAST_RANGE * scatter {
+            return Err(Error::NoContact { curve });
+        }
+        let at = problem.parameters.iter().position(|p| p.kind == Kind::ContactPoint(curve));
+        if let Some(at) = at.filter(|&at| problem.parameters[at].given.is_none()) {
+            let has_offset = problem.parameters.iter().any(|p| p.kind == Kind::Offset(curve) && p.is_free);
+            let give = 1.0 / problem.stiffness(curve, &values);
+            values[at] = contact_point(part.experiment, &part.data, give, has_offset);
+        }
+    }
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    let mut failure = None;
+    for candidate in candidates(problem.model, problem.window) {
+        for (k, value) in candidate.iter().enumerate() {
+            values[k] = problem.parameters[k].given.unwrap_or(*value);
+        }
+        match scaled(problem, &mut values) {
+            Ok(sum) if sum.is_finite() => found.push((sum, problem.coordinates(&values))),
+            Ok(_) => {}
+            Err(error) => failure = Some(error),
+        }
+    }
+    if found.is_empty() {
+        return Err(failure.unwrap_or(Error::NoContact { curve: 0 }));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.truncate(STARTS);
+    Ok(found.into_iter().map(|(_, coordinates)| coordinates).collect())
+}
+
+/// Standard deviation of the noise, from second differences.
+fn scatter(data: &[f64]) -> f64 {
+    let differences = data.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
+    (differences.sum::<f64>() / (6.0 * data.len().saturating_sub(2).max(1) as f64)).sqrt()
+}
+
+/// Scales the free moduli to the data; returns the sum of squared deviations.
+fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
+    // with a spring, the force is not proportional to the moduli
+    let is_stiff = (0..problem.parts.len()).all(|curve| problem.stiffness(curve, values) == f64::INFINITY);
+    let rounds = if is_stiff { 1 } else { 4 };
+    let mut sum = f64::INFINITY;
+    for round in 0..=rounds {
+        let prony = problem.prony(values)?;
+        let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
+        for (curve, part) in problem.parts.iter().enumerate() {
+            let samples = problem.samples(curve, values, &prony)?;
+            let rest: Vec<f64> = problem.measured(curve, values, samples.iter().map(|_| 0.0));
+            for ((sample, data), rest) in samples.iter().zip(&part.data).zip(rest) {
+                product += sample.force * (data - rest);
+                square += sample.force * sample.force;
+                data_square += (data - rest) * (data - rest);
+            }
+        }
+        let factor = product / square;
+        if round == rounds {
+            sum = if is_stiff { sum } else { data_square - 2.0 * product + square };
+            break;
+        }
+        if !(factor.is_finite() && factor > 0.0) {
+            return Ok(f64::INFINITY);
+        }
+        sum = data_square - product * factor;
+        let is_modulus = |name: &str| name.starts_with('E');
+        for (value, parameter) in values.iter_mut().zip(&problem.parameters) {
+            if is_modulus(&parameter.name) && parameter.given.is_none() {
+                *value *= factor;
+            }
+        }
+        if is_stiff {
+            break;
+        }
+    }
+    Ok(sum)
+}
+
+/// Parameters of a model on a coarse grid, with a modulus of 1.
+fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
+    let [low, high] = [(2.0 * shortest).ln(), longest.ln()];
+    let time = |k: f64| (low + (high - low) * k).exp();
+    let times = || (0..TIMES).map(move |k| time((k as f64 + 0.5) / TIMES as f64));
+    let ratios = [0.6, 0.2, 0.04];
+    match model {
+        Model::Elastic => vec![vec![1.0]],
+        Model::Maxwell => times().map(|tau| vec![1.0, tau]).collect(),
+        Model::Zener => ratios.iter().flat_map(|&ratio| times().map(move |tau| vec![1.0, ratio, tau])).collect(),
+        Model::PowerLaw { .. } => [0.03, 0.1, 0.2, 0.35, 0.5, 0.75].iter().map(|&alpha| vec![1.0, alpha]).collect(),
+        Model::FractionalZener => {
+            let pairs = ratios.iter().flat_map(|&ratio| [0.35, 0.7].map(move |alpha| (ratio, alpha)));
+            pairs.flat_map(|(ratio, alpha)| times().map(move |tau| vec![1.0, ratio, tau, alpha])).collect()
+        }
+        Model::Prony(terms) => {
+            // the times spread over the whole range, or over a part of it
+            let spreads = [(0.05, 0.95), (0.05, 0.6), (0.4, 0.95)];
+            let grid = ratios.iter().flat_map(|&ratio| spreads.map(move |spread| (ratio, spread)));
+            grid.map(|(ratio, (from, to))| {
+                let each = (1.0 - ratio) / terms.max(1) as f64;
+                let place = |k: usize| from + (to - from) * (k as f64 + 0.5) / terms as f64;
+                std::iter::once(ratio).chain((0..terms).flat_map(|k| [each, time(place(k))])).collect()
+            })
+            .collect()
+        }
+    }
+}
+
+/// The contact point for which an elastic law, with an offset if there is one, fits the loading best.
+fn contact_point(experiment: &Experiment, data: &[f64], give: f64, has_offset: bool) -> f64 {
+    let drive = experiment.protocol.drive();
+    let last = (0..data.len()).max_by(|&a, &b| data[a].total_cmp(&data[b])).unwrap_or(0);
+    let lowest = drive[..=last].iter().copied().fold(f64::INFINITY, f64::min);
+    let tip = &experiment.tip;
+    let rest = tip.approach(0.0);
+    let misfit = |point: f64| {
+        // sums of 1, f, f², F, F², f F
+        let mut sums = [0.0; 6];
+        for (z, force) in drive[..=last].iter().zip(data) {
+            let depth = z - point - give * force.max(0.0);
+            let elastic = if depth > 0.0 { tip.level_at(rest + depth) } else { 0.0 };
+            if elastic.is_nan() {
+                return f64::INFINITY;
+            }
+            let terms = [1.0, elastic, elastic * elastic, *force, force * force, elastic * force];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        }
+        let [count, f, ff, y, yy, fy] = sums;
+        let (ff, yy, fy) = if has_offset {
+            (ff - f * f / count, yy - y * y / count, fy - f * y / count)
+        } else {
+            (ff, yy, fy)
+        };
+        if ff > 0.0 && fy > 0.0 { yy - fy * fy / ff } else { f64::INFINITY }
+    };
+    let (mut low, mut high) = (lowest, drive[last]);
+    let mut best = low;
+    for _ in 0..3 {
+        let at = |k: usize| low + (high - low) * k as f64 / CONTACT_POINTS as f64;
+        let k = (0..CONTACT_POINTS).min_by(|&a, &b| misfit(at(a)).total_cmp(&misfit(at(b)))).unwrap_or(0);
+        best = at(k);
+        (low, high) = (at(k.saturating_sub(1)), at(k + 1));
+    }
+    best
+}

@@ -1,0 +1,9 @@
+//! Tests of the public interface.
+
+mod bounds;
+mod data;
+mod dynamic;
+mod protocols;
+mod random;
+mod recovery;
+mod scenes;
