@@ -1,7 +1,7 @@
 //! Cramér–Rao bounds.
 
-use faer::{Mat, Side};
 use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
 
 use crate::error::{Error, Result};
 use crate::problem::Problem;

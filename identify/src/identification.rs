@@ -9,7 +9,7 @@ use crate::least_squares::{Minimum, minimise, square};
 use crate::model::Model;
 use crate::noise::{Noise, Whitening, autoregression};
 use crate::parameters::{Chosen, Kind, Nuisance, Size, parameters};
-use crate::problem::{Part, Problem};
+use crate::problem::{DIFFERENCE, Part, Problem};
 use crate::start::starts;
 use crate::statistics::{correlation_test, runs_test};
 
@@ -17,8 +17,6 @@ use crate::statistics::{correlation_test, runs_test};
 const MAX_ROUNDS: usize = 8;
 /// Residuals are tested, and another search is made where they are dependent with this probability.
 const DOUBTED: f64 = 1e-3;
-/// Residuals are rounding below this fraction of the squared data.
-const EXACT: f64 = 1e-20;
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
@@ -183,7 +181,7 @@ impl Identification {
         positive("standard deviation of the noise", sigma)?;
         let problem = self.problem(experiments.iter().map(|experiment| (experiment, None)))?;
         let values = self.given(&problem, values)?;
-        let jacobian = problem.jacobian(&problem.coordinates(&values))?;
+        let jacobian = problem.jacobian(&problem.coordinates(&values), DIFFERENCE)?;
         Bounds::new(&problem, &values, &jacobian, sigma)
     }
 
@@ -225,14 +223,13 @@ impl Identification {
     fn global_minimum(&self, problem: &Problem<'_>) -> Result<Minimum> {
         let mut best: Option<(f64, Minimum)> = None;
         let mut failure = None;
-        let data: f64 = problem.parts.iter().map(|part| square(&part.data)).sum();
         for coordinates in starts(problem)? {
             match self.minimum(problem, coordinates) {
                 Ok(minimum) => {
                     let sum = square(&minimum.residuals);
                     let residuals = std::slice::from_ref(&minimum.residuals);
                     let tests = [runs_test(residuals), correlation_test(residuals, 0)];
-                    let fits = sum <= EXACT * data || tests.iter().all(|test| test.probability > DOUBTED);
+                    let fits = sum <= problem.rounding() || tests.iter().all(|test| test.probability > DOUBTED);
                     if best.as_ref().is_none_or(|(least, _)| sum < *least) {
                         best = Some((sum, minimum));
                     }
@@ -252,7 +249,13 @@ impl Identification {
 
     /// Minimum from a start.
     pub(crate) fn minimum(&self, problem: &Problem<'_>, coordinates: Vec<f64>) -> Result<Minimum> {
-        minimise(coordinates, |x| problem.residuals(x), |x| problem.jacobian(x))
+        minimise(
+            coordinates,
+            problem.rounding(),
+            DIFFERENCE,
+            |x| problem.residuals(x),
+            |x, difference| problem.jacobian(x, difference),
+        )
     }
 
     /// The problem of some curves, which may have no data yet.
@@ -265,7 +268,8 @@ impl Identification {
             let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
             let data = force.cloned().unwrap_or_else(|| vec![0.0; times.len()]);
             let range = |values: &[f64]| {
-                let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
+                let [low, high] =
+                    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
                 if high > low { high - low } else { 1.0 }
             };
             sizes.push(Size { depth: range(drive), force: range(&data), time: times[times.len() - 1] - times[0] });

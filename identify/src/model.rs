@@ -124,7 +124,8 @@ impl Prony {
 
     /// The material of this contact modulus, against a rigid tip.
     pub(crate) fn material(&self) -> Result<Material> {
-        let equilibrium: f64 = self.moduli.iter().zip(&self.rates).filter(|(_, rate)| **rate == 0.0).map(|(e, _)| e).sum();
+        let equilibrium: f64 =
+            self.moduli.iter().zip(&self.rates).filter(|(_, rate)| **rate == 0.0).map(|(e, _)| e).sum();
         let relaxing = self.moduli.iter().zip(&self.rates).filter(|(_, rate)| **rate > 0.0);
         // E* = 4G of an incompressible body
         let terms: Vec<(f64, f64)> = relaxing.map(|(e, rate)| (0.25 * e, 1.0 / rate)).collect();

@@ -104,9 +104,8 @@ mod tests {
     fn whitening_inverts_the_covariance() {
         // covariance φ^|i−j|/(1 − φ²) of an autoregressive process, both ways
         let (phi, len) = (0.6_f64, 7_usize);
-        let matrix: Vec<f64> = (0..len * len)
-            .map(|k| phi.powi((k / len).abs_diff(k % len) as i32) / (1.0 - phi * phi))
-            .collect();
+        let matrix: Vec<f64> =
+            (0..len * len).map(|k| phi.powi((k / len).abs_diff(k % len) as i32) / (1.0 - phi * phi)).collect();
         let noise = Noise::Covariance(vec![matrix]);
         for k in 0..len {
             let mut one = vec![0.0; len];

@@ -10,7 +10,9 @@ use crate::noise::Whitening;
 use crate::parameters::{Kind, Parameter};
 
 /// Step of central differences in coordinates of order 1: the error is its square.
-const DIFFERENCE: f64 = 3e-5;
+pub(crate) const DIFFERENCE: f64 = 3e-5;
+/// Residuals are rounding below this fraction of the squared data.
+const EXACT: f64 = 1e-18;
 
 /// One curve of a problem.
 #[derive(Clone, Debug)]
@@ -52,10 +54,16 @@ impl<'a> Part<'a> {
         let protocol = &self.experiment.protocol;
         let drive: Vec<f64> = protocol.drive().iter().map(|z| z - contact_point).collect();
         let mut samples = Vec::with_capacity(drive.len());
-        self.forward.respond(prony, Drive { times: protocol.times(), drive: &drive }, 1.0 / stiffness, curve, |s, terms| {
-            samples.push(s);
-            record(s, terms);
-        })?;
+        self.forward.respond(
+            prony,
+            Drive { times: protocol.times(), drive: &drive },
+            1.0 / stiffness,
+            curve,
+            |s, terms| {
+                samples.push(s);
+                record(s, terms);
+            },
+        )?;
         Ok(samples)
     }
 }
@@ -81,6 +89,11 @@ impl<'a> Problem<'a> {
     /// Number of samples of all curves.
     pub(crate) fn len(&self) -> usize {
         self.parts.iter().map(Part::len).sum()
+    }
+
+    /// A sum of squares that is rounding.
+    pub(crate) fn rounding(&self) -> f64 {
+        EXACT * self.parts.iter().flat_map(|part| &part.data).map(|force| force * force).sum::<f64>()
     }
 
     /// The free parameters.
@@ -169,9 +182,8 @@ impl<'a> Problem<'a> {
     }
 
     /// Derivatives of the residuals by the free coordinates: central differences, or exact where the force is linear.
-    pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
+    pub(crate) fn jacobian(&self, coordinates: &[f64], difference: f64) -> Result<Mat<f64>> {
         let mut jacobian = Mat::zeros(self.len(), coordinates.len());
-        let values = self.values(coordinates);
         for (column, parameter) in self.free().enumerate() {
             let mut row = 0;
             for (curve, part) in self.parts.iter().enumerate() {
@@ -179,7 +191,7 @@ impl<'a> Problem<'a> {
                     let mut slopes = if parameter.kind.is_linear() {
                         self.linear_slopes(curve, parameter)
                     } else {
-                        self.differences(curve, coordinates, column, &values)?
+                        self.differences(curve, coordinates, column, difference)?
                     };
                     part.whitening.apply(&mut slopes);
                     for (k, slope) in slopes.into_iter().enumerate() {
@@ -205,19 +217,18 @@ impl<'a> Problem<'a> {
     }
 
     /// Derivative by central differences; one-sided at the limits of a model.
-    fn differences(&self, curve: usize, coordinates: &[f64], column: usize, values: &[f64]) -> Result<Vec<f64>> {
+    fn differences(&self, curve: usize, coordinates: &[f64], column: usize, width: f64) -> Result<Vec<f64>> {
         let at = |shift: f64| {
             let mut moved = coordinates.to_vec();
             moved[column] += shift;
             let values = self.values(&moved);
             self.prony(&values).and_then(|prony| self.force(curve, &values, &prony))
         };
-        let here = || self.prony(values).and_then(|prony| self.force(curve, values, &prony));
-        let (up, down) = (at(DIFFERENCE), at(-DIFFERENCE));
+        let (up, down) = (at(width), at(-width));
         let (upper, lower, width) = match (up, down) {
-            (Ok(up), Ok(down)) => (up, down, 2.0 * DIFFERENCE),
-            (Ok(up), Err(_)) => (up, here()?, DIFFERENCE),
-            (Err(_), Ok(down)) => (here()?, down, DIFFERENCE),
+            (Ok(up), Ok(down)) => (up, down, 2.0 * width),
+            (Ok(up), Err(_)) => (up, at(0.0)?, width),
+            (Err(_), Ok(down)) => (at(0.0)?, down, width),
             (Err(error), Err(_)) => return Err(error),
         };
         Ok(upper.iter().zip(&lower).map(|(up, down)| (up - down) / width).collect())

@@ -151,11 +151,8 @@ fn contact_point(experiment: &Experiment, data: &[f64], give: f64, has_offset: b
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
         }
         let [count, f, ff, y, yy, fy] = sums;
-        let (ff, yy, fy) = if has_offset {
-            (ff - f * f / count, yy - y * y / count, fy - f * y / count)
-        } else {
-            (ff, yy, fy)
-        };
+        let (ff, yy, fy) =
+            if has_offset { (ff - f * f / count, yy - y * y / count, fy - f * y / count) } else { (ff, yy, fy) };
         if ff > 0.0 && fy > 0.0 { yy - fy * fy / ff } else { f64::INFINITY }
     };
     let (mut low, mut high) = (lowest, drive[last]);

@@ -3,6 +3,7 @@
 mod bounds;
 mod data;
 mod dynamic;
+mod noise;
 mod protocols;
 mod random;
 mod recovery;

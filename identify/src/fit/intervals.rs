@@ -66,7 +66,11 @@ impl Fit {
                 if high - low < ENOUGH {
                     break;
                 }
-                let secant = if at_high.is_finite() { low - at_low * (high - low) / (at_high - at_low) } else { 0.5 * (low + high) };
+                let secant = if at_high.is_finite() {
+                    low - at_low * (high - low) / (at_high - at_low)
+                } else {
+                    0.5 * (low + high)
+                };
                 let middle = secant.clamp(low + 0.1 * (high - low), high - 0.1 * (high - low));
                 let value = excess(middle);
                 if value < 0.0 {

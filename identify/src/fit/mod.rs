@@ -106,14 +106,17 @@ impl Fit {
             Whitening::Autoregressive(phi) if phi != 0.0 => Some(phi),
             _ => None,
         };
-        let curve = |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
+        let curve =
+            |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
         Ok(Fit {
             identification: identification.clone(),
             curves: problem.parts.iter().map(curve).collect(),
             values,
             prony,
             estimates,
-            covariance: Mat::from_fn(count, count, |i, j| sigma * sigma * inverse[(i, j)] * free[i].unit * free[j].unit),
+            covariance: Mat::from_fn(count, count, |i, j| {
+                sigma * sigma * inverse[(i, j)] * free[i].unit * free[j].unit
+            }),
             samples,
             forces,
             residuals,
@@ -254,7 +257,8 @@ impl Fit {
     pub fn aicc(&self) -> f64 {
         let points = self.white.iter().map(Vec::len).sum::<usize>() as f64;
         let known = self.identification.sigma();
-        let fitted = self.estimates.len() + usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
+        let fitted =
+            self.estimates.len() + usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
         let count = fitted as f64;
         let misfit = match known {
             Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
@@ -273,7 +277,8 @@ impl Fit {
     /// The value of the contact point of a curve \[m\].
     pub fn contact_point(&self, curve: usize) -> f64 {
         let name = if self.curves.len() == 1 { "contact point".to_string() } else { format!("contact point {curve}") };
-        self.estimate(&name).map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
+        self.estimate(&name)
+            .map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
     }
 }
 

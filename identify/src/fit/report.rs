@@ -35,7 +35,9 @@ impl Fit {
     /// What a user should know before the parameters are used.
     pub fn warnings(&self) -> Vec<FitWarning> {
         let mut warnings = Vec::new();
-        if self.runs().probability < UNLIKELY && self.runs().statistic < 0.0 || self.correlations().probability < UNLIKELY {
+        if self.runs().probability < UNLIKELY && self.runs().statistic < 0.0
+            || self.correlations().probability < UNLIKELY
+        {
             warnings.push(FitWarning::Misfit);
         }
         let of_material = self.model().parameters();

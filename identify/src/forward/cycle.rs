@@ -15,8 +15,8 @@ use crate::model::Prony;
 
 /// Depths that fall by less than this fraction of the greatest are held.
 const HELD: f64 = 1e-13;
-/// A balance that is this small, relative to its scale, is met.
-const BALANCED: f64 = 1e-16;
+/// Roots end where they move by less than this fraction of a depth, or of an interval.
+const CONVERGED: [f64; 2] = [1e-14, 1e-11];
 /// Iterations of a root.
 const MAX_ITERATIONS: usize = 80;
 
@@ -99,7 +99,8 @@ impl<'a> Cycle<'a> {
             if self.nodes.is_empty() && z > 0.0 {
                 self.touch(k, drive);
             }
-            let sample = if self.nodes.is_empty() { Sample { depth: z, ..Sample::default() } } else { self.advance(time, z)? };
+            let sample =
+                if self.nodes.is_empty() { Sample { depth: z, ..Sample::default() } } else { self.advance(time, z)? };
             record(sample, &self.terms);
         }
         Ok(())
@@ -183,24 +184,16 @@ impl<'a> Cycle<'a> {
 
     /// The depth δ with z = δ + F(δ)/k, which is at least `from`.
     fn balanced_depth(&mut self, z: f64, from: f64) -> Result<f64, Stop> {
-        let slope: f64 = self.prony.moduli.iter().zip(&self.moments.moments).map(|(e, moments)| e * moments[0]).sum();
-        let (mut low, mut high, mut depth) = (from, z.max(from).min(self.tip.last_depth()), from);
-        for _ in 0..MAX_ITERATIONS {
+        let deepest = z.max(from).min(self.tip.last_depth());
+        let mut excess = |depth: f64| {
             let elastic = self.tip.at(depth).ok_or(Stop::Beyond(depth))?;
-            let excess = z - depth - self.give * self.force_at(depth, elastic);
-            if excess.abs() <= 1e-15 * z.abs() || high - low <= 1e-15 * high {
-                // the spring pushes deeper than the states reach
-                return if excess > 1e-9 * z.abs() && depth >= self.tip.last_depth() * (1.0 - 1e-9) { Err(Stop::Beyond(z)) } else { Ok(depth) };
-            }
-            if excess > 0.0 {
-                low = depth;
-            } else {
-                high = depth;
-            }
-            let newton = depth + excess / (1.0 + self.give * slope * elastic.stiffness);
-            depth = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            Ok(z - depth - self.give * self.force_at(depth, elastic))
+        };
+        // the spring pushes deeper than the states reach
+        if excess(deepest)? > 0.0 && deepest < z {
+            return Err(Stop::Beyond(z));
         }
-        Err(Stop::NoRoot)
+        root([from, deepest], CONVERGED[0] * deepest, excess)
     }
 
     /// The contact shrinks from its extent at a place, at or before which it ends.
@@ -215,7 +208,7 @@ impl<'a> Cycle<'a> {
             };
             (interval, upper) = (before, 1.0);
         }
-        let share = self.root(time, z, interval, upper)?;
+        let share = root([0.0, upper], CONVERGED[1], |share| self.unbalance(time, z, Place { interval, share }))?;
         let place = Place { interval, share };
         self.phase = Phase::Shrinking(place);
         let contact_depth = self.contact(time, place)?;
@@ -270,39 +263,36 @@ impl<'a> Cycle<'a> {
         };
         Ok((0..terms).map(of_term).sum())
     }
+}
 
-    /// The share of an interval, up to `high`, at which the balance is met, by the Illinois rule.
-    fn root(&mut self, time: f64, z: f64, interval: usize, mut high: f64) -> Result<f64, Stop> {
-        let mut low = 0.0;
-        let mut below = self.unbalance(time, z, Place { interval, share: low })?;
-        let mut above = self.unbalance(time, z, Place { interval, share: high })?;
-        if above >= 0.0 {
-            return Ok(high);
-        }
-        let enough = BALANCED * self.scale();
-        let mut last_side = false;
-        for iteration in 0..MAX_ITERATIONS {
-            if below <= enough || high - low <= f64::EPSILON {
-                return Ok(low);
-            }
-            let share = low + (high - low) * below / (below - above);
-            let value = self.unbalance(time, z, Place { interval, share })?;
-            if value.abs() <= enough {
-                return Ok(share);
-            }
-            let side = value > 0.0;
-            let repeated = iteration > 0 && side == last_side;
-            if side {
-                (low, below) = (share, value);
-                above *= if repeated { 0.5 } else { 1.0 };
-            } else {
-                (high, above) = (share, value);
-                below *= if repeated { 0.5 } else { 1.0 };
-            }
-            last_side = side;
-        }
-        Ok(low)
+/// The root of a function that falls between two values, by the Illinois rule; the end that is nearer to a root outside.
+fn root(
+    [mut low, mut high]: [f64; 2],
+    tolerance: f64,
+    mut value: impl FnMut(f64) -> Result<f64, Stop>,
+) -> Result<f64, Stop> {
+    let (mut below, mut above) = (value(low)?, value(high)?);
+    if below <= 0.0 || above >= 0.0 {
+        return Ok(if below <= 0.0 { low } else { high });
     }
+    let (mut last_side, mut last) = (None, f64::NAN);
+    for _ in 0..MAX_ITERATIONS {
+        let at = low + (high - low) * (below / (below - above));
+        let here = value(at)?;
+        if here == 0.0 || (at - last).abs() <= tolerance || high - low <= tolerance {
+            return Ok(at);
+        }
+        last = at;
+        let side = here > 0.0;
+        let share = if last_side == Some(side) { 0.5 } else { 1.0 };
+        if side {
+            (low, below, above) = (at, here, above * share);
+        } else {
+            (high, above, below) = (at, here, below * share);
+        }
+        last_side = Some(side);
+    }
+    Err(Stop::NoRoot)
 }
 
 /// Coefficients of ξ⁰, ξ¹, ξ² of df/dξ over an interval: a parabola with the ends and the mean of df/dδ.

@@ -73,7 +73,8 @@ impl Forward {
             Err(Stop::Returns) => self.by_states(prony, drive, give, record),
             Err(Stop::Beyond(depth)) => Err(Error::BeyondStates { curve, depth }),
             Err(Stop::NoRoot) => {
-                let reason = "the spring and the contact do not balance: check the stiffness of the spring and the moduli";
+                let reason =
+                    "the spring and the contact do not balance: check the stiffness of the spring and the moduli";
                 Err(Error::NotConverged { iterations: 0, reason })
             }
         }
@@ -154,7 +155,8 @@ mod tests {
 
     #[test]
     fn a_spring_gives_way() {
-        let table = [(0.5, 0.166160), (1.0, 0.374890), (1.5, 0.325633), (2.0, 0.289532), (2.2, 0.171695), (2.4, 0.069760)];
+        let table =
+            [(0.5, 0.166160), (1.0, 0.374890), (1.5, 0.325633), (2.0, 0.289532), (2.2, 0.171695), (2.4, 0.069760)];
         let tip = ElasticStates::sphere(9.0 / 16.0).unwrap();
         let times = samples(3000, 3.0);
         let drive: Vec<f64> = times.iter().map(|&t| trapezoid(t)).collect();

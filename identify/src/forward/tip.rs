@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use viscocontact::states::ElasticStates;
+use viscocontact::states::{ElasticState, ElasticStates};
 
 /// Relative distance of the levels from which a slope is taken.
 const NEAR: f64 = 1e-4;
@@ -25,13 +25,27 @@ pub(super) struct Tip {
     /// Approach at first touch \[m\].
     rest: f64,
     last_depth: f64,
+    /// Force and depth of a state, and the exponent, of a closed form: the force is a power of the depth.
+    power: Option<[f64; 3]>,
 }
+
+/// Deviation of an exponent from a state to the next below which the states are a closed form.
+const CLOSED: f64 = 1e-12;
 
 impl Tip {
     pub(super) fn new(states: &Arc<ElasticStates>) -> Tip {
         let rest = states.approach(0.0);
         let last = states.states().last().map_or(0.0, |state| state.level);
-        Tip { states: Arc::clone(states), rest, last_depth: states.approach(last) - rest }
+        let power = match states.states() {
+            [a, b] if rest == 0.0 => {
+                let exponent = (b.level / a.level).ln() / (b.approach / a.approach).ln();
+                let is_power =
+                    |s: &ElasticState| (s.load_stiffness * s.approach / s.level / exponent - 1.0).abs() < CLOSED;
+                (is_power(a) && is_power(b)).then_some([a.level, a.approach, exponent])
+            }
+            _ => None,
+        };
+        Tip { states: Arc::clone(states), rest, last_depth: states.approach(last) - rest, power }
     }
 
     /// Approach at first touch \[m\], from which depths are measured.
@@ -48,6 +62,10 @@ impl Tip {
     pub(super) fn at(&self, depth: f64) -> Option<Elastic> {
         if depth <= 0.0 {
             return Some(self.first());
+        }
+        if let Some([force, at, exponent]) = self.power.filter(|_| depth <= self.last_depth) {
+            let force = force * (depth / at).powf(exponent);
+            return Some(Elastic { force, stiffness: exponent * force / depth });
         }
         let level = self.states.level_at(self.rest + depth.min(self.last_depth));
         let inside = depth <= self.last_depth * (1.0 + NEAR) && level.is_finite();
