@@ -48,13 +48,16 @@ impl GroupHistory {
 
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial of lower degree is
     /// taken where a group would leave 0 ≤ W ≤ 1: an element that nothing presses on neither rises above the undisturbed surface nor
-    /// sinks below the contact.
-    pub(crate) fn predict(&mut self, dt: f64, interpolant: Interpolant, free: &mut Vec<f64>) {
+    /// sinks below the contact. Returns whether all are there.
+    pub(crate) fn predict(&mut self, dt: f64, interpolant: Interpolant, free: &mut Vec<f64>) -> bool {
         self.rule.compute_weights(dt, interpolant);
-        self.free_displacements(free);
-        while self.rule.has_less() && free.iter().any(|w| !(-ROUNDING..=1.0 + ROUNDING).contains(w)) {
-            self.rule.reduce_order();
+        loop {
             self.free_displacements(free);
+            let is_between = free.iter().all(|w| (-ROUNDING..=1.0 + ROUNDING).contains(w));
+            if is_between || !self.rule.has_less() {
+                return is_between;
+            }
+            self.rule.reduce_order();
         }
     }
 
