@@ -4,12 +4,15 @@
 #![warn(missing_debug_implementations)]
 
 mod data;
+mod drainage;
 mod dynamic;
 mod error;
 mod experiment;
 mod protocol;
+pub mod usual;
 
 pub use data::{DataError, Recording};
+pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
