@@ -130,10 +130,8 @@ pub fn hold_relaxation(curve: &Curve, contact_point: f64, correction: RampCorrec
         (depths(curve, contact_point), curve.experiment.protocol.times(), curve.experiment.protocol.drive());
     let (start, end) = hold(curve);
     enough(end + 1 - start)?;
-    let mut moduli = Vec::with_capacity(end + 1 - start);
-    for k in start..=end {
-        moduli.push(curve.force[k] / level(curve, positive("depth in the hold", depth[k])?)?);
-    }
+    let modulus = |k: usize| Ok(curve.force[k] / level(curve, positive("depth in the hold", depth[k])?)?);
+    let moduli: Vec<f64> = (start..=end).map(modulus).collect::<Result<_>>()?;
     let ages: Vec<f64> = times[start..=end].iter().map(|time| time - times[start]).collect();
     let fit =
         |log_time: f64| line(&ages.iter().map(|age| (-age * (-log_time).exp()).exp()).collect::<Vec<_>>(), &moduli);
