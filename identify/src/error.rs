@@ -1,0 +1,123 @@
+//! The error type of the crate.
+
+/// Everything that can go wrong, with the numbers needed to correct it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A value is outside the allowed range.
+    #[error("{field} = {value:e} is not allowed: it must be {allowed}")]
+    OutOfRange {
+        /// Which value.
+        field: &'static str,
+        /// The value given.
+        value: f64,
+        /// The allowed range.
+        allowed: &'static str,
+    },
+
+    /// Two columns of a curve differ in length.
+    #[error("{field}: {len} values given, {expected} needed, one for each time")]
+    WrongLength {
+        /// Which column.
+        field: &'static str,
+        /// Its length.
+        len: usize,
+        /// The number of times.
+        expected: usize,
+    },
+
+    /// Times do not ascend.
+    #[error(
+        "time[{index}] = {value:e} s follows {previous:e} s: times must ascend; sort the rows, and drop repeated ones"
+    )]
+    TimesNotAscending {
+        /// Index of the first time that does not ascend.
+        index: usize,
+        /// That time \[s\].
+        value: f64,
+        /// The time before it \[s\].
+        previous: f64,
+    },
+
+    /// A load history prescribes the force, and the force is what an experiment measures.
+    #[error("the load at {time:e} s is a force: the drive is an approach, or the far end of a spring")]
+    DrivenByForce {
+        /// The time \[s\].
+        time: f64,
+    },
+
+    /// There are not more data than free parameters.
+    #[error(
+        "{points} points in contact cannot determine {parameters} parameters: measure more points, or fix parameters"
+    )]
+    TooFewPoints {
+        /// Points with the tip in contact.
+        points: usize,
+        /// Free parameters.
+        parameters: usize,
+    },
+
+    /// The tip never touches the sample.
+    #[error(
+        "curve {curve}: the force nowhere rises above its scatter, so the tip never touches the sample: check the sign of the force and of the drive (both grow toward the sample), or give the contact point"
+    )]
+    NoContact {
+        /// Index of the curve.
+        curve: usize,
+    },
+
+    /// The tip goes deeper than the elastic states reach.
+    #[error(
+        "curve {curve}: the depth of {depth:e} m is beyond the last elastic state of the tip: sweep it further, or check the unit of the drive"
+    )]
+    BeyondStates {
+        /// Index of the curve.
+        curve: usize,
+        /// The depth \[m\].
+        depth: f64,
+    },
+
+    /// No values of the parameters give the measured forces even roughly.
+    #[error("the fit failed after {iterations} iterations: {reason}")]
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// What failed, and what to change.
+        reason: &'static str,
+    },
+
+    /// A parameter has an unknown name.
+    #[error("there is no parameter '{name}': the names are {names}")]
+    UnknownParameter {
+        /// The name given.
+        name: String,
+        /// All names.
+        names: String,
+    },
+
+    /// An error of a measured curve.
+    #[error(transparent)]
+    Data(#[from] crate::data::DataError),
+
+    /// An error of the contact, its tip or a file.
+    #[error(transparent)]
+    Contact(#[from] viscocontact::Error),
+}
+
+/// Result with the crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Accepts finite values for which `inside` holds.
+pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'static str) -> Result<f64> {
+    if value.is_finite() && inside { Ok(value) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}
+
+/// Accepts finite values above zero.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value > 0.0, "finite and > 0")
+}
+
+/// Accepts columns of equal length.
+pub(crate) fn same_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
+    if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected }) }
+}

@@ -1,0 +1,106 @@
+//! What is driven, and what is measured.
+
+use std::sync::Arc;
+
+use viscocontact::load::{Load, PiecewiseLinear};
+use viscocontact::states::ElasticStates;
+
+use crate::error::{Result, positive, same_length, within};
+use crate::protocol::Protocol;
+
+/// A drive and the tip it presses onto the sample: everything that is known before the force is measured.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    pub(crate) protocol: Protocol,
+    pub(crate) tip: Arc<ElasticStates>,
+    /// Stiffness of the spring between base and tip \[N/m\]; infinite where the drive is the depth.
+    pub(crate) stiffness: f64,
+}
+
+impl Experiment {
+    /// A tip whose depth is driven: the drive is the position of the tip itself.
+    ///
+    /// The elastic states of the tip are closed forms ([`ElasticStates::sphere`], `cone`, `punch`, `power`), a sweep over
+    /// any tip on any layer, or a table.
+    pub fn new(protocol: Protocol, tip: Arc<ElasticStates>) -> Experiment {
+        Experiment { protocol, tip, stiffness: f64::INFINITY }
+    }
+
+    /// The drive is the position of a base, and the tip hangs on a spring of this `stiffness` \[N/m\]: the cantilever of an
+    /// atomic force microscope, a load cell, the frame of a machine.
+    ///
+    /// # Errors
+    /// If the stiffness is not finite and positive.
+    pub fn with_spring(mut self, stiffness: f64) -> Result<Experiment> {
+        self.stiffness = positive("stiffness of the spring", stiffness)?;
+        Ok(self)
+    }
+
+    /// The drive over time.
+    pub fn protocol(&self) -> &Protocol {
+        &self.protocol
+    }
+
+    /// The drive as a load history of the main crate, for a run of a
+    /// [`StatesContact`](viscocontact::states::StatesContact) or the full stepper: an approach, or a spring and its far end.
+    ///
+    /// ```
+    /// use viscocontact::load::{Load, LoadHistory};
+    /// use viscocontact::states::ElasticStates;
+    /// use viscocontact_identify::{Experiment, Protocol};
+    ///
+    /// let protocol = Protocol::trapezoid(1.0e-6, [1.0, 5.0, 1.0], 0.1)?;
+    /// let history = Experiment::new(protocol, ElasticStates::sphere(5.0e-6)?).with_spring(0.1)?.load_history()?;
+    /// assert_eq!(history.at(3.0), Load::spring(0.1, 1.0e-6));
+    /// # Ok::<(), viscocontact_identify::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// None for a protocol that exists; those of [`PiecewiseLinear::new`].
+    pub fn load_history(&self) -> Result<PiecewiseLinear> {
+        let rest = self.tip.approach(0.0);
+        let load = |drive: f64| match self.stiffness {
+            f64::INFINITY => Load::approach(rest + drive),
+            stiffness => Load::spring(stiffness, rest + drive),
+        };
+        let (times, drive) = (self.protocol.times(), self.protocol.drive());
+        let table: Vec<_> = times.iter().zip(drive).map(|(&time, &drive)| (time, load(drive))).collect();
+        Ok(PiecewiseLinear::new(&table)?)
+    }
+
+    /// The elastic states of the tip.
+    pub fn tip(&self) -> &Arc<ElasticStates> {
+        &self.tip
+    }
+}
+
+/// A measured curve: an experiment and the force at each time.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub(crate) experiment: Experiment,
+    pub(crate) force: Vec<f64>,
+}
+
+impl Curve {
+    /// The `force` \[N\] measured at each time of the protocol; pressing is positive.
+    ///
+    /// # Errors
+    /// If the lengths differ, or a force is not finite.
+    pub fn new(experiment: Experiment, force: Vec<f64>) -> Result<Curve> {
+        same_length("force", force.len(), experiment.protocol.times.len())?;
+        for &value in &force {
+            within("force", value, true, "finite")?;
+        }
+        Ok(Curve { experiment, force })
+    }
+
+    /// The experiment.
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    /// The measured force at each time \[N\].
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+}

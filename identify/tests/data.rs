@@ -1,0 +1,190 @@
+use std::sync::Arc;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use viscocontact::TextFormat;
+use viscocontact::prelude::*;
+use viscocontact_identify::{Curve, DataError, Error, Experiment, Protocol, Recording, Result};
+
+use crate::random::normal;
+
+fn read(text: &str) -> Result<Recording> {
+    Recording::from_csv_reader(text.as_bytes(), TextFormat::default())
+}
+
+/// A force curve from 1 µm above a Zener body to a position of 2 µm, with a bead of 5 µm on a spring of 0.1 N/m: positions in m
+/// and forces in N.
+fn force_curve(tip: &Arc<ElasticStates>) -> Result<(Protocol, Vec<f64>)> {
+    let protocol = Protocol::ramp_hold_retract(1.0e-6, [1.0e-6, 2.0e-6], 2.0, 0.01)?;
+    let experiment = Experiment::new(protocol.clone(), Arc::clone(tip)).with_spring(0.1)?;
+    let body = Material::incompressible(Zener::relaxing(5.0e3, 2.0e3, 0.5)?);
+    let (history, mut contact) = (experiment.load_history()?, StatesContact::new(tip, &body)?);
+    let mut force = Vec::new();
+    for &time in protocol.times() {
+        contact.step(time - contact.time(), viscocontact::load::LoadHistory::at(&history, time))?;
+        force.push(contact.force());
+    }
+    Ok((protocol, force))
+}
+
+fn curve(protocol: &Protocol, force: &[f64], tip: &Arc<ElasticStates>, units: [f64; 2]) -> Result<Curve> {
+    let drive = protocol.drive().iter().map(|drive| units[0] * drive).collect();
+    let protocol = Protocol::new(protocol.times().to_vec(), drive)?;
+    let experiment = Experiment::new(protocol, Arc::clone(tip)).with_spring(0.1)?;
+    Curve::new(experiment, force.iter().map(|force| units[1] * force).collect())
+}
+
+#[test]
+fn columns_are_found_by_name_and_scaled_by_unit() -> Result<()> {
+    let tip = ElasticStates::sphere(5.0e-6)?;
+    let (protocol, force) = force_curve(&tip)?;
+    let mut text = String::from("# exported\n\nDefl (nm),Time [ms],ignored,Z/um,Force_pN\n");
+    for (k, (time, drive)) in protocol.times().iter().zip(protocol.drive()).enumerate() {
+        text += &format!("{},{},-,{},{}\n", force[k] / 0.1 * 1e9, time * 1e3, drive * 1e6, force[k] * 1e12);
+    }
+    let with_force = read(&text)?.spring_curve(&tip, 0.1)?;
+    let with_deflection = read(&text.replace("Force_pN", "other"))?.spring_curve(&tip, 0.1)?;
+    for curve in [with_force, with_deflection] {
+        for (k, exact) in force.iter().enumerate() {
+            assert!((curve.force()[k] - exact).abs() <= 1e-14 * exact.abs());
+            assert!((curve.experiment().protocol().drive()[k] - protocol.drive()[k]).abs() < 1e-20);
+            assert!((curve.experiment().protocol().times()[k] - protocol.times()[k]).abs() < 1e-14);
+        }
+    }
+    // blanks, decimal commas, semicolons and quotes
+    let blanks = text.lines().skip(2).map(|line| line.replace(',', "  ")).collect::<Vec<_>>().join("\n");
+    assert_eq!(read(&blanks)?, read(&text)?);
+    let semicolons = text.replace(',', ";").replace('.', ",").replace("Defl (nm)", "\"Defl (nm)\"");
+    let format = TextFormat::default().with_decimal_comma(true);
+    assert_eq!(Recording::from_csv_reader(semicolons.as_bytes(), format)?, read(&text)?);
+    Ok(())
+}
+
+#[test]
+fn errors_of_files_name_the_line() {
+    let cases = [
+        ("1,2,3\n4,5,6\n", "line 1: not exactly one heading names the time"),
+        ("t [s],z [nm]\n", "line 1: not exactly one heading names the force"),
+        ("#\n\nt [s],F [nN]\n", "line 3: not exactly one heading names the drive"),
+        ("t [s],time [s],z [nm],F [nN]\n", "names the time (headings: t [s], time [s]"),
+        ("t [s],z,F [nN]\n", "the heading \"z\" has no unit of length; write it in brackets, as in '[nm]'"),
+        ("t [s],z [nm],F [V]\n", "the heading \"F [V]\" has no unit of force"),
+        ("t [s],z [nm],F [nN]\n1,2,3\n# gap\n2,3\n", "line 4: 2 columns separated by commas, but 3 are needed"),
+        ("t [s],z [nm],F [nN]\n1,2,3\n\n2,3,x\n", "line 4, column 3: \"x\" is not a number"),
+        ("t [s];z [nm];F [nN]\n1;2;3,5\n", "decimal_comma"),
+        ("t [s],z [nm],F [nN]\n1,2,NaN\n", "line 2, column 3: \"NaN\" is not a number"),
+        ("t [s],z [nm],F [nN]\n1,2,3\n1,2,4\n", "line 3: the time 1e0 s follows 1e0 s"),
+        ("", "line 1: not exactly one heading names the time"),
+    ];
+    for (text, expected) in cases {
+        let error = read(text).expect_err(text).to_string();
+        assert!(error.contains(expected), "{text:?}: {error}");
+    }
+    let missing = Recording::from_csv("/nonexistent/curve.csv", TextFormat::default()).expect_err("no file");
+    assert!(missing.to_string().contains("/nonexistent/curve.csv"), "{missing}");
+}
+
+#[test]
+fn columns_that_a_curve_needs_are_named() -> Result<()> {
+    let tip = ElasticStates::sphere(5.0e-6)?;
+    let recording = read("t [s],z [nm],deflection [nm]\n1,2,3\n2,3,4\n")?;
+    for (curve, column) in [
+        (recording.depth_curve(&tip), "depth"),
+        (read("t [s],depth [nm],deflection [nm]\n")?.depth_curve(&tip), "force"),
+        (read("t [s],depth [nm],F [nN]\n")?.spring_curve(&tip, 0.1), "drive"),
+    ] {
+        let error = curve.expect_err(column);
+        assert!(matches!(error, Error::Data(DataError::NoColumn { column: found, .. }) if found == column), "{error}");
+    }
+    assert!(matches!(recording.spring_curve(&tip, 0.1), Err(Error::Data(DataError::TooFewPoints { points: 2, .. }))));
+    Ok(())
+}
+
+/// Clean and noisy curves pass, up to noise of a fifth of the force; each fault is found under the same noise.
+#[test]
+fn faults_of_a_curve_are_told_apart_under_noise() -> Result<()> {
+    let tip = ElasticStates::sphere(5.0e-6)?;
+    let (protocol, force) = force_curve(&tip)?;
+    let greatest = force.iter().copied().fold(0.0, f64::max);
+    for (seed, noise) in (0_u64..).zip([0.0, 0.001, 0.01, 0.1, 0.2].into_iter().flat_map(|noise| [noise; 20])) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let noisy: Vec<f64> = force.iter().map(|force| force + noise * greatest * normal(&mut rng)).collect();
+        let check = |units: [f64; 2]| curve(&protocol, &noisy, &tip, units)?.check();
+        check([1.0; 2]).unwrap_or_else(|error| panic!("noise {noise}, seed {seed}: {error}"));
+        let [force, drive, both_1000] = [check([1.0, -1.0]), check([-1.0, 1.0]), check([1e3, 1e3])];
+        assert!(matches!(force, Err(Error::Data(DataError::ForceFlipped { .. }))), "noise {noise}: {force:?}");
+        assert!(matches!(drive, Err(Error::Data(DataError::DriveFlipped { .. }))), "noise {noise}: {drive:?}");
+        assert!(matches!(both_1000, Err(Error::Data(DataError::DepthTooLarge { .. }))), "noise {noise}: {both_1000:?}");
+        // a force in µN that is nN
+        let soft = check([1.0, 1e3]);
+        assert!(matches!(soft, Err(Error::Data(DataError::SpringTooSoft { .. }))), "noise {noise}: {soft:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn scatter_white_or_correlated_is_no_contact() -> Result<()> {
+    let tip = ElasticStates::sphere(5.0e-6)?;
+    let (protocol, force) = force_curve(&tip)?;
+    for (seed, correlation) in (0_u64..).zip([0.0, 0.5, 0.9].into_iter().flat_map(|correlation| [correlation; 50])) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut last = 0.0;
+        let mut noise = || {
+            last = correlation * last + (1.0_f64 - correlation * correlation).sqrt() * normal(&mut rng);
+            1.0e-9 * last
+        };
+        let noise: Vec<f64> = force.iter().map(|_| noise()).collect();
+        let outcome = curve(&protocol, &noise, &tip, [1.0; 2])?.check();
+        assert!(outcome.is_err(), "seed {seed}, correlation {correlation}");
+        if correlation == 0.0 {
+            assert!(matches!(outcome, Err(Error::NoContact { .. })), "{outcome:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn curves_that_do_not_fit_the_tip_are_refused() -> Result<()> {
+    let tip = ElasticStates::sphere(5.0e-6)?;
+    let (protocol, force) = force_curve(&tip)?;
+    // a swept tip has a last state
+    let swept = Sweep::new(Grid::square(32, 6.0e-6)?, &Sphere::new(5.0e-6)?).run(Reach::Approach(0.5e-6))?;
+    let beyond = curve(&protocol, &force, &swept, [1.0; 2])?.check();
+    assert!(matches!(beyond, Err(Error::BeyondStates { .. })), "{beyond:?}");
+    // a depth in nm read as pm, without a spring
+    let depths: Vec<f64> =
+        protocol.drive().iter().zip(&force).map(|(drive, force)| 1e-9 * (drive - force / 0.1)).collect();
+    let experiment = Experiment::new(Protocol::new(protocol.times().to_vec(), depths)?, Arc::clone(&tip));
+    let modulus = Curve::new(experiment, force.iter().map(|force| 1e3 * force).collect())?.check();
+    assert!(matches!(modulus, Err(Error::Data(DataError::Modulus { .. }))), "{modulus:?}");
+    Ok(())
+}
+
+/// A relaxation after a jump, a contact that begins at the first point, a fluid that relaxes to nothing, adhesion stronger than
+/// the load.
+#[test]
+fn unusual_curves_pass() -> Result<()> {
+    let tip = ElasticStates::sphere(5.0e-6)?;
+    let times: Vec<f64> = (0..200).map(|k| 0.05 * f64::from(k)).collect();
+    let check = |drive: &dyn Fn(f64) -> f64, force: &dyn Fn(f64) -> f64| {
+        let drive = times.iter().map(|&t| drive(t)).collect();
+        let experiment = Experiment::new(Protocol::new(times.clone(), drive)?, Arc::clone(&tip));
+        Curve::new(experiment, times.iter().map(|&t| 1e-9 * force(t)).collect())?.check()
+    };
+    check(&|_| 1e-6, &|t| 1.0 + (-t).exp())?;
+    check(&|t| 1e-6 * t.min(0.05) / 0.05, &|t| if t < 0.05 { 0.0 } else { 1.0 + (-t).exp() })?;
+    check(&|t| 1e-7 * t, &|t| t.powf(1.5))?;
+    check(&|t| 1e-6 * t.min(1.0), &|t| t.powf(1.5).min(1.0) * (-(t - 1.0).max(0.0)).exp())?;
+    let triangle = |t: f64| 1e-7 * (5.0 - (t - 5.0).abs() - 2.0);
+    check(&triangle, &|t| {
+        let depth = 1e7 * triangle(t);
+        if depth > 0.0 {
+            depth.powf(1.5)
+        } else if t > 5.0 && depth > -1.0 {
+            15.0 * depth
+        } else {
+            0.0
+        }
+    })?;
+    Ok(())
+}

@@ -1,0 +1,101 @@
+use viscocontact::load::{Load, LoadHistory, StepLoad};
+use viscocontact::prelude::*;
+use viscocontact_identify::{Error, Experiment, Protocol, Result};
+
+#[test]
+fn pieces_end_at_samples_and_are_divided_equally() -> Result<()> {
+    let protocol = Protocol::ramp_hold_retract(3.0, [0.25, 1.0], 0.35, 0.1)?;
+    let corners = [(0.0, -0.25), (1.25 / 3.0, 1.0), (1.25 / 3.0 + 0.35, 1.0), (2.5 / 3.0 + 0.35, -0.25)];
+    for (time, drive) in corners {
+        let at = protocol.times().iter().position(|&other| (other - time).abs() < 1e-14).expect("a corner is a sample");
+        assert_eq!(protocol.drive()[at], drive);
+    }
+    // 5 intervals up, 4 of the hold, 5 down, none longer than asked for
+    assert_eq!(protocol.times().len(), 15);
+    assert!(protocol.times().windows(2).all(|pair| pair[1] - pair[0] <= 0.1 + 1e-12));
+    let slope =
+        |k: usize| (protocol.drive()[k + 1] - protocol.drive()[k]) / (protocol.times()[k + 1] - protocol.times()[k]);
+    for (k, speed) in [(0, 3.0), (4, 3.0), (6, 0.0), (9, -3.0), (13, -3.0)] {
+        assert!((slope(k) - speed).abs() < 1e-12, "piece {k}: {}", slope(k));
+    }
+    Ok(())
+}
+
+#[test]
+fn a_tenth_is_ten_intervals() -> Result<()> {
+    // 1/0.1 and 0.3/0.1 round up and down
+    assert_eq!(Protocol::trapezoid(1.0, [1.0, 0.3, 0.7], 0.1)?.times().len(), 1 + 10 + 3 + 7);
+    Ok(())
+}
+
+#[test]
+fn an_oscillation_is_sampled_per_period_and_ends_in_the_middle() -> Result<()> {
+    let protocol = Protocol::builder(0.0, 0.5).line(2.0, 1.0).hold(1.0).oscillate(0.1, 4.0, 3, 8).build()?;
+    let (times, drive) = (protocol.times(), protocol.drive());
+    assert_eq!(times.len(), 1 + 2 + 2 + 24);
+    assert!((times[28] - 2.75).abs() < 1e-14 && drive[28] == 2.0);
+    for k in 5..28 {
+        let exact = 2.0 + 0.1 * (std::f64::consts::TAU * 4.0 * (times[k] - 2.0)).sin();
+        assert!((drive[k] - exact).abs() < 1e-14);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_protocol_and_its_load_history_agree_between_samples() -> Result<()> {
+    let protocol = Protocol::staircase(&[1.0e-6, 2.0e-6, 0.5e-6], 0.3, 0.9, 0.2)?;
+    let history = Experiment::new(protocol.clone(), ElasticStates::sphere(1.0e-3)?).load_history()?;
+    for k in -3..90 {
+        let time = 0.05 * f64::from(k);
+        let Load::Approach { approach, .. } = history.at(time) else { panic!("the depth is driven") };
+        assert!((approach - protocol.drive_at(time)).abs() < 1e-20);
+    }
+    let back = Protocol::sampled(&history, protocol.times().to_vec())?;
+    assert_eq!(back, protocol);
+    let equal = protocol.resampled(36)?;
+    assert_eq!((equal.times().len(), equal.drive()[36]), (37, 0.5e-6));
+    Ok(())
+}
+
+#[test]
+fn a_rough_tip_rests_where_its_highest_peak_touches() -> Result<()> {
+    let grid = Grid::square(16, 1.0e-3)?;
+    let shape = Rough::new(&grid, RoughSpec::new(0.5e-3, 0.2e-3, Roughness::RmsHeight(1.0e-6)).with_seed(3))?;
+    let tip = Sweep::new(grid.clone(), &shape).kernel(InfluenceKernel::periodic(&grid)?).run(Reach::Level(1.0e-10))?;
+    let history = Experiment::new(Protocol::trapezoid(0.2e-6, [1.0; 3], 0.5)?, tip.clone()).load_history()?;
+    let mut contact = StatesContact::new(&tip, &Material::incompressible(Elastic::new(1.0e6)?))?;
+    for (time, touches) in [(0.0, false), (1.0, true), (2.0, true)] {
+        contact.step(time - contact.time(), history.at(time))?;
+        assert_eq!(contact.force() > 0.0, touches, "at {time} s");
+    }
+    Ok(())
+}
+
+#[test]
+fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
+    let refused = [
+        (Protocol::trapezoid(-1.0, [1.0; 3], 0.1), "depth"),
+        (Protocol::trapezoid(1.0, [0.0, 1.0, 1.0], 0.1), "duration of a line"),
+        (Protocol::trapezoid(1.0, [1.0, -1.0, 1.0], 0.1), "duration of a line"),
+        (Protocol::trapezoid(1.0, [1.0; 3], 0.0), "interval of samples"),
+        (Protocol::trapezoid(1.0, [1.0; 3], 1.0e-12), "samples of a line"),
+        (Protocol::ramp_hold_retract(0.0, [0.0, 1.0], 1.0, 0.1), "speed"),
+        (Protocol::ramp_hold_retract(1.0, [-1.0, 1.0], 1.0, 0.1), "distance above the surface"),
+        (Protocol::staircase(&[1.0, f64::NAN], 1.0, 1.0, 0.1), "drive"),
+        (Protocol::builder(0.0, 0.1).oscillate(0.0, 1.0, 3, 8).build(), "amplitude"),
+        (Protocol::builder(0.0, 0.1).oscillate(1.0, 1.0, 0, 8).build(), "periods"),
+        (Protocol::builder(0.0, 0.1).oscillate(1.0, 1.0, 3, 3).build(), "samples of a period"),
+        (Protocol::builder(0.0, 0.1).every(-1.0).hold(1.0).build(), "interval of samples"),
+        (Protocol::builder(f64::INFINITY, 0.1).hold(1.0).build(), "start of the drive"),
+    ];
+    for (outcome, expected) in refused {
+        match outcome {
+            Err(Error::OutOfRange { field, .. }) => assert_eq!(field, expected),
+            other => panic!("{expected}: {other:?}"),
+        }
+    }
+    assert!(matches!(Protocol::staircase(&[], 1.0, 1.0, 0.1), Err(Error::TooFewPoints { .. })));
+    let force = StepLoad::new(Load::force(1.0))?;
+    assert!(matches!(Protocol::sampled(&force, vec![0.0, 1.0]), Err(Error::DrivenByForce { time: 0.0 })));
+    Ok(())
+}
