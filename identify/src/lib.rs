@@ -5,6 +5,7 @@
 
 mod bounds;
 mod data;
+mod drainage;
 mod dynamic;
 mod error;
 mod experiment;
@@ -19,9 +20,11 @@ mod problem;
 mod protocol;
 mod start;
 mod statistics;
+pub mod usual;
 
 pub use bounds::Bounds;
 pub use data::{DataError, Recording};
+pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};

@@ -221,6 +221,12 @@ impl ProtocolBuilder {
         (duration / self.interval - ROUNDING).ceil().max(1.0)
     }
 
+    /// Samples the pieces that follow at another `interval` \[s\].
+    pub fn every(mut self, interval: f64) -> ProtocolBuilder {
+        self.interval = interval;
+        self.checked(|builder| positive("interval of samples", builder.interval))
+    }
+
     /// On a straight line to `drive` \[m\] within `duration` \[s\].
     pub fn line(self, drive: f64, duration: f64) -> ProtocolBuilder {
         let (from, count) = (self.end()[1], self.intervals(duration));

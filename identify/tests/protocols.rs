@@ -85,6 +85,7 @@ fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
         (Protocol::builder(0.0, 0.1).oscillate(0.0, 1.0, 3, 8).build(), "amplitude"),
         (Protocol::builder(0.0, 0.1).oscillate(1.0, 1.0, 0, 8).build(), "periods"),
         (Protocol::builder(0.0, 0.1).oscillate(1.0, 1.0, 3, 3).build(), "samples of a period"),
+        (Protocol::builder(0.0, 0.1).every(-1.0).hold(1.0).build(), "interval of samples"),
         (Protocol::builder(f64::INFINITY, 0.1).hold(1.0).build(), "start of the drive"),
     ];
     for (outcome, expected) in refused {

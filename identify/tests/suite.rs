@@ -2,9 +2,11 @@
 
 mod bounds;
 mod data;
+mod drainage;
 mod dynamic;
 mod noise;
 mod protocols;
 mod random;
 mod recovery;
 mod scenes;
+mod usual;

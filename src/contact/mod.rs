@@ -48,6 +48,7 @@ pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, SteadyRun};
+pub use read::energies::{Energies, EnergyBalance};
 pub use read::report::{BodyState, Estimated, StepReport, Warnings};
 pub use read::stress::StressHistory;
 pub use run::follow::Run;

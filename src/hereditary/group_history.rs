@@ -1,6 +1,7 @@
 //! A list of displacements that grows, splits and merges, each with a past of its own.
 
-use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
+use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant, Weights};
+use crate::parallel::combine;
 
 /// Rounding of a displacement between 0 and 1.
 const ROUNDING: f64 = 1e-12;
@@ -47,25 +48,28 @@ impl GroupHistory {
 
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial of lower degree is
     /// taken where a group would leave 0 ≤ W ≤ 1: an element that nothing presses on neither rises above the undisturbed surface nor
-    /// sinks below the contact.
-    pub(crate) fn predict(&mut self, dt: f64, interpolant: Interpolant, free: &mut Vec<f64>) {
+    /// sinks below the contact. Returns whether all are there.
+    pub(crate) fn predict(&mut self, dt: f64, interpolant: Interpolant, free: &mut Vec<f64>) -> bool {
         self.rule.compute_weights(dt, interpolant);
-        self.free_displacements(free);
-        while self.rule.has_less() && free.iter().any(|w| !(-ROUNDING..=1.0 + ROUNDING).contains(w)) {
-            self.rule.reduce_order();
+        loop {
             self.free_displacements(free);
+            let is_between = free.iter().all(|w| (-ROUNDING..=1.0 + ROUNDING).contains(w));
+            if is_between || !self.rule.has_less() {
+                return is_between;
+            }
+            self.rule.reduce_order();
         }
     }
 
-    /// Each column is as long as the others, and the loops over groups compile to vector instructions.
     fn free_displacements(&self, free: &mut Vec<f64>) {
-        let tried = &self.rule.tried;
-        free.clear();
-        free.extend(self.columns[0].iter().map(|w| tried.past[0] * w));
-        let of_stress = tried.branches.iter().map(|weights| -tried.c * weights[0]);
-        let weights = tried.past[1..].iter().copied().chain(of_stress);
-        for (weight, column) in weights.zip(&self.columns[1..]).filter(|(weight, _)| *weight != 0.0) {
-            free.iter_mut().zip(column).for_each(|(free, value)| *free += weight * value);
+        let Weights { c, past: [kept, of_change, of_bend], branches, .. } = &self.rule.tried;
+        let [displacements, changes, bends, stresses @ ..] = &self.columns[..] else { return };
+        free.clone_from(displacements);
+        combine(free, *kept, [*of_change, *of_bend, 0.0], [changes, bends, bends]);
+        for (columns, weights) in stresses.chunks(3).zip(branches.chunks(3)) {
+            let weight = |k: usize| weights.get(k).map_or(0.0, |[decay, ..]| -c * decay);
+            let column = |k: usize| &columns[k.min(columns.len() - 1)][..];
+            combine(free, 1.0, [weight(0), weight(1), weight(2)], [column(0), column(1), column(2)]);
         }
     }
 
@@ -83,10 +87,7 @@ impl GroupHistory {
             (displacements[k], changes[k], bends[k]) = (now, change, bend);
         }
         for (column, &[decay, one, two, three]) in stresses.iter_mut().zip(&rule.committed.branches) {
-            let differences = changes.iter().zip(&*bends).zip(&*twists);
-            for (q, ((change, bend), twist)) in column.iter_mut().zip(differences) {
-                *q = decay * *q + one * change + two * bend + three * twist;
-            }
+            combine(column, decay, [one, two, three], [changes, bends, twists]);
         }
     }
 

@@ -20,6 +20,7 @@
 //! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
 //! field of a window, and the moving frame alike.
 
+mod branch_energies;
 mod direct_sum;
 mod error_weight;
 mod exponential_rule;
@@ -35,6 +36,7 @@ mod remembered_field;
 mod rule_tests;
 mod time_error;
 
+pub(crate) use branch_energies::BranchEnergies;
 pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};

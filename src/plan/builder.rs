@@ -9,7 +9,7 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::convergence::{ConvergedRun, converge};
+use crate::plan::convergence::{ConvergedRun, MOST_PLANNED_CELLS, converge};
 use crate::plan::domain::{Body, Side};
 use crate::plan::error_law::ErrorLaw;
 use crate::plan::trial_runs::TrialScene;
@@ -17,8 +17,6 @@ use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
 use crate::{Grid, InfluenceKernel};
 
-/// Most cells along a side of a plan: more exceed the memory of a workstation.
-const MOST_PLANNED_CELLS: usize = 1 << 13;
 /// Fewest cells across the widest contact: fewer do not resolve it.
 const FEWEST_ACROSS: f64 = 14.0;
 
@@ -184,12 +182,12 @@ impl<'a> PlanBuilder<'a> {
         };
         let mut pressure = converged.pressure;
         let (mut across, mut sides) = needed(pressure);
-        if sides[0].max(sides[1]) > MOST_PLANNED_CELLS as f64 {
+        if sides[0].max(sides[1]) > MOST_PLANNED_CELLS {
             pressure = ErrorLaw::NONE;
             (across, sides) = needed(pressure);
         }
         let wanted = sides[0].max(sides[1]);
-        if wanted.is_nan() || wanted > MOST_PLANNED_CELLS as f64 {
+        if wanted.is_nan() || wanted > MOST_PLANNED_CELLS {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }

@@ -1,6 +1,6 @@
 //! How the elastic states of a run, or its own states, converge with the mesh.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, StatesError};
 use crate::load::Load;
 use crate::plan::Accuracy;
 use crate::plan::domain::{ContactSize, Side};
@@ -10,11 +10,14 @@ use crate::plan::loads::Loads;
 use crate::plan::steps::{Differences, Steps, relative};
 use crate::plan::trial_runs::{Probe, Run, StepState, TrialScene, greatest};
 
-/// Cells across the widest contact on the coarsest mesh, where the steps are found, and on the finest that a plan computes.
+/// Cells across the widest contact on the coarsest mesh, where the steps are found, and on the finest that a plan computes, unless it
+/// could not be planned then.
 const LEAST_ACROSS: f64 = 16.0;
 const MOST_ACROSS: f64 = 128.0;
 /// Most cells along a side of a domain in which the contact is small, for example far off the centre.
-const MOST_TRIAL_CELLS: usize = 2048;
+const MOST_TRIAL_CELLS: f64 = 2048.0;
+/// Most cells along a side of a plan: more exceed the memory of a workstation.
+pub(super) const MOST_PLANNED_CELLS: f64 = 8192.0;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Greatest difference of the greatest pressure that counts as second order, over the estimate from the neighbours of
@@ -78,13 +81,14 @@ impl Meshes {
         Meshes { punch, across, differences, finest, highest: None, rim: ErrorLaw::NONE.times(0.0), work_order }
     }
 
-    /// Refines until the needed number of cells across is within the range of extrapolation.
+    /// Refines until the needed number of cells across is within the range of extrapolation: `needed` without quantities that a plan
+    /// may leave out, or with them.
     fn refine(
         mut self,
         scene: &TrialScene<'_>,
         size: &ContactSize,
         probe: &Probe<'_>,
-        needed: impl Fn(&Meshes) -> f64,
+        needed: impl Fn(&Meshes, bool) -> f64,
     ) -> Result<Meshes> {
         let meshes = &mut self;
         loop {
@@ -97,8 +101,11 @@ impl Meshes {
             meshes.work_order = growth.max(1.0).log2().min(MAX_WORK_ORDER);
             meshes.finest = finer;
             let reach = if meshes.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
-            let last = meshes.across >= MOST_ACROSS || 2 * n1.max(n2) > MOST_TRIAL_CELLS;
-            if last || needed(meshes) <= reach * meshes.across {
+            let [n1, n2] = [n1, n2].map(|cells| cells as f64);
+            let sides = size.cells(needed(meshes, false));
+            let can_be_planned = sides[0].max(sides[1]) <= MOST_PLANNED_CELLS;
+            let last = meshes.across >= MOST_ACROSS && can_be_planned || 2.0 * n1.max(n2) > MOST_TRIAL_CELLS;
+            if last || needed(meshes, true) <= reach * meshes.across {
                 return Ok(self);
             }
         }
@@ -200,7 +207,15 @@ fn across_for(main: [(ErrorLaw, f64); 2], pressure: ErrorLaw, radius: ErrorLaw, 
 /// Finds domain, steps and meshes; `area` states whether the contact radius has to be resolved.
 pub(super) fn converge(scene: &TrialScene<'_>, area: bool) -> Result<ConvergedRun> {
     let loads = Loads::of(scene)?;
-    ContactSize::of(scene, &loads.largest)?.on_growing_domain(|size| converge_on(scene, &loads, size, area))
+    let size = ContactSize::of(scene, &loads.largest)?;
+    match size.on_growing_domain(|size| converge_on(scene, &loads, size, area)) {
+        // trial runs need no states
+        Err(Error::States(StatesError::Shrinks { .. })) => {
+            let loads = Loads { on_states: false, ..loads };
+            size.on_growing_domain(|size| converge_on(scene, &loads, size, area))
+        }
+        other => other,
+    }
 }
 
 fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
@@ -216,9 +231,10 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
     let (punch, left) = (scene.has_edge(&grid), steps.left_for_mesh(scene.accuracy));
     let Some((curve, trace)) = curve.zip(steps.trace) else {
         let probe = Probe::Steps(&steps.run.steps);
-        let meshes = Meshes::coarsest(steps.run.clone(), punch).refine(scene, size, &probe, |meshes| {
+        let meshes = Meshes::coarsest(steps.run.clone(), punch).refine(scene, size, &probe, |meshes, all| {
             let main = [meshes.main(), meshes.singular()].map(|law| (law, left));
-            across_for(main, meshes.pressure(), meshes.radius(), scene.accuracy, area)
+            let pressure = if all { meshes.pressure() } else { ErrorLaw::NONE };
+            across_for(main, pressure, meshes.radius(), scene.accuracy, area)
         })?;
         let pressure = meshes.pressure();
         return Ok(converged(steps, &meshes, meshes.main(), pressure, size));
@@ -245,12 +261,13 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
         true => meshes.pressure().times(trace.pressure_amplification),
         false => ErrorLaw::NONE,
     };
-    let (base, probe) = (scene.elastic(grid, &states)?, Probe::Elastic(&states));
+    let (base, probe) = (scene.growing(grid, &states)?, Probe::Elastic(&states));
     let rim = ErrorLaw { error: trace.rim, order: 1.0, across: LEAST_ACROSS, converges: true };
     let coarsest = Meshes { highest: Some(highest), rim, ..Meshes::coarsest(base, punch) };
-    let meshes = coarsest.refine(scene, size, &probe, |meshes| {
+    let meshes = coarsest.refine(scene, size, &probe, |meshes, all| {
         let main = [main(meshes), meshes.singular()].map(|law| (law, left));
-        across_for(main, pressure(meshes), meshes.radius(), scene.accuracy, area)
+        let pressure = if all { pressure(meshes) } else { ErrorLaw::NONE };
+        across_for(main, pressure, meshes.radius(), scene.accuracy, area)
     })?;
     let pressure = if is_small && trace.excess == 0.0 && peak > 0.0 {
         match small_contact(scene, load(peak), size) {
@@ -286,7 +303,7 @@ fn curve(scene: &TrialScene<'_>, largest: &[Load], grid: crate::Grid) -> Result<
             _ => Load::Approach { approach: top.rest + DEPTHS[k] * depth, tilt: load.tilt() },
         })
     }));
-    let base = scene.elastic(grid, &loads)?;
+    let base = scene.growing(grid, &loads)?;
     let line = scene.body.sides.iter().any(|side| matches!(side, Side::Uniform(_)));
     Ok(Curve::through(&base, loads[0].tilt(), line).ok())
 }
@@ -318,9 +335,9 @@ fn small_contact(scene: &TrialScene<'_>, load: Load, whole: &ContactSize) -> Res
             return Ok(None);
         }
         let coarsest = Meshes { highest: Some(0), ..Meshes::coarsest(base, false) };
-        let meshes = coarsest.refine(scene, size, &Probe::Elastic(&loads), |meshes| {
+        let meshes = coarsest.refine(scene, size, &Probe::Elastic(&loads), |meshes, all| {
             let pressure = meshes.pressure();
-            if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
+            if all && pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
         })?;
         Ok(Some((*size, meshes)))
     })?;

@@ -22,12 +22,14 @@ use crate::observe::mesh_error::MeshError;
 /// The plan solves a few elastic contacts: as the contact is a superposition of its elastic states
 /// ([`states`](crate::states)), the error that a mesh leaves in the states between the least and the greatest level of
 /// the run bounds its error in the run. The differences between successive meshes, each twice as fine as the last, give
-/// the required fineness: they are extrapolated at most threefold, and further only beyond 128 cells across the contact.
+/// the required fineness: they are extrapolated at most threefold, and further only beyond 128 cells across the contact, where a run that
+/// needs more than 8192 cells along a side gets finer meshes still.
 /// One coarse run, 16 cells across, gives the steps. The same steps on levels, and sixteenths of them, give the error in
 /// time without a contact problem; where it exceeds its share, the steps are shortened. Where the pressure is greatest
 /// while the contact is small, as under a constant force on a body that creeps much, this contact gets a separate domain.
-/// Where the tilt or the load point changes, the contact is no superposition: then the coarse run is repeated with
-/// shorter steps and on finer meshes. The domain reaches from the origin as far as the contact does; the cells are
+/// Where the tilt or the load point changes, or the pressure of the elastic contact falls somewhere while its load grows, the contact is no
+/// superposition: then the coarse run is repeated with shorter steps and on finer meshes. The domain reaches from the origin as far as the
+/// contact does; the cells are
 /// elongated like the contact.
 ///
 /// # Promised accuracy

@@ -11,6 +11,7 @@ use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
 use crate::plan::loads::Loads;
 use crate::rheology::{Elastic, Material, TemperatureHistory};
+use crate::states::Pressed;
 use crate::{Grid, InfluenceKernel};
 
 /// Cells along a side of the runs that find the domain.
@@ -21,6 +22,8 @@ const MAX_DOMAINS: usize = 60;
 const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
 /// Greatest number of halvings of a step in which the solver does not converge.
 const MAX_HALVINGS: u32 = 5;
+/// A pressure that falls by this share of the accuracy while the load grows counts for nothing.
+const FALL_SHARE: f64 = 0.1;
 
 /// Ratio of the tolerances of two runs whose difference estimates the error in time of the first, and the smallest
 /// tolerance of a run.
@@ -81,6 +84,8 @@ pub(super) struct Run {
     pub(super) convolutions: f64,
     /// Approach of the undisturbed contact at the first touch.
     pub(super) rest: f64,
+    /// The pressures of elastic states.
+    pressed: Vec<Pressed>,
 }
 
 impl Run {
@@ -109,6 +114,17 @@ impl Run {
             self.size.include(contact.grid(), extent);
         }
     }
+
+    /// Elastic states superpose only where the pressure falls nowhere from the least level to the greatest, but by this share of the
+    /// greatest pressure.
+    fn check_growth(&self, allowed: f64) -> Result<()> {
+        let mut order: Vec<usize> = (0..self.pressed.len()).collect();
+        order.sort_by(|&a, &b| self.states[a].force.total_cmp(&self.states[b].force));
+        order.windows(2).try_for_each(|pair| {
+            let levels = [pair[0], pair[1]].map(|k| self.states[k].force);
+            self.pressed[pair[0]].check_growth(&self.pressed[pair[1]], levels, allowed)
+        })
+    }
 }
 
 impl TrialScene<'_> {
@@ -136,15 +152,23 @@ impl TrialScene<'_> {
         for &load in loads {
             let report = contact.step(0.0, load)?;
             run.add(&contact, &report);
+            run.pressed.push(Pressed::new(contact.pressure()));
             (self.progress)(contact.grid().cells(), report.convolution_equivalents(), 0.0)?;
         }
+        Ok(run)
+    }
+
+    /// The elastic contacts under loads that differ in size only, of which a run is made if they only grow with the load.
+    pub(super) fn growing(&self, grid: Grid, loads: &[Load]) -> Result<Run> {
+        let run = self.elastic(grid, loads)?;
+        run.check_growth(FALL_SHARE * self.accuracy.target())?;
         Ok(run)
     }
 
     /// What is computed on each mesh.
     pub(super) fn probe(&self, grid: Grid, probe: &Probe<'_>) -> Result<Run> {
         match *probe {
-            Probe::Elastic(loads) => self.elastic(grid, loads),
+            Probe::Elastic(loads) => self.growing(grid, loads),
             Probe::Steps(steps) => self.repeat(grid, steps),
         }
     }

@@ -261,15 +261,20 @@ impl ElasticStates {
     /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, NaN beyond the last state.
     pub(super) fn level_where(&self, give: f64, sum: f64) -> f64 {
         let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| sum > 0.0) else { return 0.0 };
-        let sum_at = |node: &Node| node.depth.exp() + give * node.level.exp();
-        if sum > sum_at(last) {
-            return f64::NAN;
-        }
-        let upper = self.nodes.partition_point(|node| sum_at(node) < sum);
+        let log = sum.ln();
+        // in logarithms where nothing gives
         let excess = |[depth, slope, level]: [f64; 3]| {
+            if give == 0.0 {
+                return [depth - log, slope];
+            }
             let [depth, yielded] = [depth.exp(), give * level.exp()];
             [depth + yielded - sum, depth * slope + yielded]
         };
+        let excess_at = |node: &Node| excess([node.depth, 1.0, node.level])[0];
+        if excess_at(last) < 0.0 {
+            return f64::NAN;
+        }
+        let upper = self.nodes.partition_point(|node| excess_at(node) < 0.0);
         if upper == 0 {
             // either half of the sum at least
             let half = (0.5 * sum).ln();

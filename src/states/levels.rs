@@ -131,16 +131,16 @@ impl Levels {
         interpolant: Interpolant,
         demand: Demand,
     ) -> Result<Wanted> {
-        self.history.predict(dt, interpolant, &mut self.trial);
+        let is_between = self.history.predict(dt, interpolant, &mut self.trial);
         let compliance = self.history.rule().compliance();
         if compliance == 0.0 {
             return Err(Error::Step(StepError::NoElasticResponse { time, what: "a jump of the load" }));
         }
-        if !compliance.is_finite() || self.trial.iter().any(|w| !w.is_finite()) {
-            return Err(Error::Step(StepError::Overflow { time, what: "the displacement" }));
+        if !compliance.is_finite() {
+            return Err(Error::Step(StepError::Overflow { time, what: "the compliance" }));
         }
-        if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {
-            return Err(StatesError::OutOfOrder { time, displacement }.into());
+        if !is_between {
+            self.check_order(time)?;
         }
         let wanted = match demand {
             Demand::Force(force) => {
@@ -160,6 +160,15 @@ impl Levels {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
         Ok(wanted)
+    }
+
+    /// No group that nothing holds sinks below those that are held.
+    fn check_order(&self, time: f64) -> Result<()> {
+        match self.trial.iter().find(|w| !w.is_finite() || **w > 1.0 + ROUNDING) {
+            None => Ok(()),
+            Some(w) if !w.is_finite() => Err(Error::Step(StepError::Overflow { time, what: "the displacement" })),
+            Some(&displacement) => Err(StatesError::OutOfOrder { time, displacement }.into()),
+        }
     }
 
     /// Depth and force at the end of the step of [`Levels::wanted`].
@@ -199,18 +208,17 @@ impl Levels {
         group.checked_sub(1).map_or((0.0, Motions::default()), |k| (self.groups[k].top, self.groups[k].motions))
     }
 
-    /// The level c up to which groups are held under a force: F(c) = Σ w Δl below c, w = (1 − W)/c_Δ.
+    /// The level c up to which groups are held under a force: F(c) c_Δ = Σ (1 − W) Δl below c.
     fn level_of_force(&self, compliance: f64, force: f64) -> f64 {
-        let mut carried = 0.0;
+        let (mut carried, needed) = (0.0, force * compliance);
         for (bottom, _, group, free) in self.spans() {
-            let traction = (1.0 - free) / compliance;
-            let more = traction * (group.top - bottom);
-            if carried + more >= force {
-                return if force > carried { bottom + (force - carried) / traction } else { bottom };
+            let more = (1.0 - free) * (group.top - bottom);
+            if carried + more >= needed {
+                return if needed > carried { bottom + (needed - carried) / (1.0 - free) } else { bottom };
             }
             carried += more;
         }
-        self.bottom(self.groups.len()).0 + (force - carried) * compliance
+        self.bottom(self.groups.len()).0 + (needed - carried)
     }
 
     /// The level c up to which groups are held where D(c) + `give` Σ (1 − W) Δl = `depth`, with D(c) = δ(c) + Σ W Δδ
@@ -253,11 +261,11 @@ impl Levels {
 
     /// Holds the groups up to a level, commits the step, and merges groups with the same past.
     fn hold(&mut self, level: f64) {
-        let compliance = self.history.rule().compliance();
+        let stiffness = 1.0 / self.history.rule().compliance();
         let held = self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL));
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
         for (k, (group, displacement)) in self.groups.iter_mut().zip(&mut self.trial).enumerate() {
-            group.traction = if k < held { (1.0 - *displacement) / compliance } else { 0.0 };
+            group.traction = if k < held { (1.0 - *displacement) * stiffness } else { 0.0 };
             if k < held {
                 *displacement = 1.0;
             }

@@ -56,7 +56,6 @@ pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
-#[cfg(feature = "npy")]
 pub(crate) use pressed::Pressed;
 pub use run::StatesRun;
 pub use sweep::{Reach, Sweep};

@@ -1,5 +1,10 @@
 //! The pressure of an elastic state.
 
+use crate::error::{Result, StatesError};
+
+/// Greatest fall of a pressure, over the greatest pressure, that is always taken for an error of the solver.
+const ALLOWED_FALL: f64 = 1e-4;
+
 /// The cells in contact, in ascending order, and their pressures: 12 bytes a cell.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pressed {
@@ -8,7 +13,7 @@ pub(crate) struct Pressed {
 }
 
 impl Pressed {
-    pub(super) fn new(pressure: &[f64]) -> Pressed {
+    pub(crate) fn new(pressure: &[f64]) -> Pressed {
         let cells: Vec<u32> = (0..).zip(pressure).filter(|(_, p)| **p > 0.0).map(|(cell, _)| cell).collect();
         let pressures = cells.iter().map(|&cell| pressure[cell as usize]).collect();
         Pressed { cells, pressures }
@@ -18,8 +23,15 @@ impl Pressed {
         self.cells == other.cells
     }
 
+    /// Nowhere may the pressure fall from here to `after`, while the load grows from the first level to the second, by more than this share
+    /// of the greatest.
+    pub(crate) fn check_growth(&self, after: &Pressed, levels: [f64; 2], allowed: f64) -> Result<()> {
+        let (fall, allowed) = (self.greatest_fall_to(after), allowed.max(ALLOWED_FALL));
+        if fall > allowed { Err(StatesError::Shrinks { levels, fall, allowed }.into()) } else { Ok(()) }
+    }
+
     /// Greatest fall of the pressure of a cell from here to `after`, over the greatest pressure there.
-    pub(super) fn greatest_fall_to(&self, after: &Pressed) -> f64 {
+    fn greatest_fall_to(&self, after: &Pressed) -> f64 {
         let mut there = after.cells.iter().zip(&after.pressures).peekable();
         let (mut fall, mut greatest) = (0.0f64, 0.0f64);
         for (cell, before) in self.cells.iter().zip(&self.pressures) {

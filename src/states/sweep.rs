@@ -48,10 +48,10 @@ const LEAST_LEVEL: f64 = 1e-12;
 const LINEAR_LEVEL: f64 = 1e-6;
 /// Levels closer than by this factor have no state between them.
 const FINEST: f64 = 1.001;
+/// Greatest fall of a pressure, over the greatest pressure, that is taken for an error of a solver of this tolerance.
+const FALL_OVER_TOLERANCE: f64 = 1e2;
 /// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
 const SAFETY: f64 = 2.0;
-/// Greatest fall of a pressure, over the greatest pressure, that is taken for an error of the solver.
-const ALLOWED_FALL: f64 = 1e-4;
 
 impl Sweep {
     /// A shape pressed upright onto an incompressible half-space.
@@ -154,7 +154,7 @@ impl Sweep {
             first_level: 0.0,
             accuracy,
             max_states: self.max_states,
-            allowed_fall: ALLOWED_FALL.max(1e2 * self.settings.tolerance),
+            allowed_fall: FALL_OVER_TOLERANCE * self.settings.tolerance,
             solved: Vec::new(),
             kept: self.keep_pressures.then(Vec::new),
             error: 0.0,
@@ -294,12 +294,8 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
 
     /// Nowhere may the pressure fall while the load grows.
     fn check_growth(&self, lower: &Solved, upper: &Solved) -> Result<()> {
-        let fall = lower.pressure.greatest_fall_to(&upper.pressure);
-        if fall > self.allowed_fall {
-            let levels = [lower.state.level, upper.state.level];
-            return Err(StatesError::Shrinks { levels, fall, allowed: self.allowed_fall }.into());
-        }
-        Ok(())
+        let levels = [lower.state.level, upper.state.level];
+        lower.pressure.check_growth(&upper.pressure, levels, self.allowed_fall)
     }
 
     fn finish(self) -> ElasticStates {

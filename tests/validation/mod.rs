@@ -2,6 +2,7 @@
 
 mod adhesion_theories;
 mod analytic;
+mod energies;
 mod equations;
 mod hertz;
 mod layers;

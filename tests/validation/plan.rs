@@ -5,10 +5,12 @@ use std::ops::ControlFlow;
 use crate::common::histories::{four_terms, triangle};
 use crate::common::{RADIUS, contact_of, elastic, figures, maxwell};
 use approx::assert_abs_diff_eq;
-use viscocontact::Error;
 use viscocontact::analytic::GrowingSphere;
+use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+use viscocontact::states::{Reach, StatesError, Sweep};
+use viscocontact::{Axis, Error};
 
 /// Greatest errors of approach and central pressure over a planned run, relative to the greatest values, and
 /// Σ cells × convolutions.
@@ -267,5 +269,54 @@ fn planning_reports_its_progress_and_can_be_cancelled() {
                 },
             );
         assert!(matches!(cancelled, Err(Error::Cancelled { what: "a plan" })));
+    }
+}
+
+/// Under a ball a plate on an elastic foundation bends away from the middle of the contact, which shrinks there while the load grows: its
+/// runs are no superpositions of its elastic states. A sweep refuses them, and a plan takes trial runs, on several meshes.
+#[test]
+fn plans_of_contacts_that_shrink_take_trial_runs() {
+    let ball = Sphere::new(1.5).unwrap();
+    let material = Material::incompressible(Zener::new(4.0, 12.0, 6.0).unwrap());
+    let history = Ramp::new(Load::force(0.0), Load::force(0.01), 1.0).unwrap();
+    for (length, shrinks) in [(0.05, true), (0.002, false)] {
+        let spectrum = move |q1: f64, q2: f64| {
+            let q = q1.hypot(q2);
+            if shrinks { 1.0 / (1.0 + (length * q).powi(4)) + 1e-4 } else { 1.0 / (q + length) }
+        };
+        let kernel = move |grid: &Grid| InfluenceKernel::from_spectrum(grid, spectrum);
+        let grid = Grid::square(48, 1.0).unwrap();
+        let sweep = Sweep::new(grid.clone(), &ball).kernel(kernel(&grid).unwrap()).accuracy(1e-2);
+        let sweep = sweep.run(Reach::Level(0.01 * material.contact_compliance(2.0)));
+        assert_eq!(matches!(sweep, Err(Error::States(StatesError::Shrinks { .. }))), shrinks, "{sweep:?}");
+        let builder = Plan::builder(&ball, &material, &history, 2.0).accuracy(Accuracy::COARSE).kernel(&kernel);
+        let (mut meshes_of_runs, builder) = (Vec::new(), builder.period(Axis::X1, 1.0).period(Axis::X2, 1.0));
+        let plan = builder.build_with(|progress| {
+            meshes_of_runs.extend((progress.time > 0.0).then_some(progress.cells));
+            ControlFlow::Continue(())
+        });
+        let plan = plan.unwrap();
+        meshes_of_runs.dedup();
+        assert_eq!(meshes_of_runs.len() > 1, shrinks, "{meshes_of_runs:?}");
+
+        let approaches = |builder: &Builder, stepping: Stepping| {
+            let times = [0.1, 0.3, 0.6, 1.0, 1.3, 2.0];
+            let mut contact = builder.clone().build().unwrap();
+            let mut run = contact.follow(&history, stepping, 2.0).stop_at(&times[..]).unwrap();
+            let mut found = Vec::new();
+            while let Some(report) = run.next_step().unwrap() {
+                found.extend(times.contains(&report.time).then_some(report.approach));
+            }
+            found
+        };
+        let finer = Grid::new(plan.grid.cells().map(|cells| 2 * cells), plan.grid.lengths()).unwrap();
+        let reference = ViscoelasticContact::builder(finer.clone()).geometry(&ball).material(material.clone());
+        let reference = reference.kernel(kernel(&finer).unwrap()).settings(Settings::default().with_tolerance(1e-7));
+        let exact = approaches(&reference, Stepping::adaptive(1e-4));
+        let found = approaches(&plan.builder, plan.stepping);
+        let scale = exact.iter().fold(0.0f64, |most, approach| most.max(approach.abs()));
+        let error = found.iter().zip(&exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max) / scale;
+        println!("{plan}: {error:.1e}");
+        assert!(exact.len() == 6 && error < 2e-2, "{error}");
     }
 }

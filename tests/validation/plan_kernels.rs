@@ -5,9 +5,9 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use viscocontact::Axis;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
+use viscocontact::{Axis, Error};
 
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
@@ -101,18 +101,30 @@ fn scene(seed: u64, number: u64) -> Scene {
     Scene { name, geometry, kernel, period, line, material, history, by_force, accuracy }
 }
 
-/// The main result and the greatest pressure at each time.
-fn run(scene: &Scene, builder: Builder, stepping: Stepping, times: &[f64]) -> (Vec<f64>, f64) {
+/// The main result at each time, and the greatest one and the greatest pressure of the run.
+fn run(scene: &Scene, builder: Builder, stepping: Stepping, times: &[f64]) -> (Vec<f64>, [f64; 2]) {
     let mut contact = builder.build().unwrap();
     let mut run = contact.follow(&scene.history, stepping, 1.0).stop_at(times).unwrap();
-    let (mut found, mut highest) = (Vec::new(), 0.0_f64);
+    let (mut found, mut greatest) = (Vec::new(), [0.0_f64; 2]);
     while let Some(report) = run.next_step().unwrap() {
-        highest = highest.max(run.contact().max_pressure());
+        let main = if scene.by_force { report.approach } else { report.force };
+        greatest = [greatest[0].max(main.abs()), greatest[1].max(run.contact().max_pressure())];
         if times.get(found.len()) == Some(&report.time) {
-            found.push(if scene.by_force { report.approach } else { report.force });
+            found.push(main);
         }
     }
-    (found, highest)
+    (found, greatest)
+}
+
+/// Whether the shape meets nothing at any approach of the history, as 400² points over ten times the width of any contact show.
+fn stays_apart(scene: &Scene) -> bool {
+    let approach = |k: u32| match scene.history.at(f64::from(k) / 1000.0) {
+        Load::Approach { approach, .. } => approach,
+        _ => f64::INFINITY,
+    };
+    let deepest = (0..=1000).map(approach).fold(f64::NEG_INFINITY, f64::max);
+    let places = (0..400 * 400).map(|k| [k / 400, k % 400].map(|k| 0.005 * (f64::from(k) - 199.5)));
+    places.into_iter().all(|[x1, x2]| scene.geometry.initial_gap(x1, x2) > deepest)
 }
 
 #[test]
@@ -139,6 +151,8 @@ fn plans_on_all_bodies_keep_their_promises() {
         });
         let plan = match plan {
             Ok(plan) => plan,
+            // a rough tip may stay above the body
+            Err(Error::NoDomain { .. }) if stays_apart(&scene) => continue,
             Err(error) => {
                 println!("{}: {error}", scene.name);
                 refused.push(scene.name);
@@ -159,14 +173,13 @@ fn plans_on_all_bodies_keep_their_promises() {
         let mut follow = own.follow(&scene.history, plan.stepping, 1.0);
         while follow.next_step().unwrap().is_some() {}
         let running = started.elapsed();
-        let (found, highest) = run(&scene, plan.builder.clone(), plan.stepping, &times);
+        let (found, [_, highest]) = run(&scene, plan.builder.clone(), plan.stepping, &times);
         let finer = Grid::new([2 * n1, if n2 == 1 { 1 } else { 2 * n2 }], plan.grid.lengths()).unwrap();
         let kernel = (scene.kernel)(&finer).unwrap();
         let reference = ViscoelasticContact::builder(finer).geometry(&*scene.geometry).material(scene.material.clone());
         let reference = reference.kernel(kernel).settings(Settings::default().with_tolerance(1e-7));
         let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
-        let (exact, exact_highest) = run(&scene, reference, stepping, &times);
-        let scale = exact.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        let (exact, [scale, exact_highest]) = run(&scene, reference, stepping, &times);
         let off = found.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
         let off = off / scene.accuracy.target();
         worst = worst.max(off);

@@ -1,0 +1,168 @@
+//! Where the work of a load goes.
+
+use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Frame, StepReport, Warnings};
+use crate::error::{Error, Result, count_within};
+use crate::hereditary::BranchEnergies;
+
+/// Follows what the load of a contact does, and what the bodies store and dissipate of it.
+///
+/// The bodies are springs and dashpots in every cell: the branches of their generalized Maxwell model, each driven by the displacement and by
+/// the tractions. What the springs store and the dashpots dissipate follows from these fields, not from the balance, whose
+/// [imbalance](Energies::imbalance) shows the error of the steps: of second order in their length. The work of the load is ∫ F dδ + ∫ M dα, by
+/// the mean of force and moment over each step: steps that are long for ∫ F dδ are divided by
+/// [`Run::stop_at`](crate::contact::Run::stop_at). In a step of length zero bodies answer elastically, and its work is what they store and lose.
+/// Where surfaces attract each other, the energy of the attraction is stored too, and steps with
+/// [`Warnings::JUMP`] lose [`PassReport::released`](crate::contact::PassReport::released).
+///
+/// Two fields for each relaxation time and eight more are kept, 8 bytes a cell each; a step costs as many products, far less than the step of
+/// the contact, and with [`Settings::window`](crate::contact::Settings::window) a convolution on the whole grid. Lateral forces of an indenter
+/// that moves along a path do work that is not counted.
+///
+/// ```
+/// use viscocontact::contact::EnergyBalance;
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(48, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Zener::relaxing(4.0e6, 1.0e6, 1.0)?))
+///     .build()?;
+/// let mut balance = EnergyBalance::new(&contact)?;
+/// // pressed for a second, and held for ten
+/// let load = Ramp::new(Load::approach(0.0), Load::approach(1.0e-4), 1.0)?;
+/// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 11.0);
+/// while let Some(report) = run.next_step()? {
+///     balance.record(run.contact(), &report)?;
+/// }
+/// let energies = balance.energies();
+/// assert!(energies.viscous > 0.3 * energies.work);
+/// assert!(energies.imbalance().abs() < 0.01 * energies.work);
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// In a [`CsvHistory`](crate::output::CsvHistory), [`EnergyBalance::COLUMNS`] name the columns, and [`Energies::values`] fill them.
+#[derive(Debug, Clone)]
+pub struct EnergyBalance {
+    branches: BranchEnergies,
+    energies: Energies,
+    /// Reduced time, force, moments, approach and tilts at the end of the step recorded last.
+    reduced_time: f64,
+    pushed: [f64; 3],
+    moved: [f64; 3],
+    traction: Vec<f64>,
+    gap: Vec<f64>,
+}
+
+/// The work of a load since the bodies were undisturbed, and what became of it \[J\].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Energies {
+    /// Work of the load; where surfaces attract each other, from bodies far apart.
+    pub work: f64,
+    /// What the bodies and the attraction store: they would give it back in a motion so fast that nothing creeps.
+    pub stored: f64,
+    /// What the bodies dissipated while they crept.
+    pub viscous: f64,
+    /// What was lost as surfaces snapped together and apart.
+    pub lost: f64,
+}
+
+impl Energies {
+    /// The values of [`EnergyBalance::COLUMNS`].
+    pub fn values(&self) -> [f64; 4] {
+        [self.work, self.stored, self.viscous, self.lost]
+    }
+
+    /// Work less what became of it: the error of the steps \[J\].
+    pub fn imbalance(&self) -> f64 {
+        self.work - self.stored - self.viscous - self.lost
+    }
+}
+
+impl EnergyBalance {
+    /// Names of the columns of energies in a [`CsvHistory`](crate::output::CsvHistory).
+    pub const COLUMNS: [&str; 4] = ["work [J]", "stored energy [J]", "viscous energy [J]", "energy lost in jumps [J]"];
+
+    /// A balance that begins with undisturbed bodies, before the first step of their contact.
+    ///
+    /// # Errors
+    /// If steps were taken, there are several rigid bodies, [ranks](crate::parallel) share out the rows, the bodies move under the grid
+    /// ([`Frame::Indenter`]), or their material has no exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it
+    /// one).
+    pub fn new(contact: &ViscoelasticContact) -> Result<EnergyBalance> {
+        let (what, cells) = ("an energy balance", contact.grid().len());
+        contact.not_shared(what)?;
+        count_within("rigid bodies of an energy balance", contact.bodies(), contact.bodies() == 1, "1")?;
+        if contact.settings().frame() == Frame::Indenter {
+            return Err(Error::WrongFrame { what });
+        }
+        if contact.time() != 0.0 || contact.displacement().iter().any(|&u| u != 0.0) {
+            let (field, value, allowed) =
+                ("time at which an energy balance begins", contact.time(), "0, before any step");
+            return Err(Error::OutOfRange { field, value, allowed });
+        }
+        let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series(what))?;
+        let mut balance = EnergyBalance {
+            branches: BranchEnergies::new(&creep, cells),
+            energies: Energies::default(),
+            reduced_time: contact.reduced_time(),
+            pushed: [0.0; 3],
+            moved: moved(contact),
+            traction: vec![0.0; cells],
+            gap: vec![0.0; cells],
+        };
+        balance.energies.stored = balance.attracted(contact)?;
+        balance.energies.work = balance.energies.stored;
+        Ok(balance)
+    }
+
+    /// Takes in the step taken last: call it once after each.
+    ///
+    /// # Errors
+    /// If there is no memory for the fields on the whole grid.
+    pub fn record(&mut self, contact: &ViscoelasticContact, report: &StepReport) -> Result<Energies> {
+        let area = contact.grid().cell_area();
+        contact.traction_into(&mut self.traction)?;
+        let dt = contact.reduced_time() - self.reduced_time;
+        let [stored, dissipated] = self.branches.step(dt, contact.displacement(), &self.traction).map(|sum| area * sum);
+        let stored = stored + self.attracted(contact)?;
+        let jumped = report.warnings.contains(Warnings::JUMP);
+        let lost = contact.passes().filter(|_| jumped).map_or(0.0, |passes| passes.released);
+        let (pushed, moved) = (pushed(contact), moved(contact));
+        // a jump is at the end of its step: what is released belongs to the load there
+        let after = if jumped { &self.pushed } else { &pushed };
+        let work = match report.dt {
+            0.0 => stored - self.energies.stored + lost,
+            _ => (0..3).map(|k| 0.5 * (self.pushed[k] + after[k]) * (moved[k] - self.moved[k])).sum(),
+        };
+        let Energies { work: worked, viscous, lost: lost_before, .. } = self.energies;
+        let (viscous, lost) = (viscous + dissipated, lost_before + lost);
+        self.energies = Energies { work: worked + work, stored, viscous, lost };
+        (self.pushed, self.moved, self.reduced_time) = (pushed, moved, contact.reduced_time());
+        Ok(self.energies)
+    }
+
+    /// The energies at the end of the step recorded last.
+    pub fn energies(&self) -> Energies {
+        self.energies
+    }
+
+    /// Energy of the attraction \[J\], 0 for bodies far apart.
+    fn attracted(&mut self, contact: &ViscoelasticContact) -> Result<f64> {
+        let Some(attraction) = contact.attraction() else { return Ok(0.0) };
+        contact.gap_into(&mut self.gap)?;
+        let energies = self.gap.iter().filter(|gap| gap.is_finite()).map(|gap| attraction.energy(gap.max(0.0)));
+        Ok(-contact.grid().cell_area() * energies.sum::<f64>())
+    }
+}
+
+fn pushed(contact: &ViscoelasticContact) -> [f64; 3] {
+    let [first, second] = contact.moment();
+    [contact.force(), first, second]
+}
+
+fn moved(contact: &ViscoelasticContact) -> [f64; 3] {
+    let [first, second] = contact.tilt();
+    [contact.approach(), first, second]
+}
