@@ -24,7 +24,7 @@ fn parameters_are_found_without_noise() {
         let greatest = force.iter().copied().fold(0.0, f64::max);
         let mut expected = scene.named();
         expected.push(("contact point", scene.contact_point));
-        let bounds = scene.identification.bounds(&[scene.experiment.clone()], &expected, 0.01 * greatest);
+        let bounds = scene.identification.bounds(std::slice::from_ref(&scene.experiment), &expected, 0.01 * greatest);
         let limits = |name: &str| match name {
             "contact point" => scene.depth,
             _ => 1.0,
