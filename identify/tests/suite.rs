@@ -9,4 +9,5 @@ mod protocols;
 mod random;
 mod recovery;
 mod scenes;
+mod spectra;
 mod usual;

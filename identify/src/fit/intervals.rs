@@ -25,7 +25,7 @@ impl Fit {
             names: self.estimates().iter().map(|e| e.name.clone()).collect::<Vec<_>>().join(", "),
         };
         let at = at.ok_or_else(unknown)?;
-        let mut problem = self.identification.refit_problem(&self.curves, self.autoregression())?;
+        let mut problem = self.problem()?;
         let best = problem.coordinates(&self.values);
         let points = problem.len();
         let freedom = if self.identification.sigma().is_some() { 1e6 } else { (points - best.len()) as f64 };

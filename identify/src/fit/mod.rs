@@ -1,7 +1,10 @@
 //! What was identified.
 
 mod intervals;
+#[cfg(feature = "rayon")]
+mod many;
 mod report;
+mod verify;
 
 use faer::Mat;
 use viscocontact::rheology::Material;
@@ -265,6 +268,25 @@ impl Fit {
             None => points * (self.sum / points).ln(),
         };
         misfit - self.log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
+    }
+
+    /// Stiffness of the spring of a curve \[N/m\]; infinite where the drive is the depth.
+    pub(crate) fn stiffness(&self, curve: usize) -> f64 {
+        self.estimate("stiffness").map_or(self.curves[curve].experiment.stiffness, |estimate| estimate.value)
+    }
+
+    /// The problem that was solved.
+    pub(crate) fn problem(&self) -> Result<Problem<'_>> {
+        self.identification.refit_problem(&self.curves, self.correlation)
+    }
+
+    /// Values of all parameters.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    pub(crate) fn prony(&self) -> &Prony {
+        &self.prony
     }
 
     /// Shortest interval and longest curve \[s\].

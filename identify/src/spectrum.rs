@@ -1,0 +1,283 @@
+//! A relaxation spectrum without a model, and the decades of time that data determine.
+
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
+
+use crate::error::{Error, Result};
+use crate::fit::Fit;
+use crate::model::Prony;
+use crate::non_negative::non_negative;
+use crate::parameters::Kind;
+use crate::problem::Problem;
+
+/// Relaxation times per decade.
+const PER_DECADE: f64 = 5.0;
+/// Strengths of the smoothing that are tried, from none to all.
+const STRENGTHS: usize = 25;
+/// Rounds in which the spectrum and the extent of the contact agree.
+const MAX_ROUNDS: usize = 40;
+/// Change of the forces, relative to the greatest, below which they agree.
+const AGREED: f64 = 1e-7;
+/// Least modulus of a term, relative to the sum, so that its force is known.
+const LEAST: f64 = 1e-12;
+/// A decade is determined if its modulus is known to this fraction of the modulus at the shortest times.
+const DETERMINED: f64 = 0.1;
+
+/// A spectrum of relaxation times found without a model: moduli of zero or more at fixed times.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct FreeSpectrum {
+    /// Modulus at long times \[Pa\].
+    pub equilibrium: f64,
+    /// Relaxation times \[s\] and their moduli \[Pa\].
+    pub terms: Vec<(f64, f64)>,
+    /// Strength of the smoothing: weight of the squared second differences of the moduli, relative to the data.
+    pub smoothing: f64,
+    /// Standard deviation of the residuals \[N\].
+    pub sigma: f64,
+    /// Force at each sample, by curve, offset, drift and drag included \[N\].
+    pub forces: Vec<Vec<f64>>,
+    /// Rounds until the spectrum and the extent of the contact agreed.
+    pub rounds: usize,
+}
+
+impl FreeSpectrum {
+    /// The contact modulus at a time after a sudden step \[Pa\].
+    pub fn modulus(&self, t: f64) -> f64 {
+        self.equilibrium + self.terms.iter().map(|(time, modulus)| modulus * (-t / time).exp()).sum::<f64>()
+    }
+}
+
+/// What data tell of the relaxation times of one decade.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Decade {
+    /// First and last relaxation time \[s\].
+    pub times: [f64; 2],
+    /// Modulus that relaxes in this decade \[Pa\].
+    pub modulus: f64,
+    /// Its standard deviation, if the moduli of all decades and at long times are unknown \[Pa\]; at most the modulus at the shortest times.
+    pub deviation: f64,
+    /// Whether the deviation is below a tenth of the modulus at the shortest times.
+    pub is_determined: bool,
+}
+
+impl Fit {
+    /// A spectrum without a model, from the curves of this fit, with its contact points and the other properties of the measurement.
+    ///
+    /// For a known extent of the contact the force is linear in the spectrum, so that its moduli are found by least squares with values of
+    /// zero or more. They are smoothed by their second differences, as much as generalised cross-validation (Golub, Heath & Wahba 1979)
+    /// asks. The extent of the contact during retraction depends on the spectrum: both are iterated.
+    ///
+    /// # Errors
+    /// If a contact grows again after it has shrunk: then the force is not linear in the spectrum; or if the iteration fails.
+    pub fn free_spectrum(&self) -> Result<FreeSpectrum> {
+        let problem = self.problem()?;
+        let rates = rates(problem.window);
+        let mut prony = nearest(self, &rates);
+        let mut last: Option<Vec<f64>> = None;
+        let whitened = |columns: &mut Mat<f64>, column: usize, values: &[Vec<f64>]| {
+            let mut row = 0;
+            for (part, values) in problem.parts.iter().zip(values) {
+                let mut values = values.clone();
+                part.whitening.apply(&mut values);
+                for value in values {
+                    columns[(row, column)] = value;
+                    row += 1;
+                }
+            }
+        };
+        for round in 1..=MAX_ROUNDS {
+            let basis = basis(&problem, self.values(), &prony)?;
+            let mut matrix = Mat::zeros(problem.len(), rates.len() + 1);
+            for (column, of_term) in basis.iter().enumerate() {
+                whitened(&mut matrix, column, of_term);
+            }
+            // the data without offset, drift and drag
+            let bare: Vec<Vec<f64>> = problem
+                .parts
+                .iter()
+                .enumerate()
+                .map(|(curve, part)| {
+                    let rest = problem.measured(curve, self.values(), part.data.iter().map(|_| 0.0));
+                    part.data.iter().zip(rest).map(|(data, rest)| data - rest).collect()
+                })
+                .collect();
+            whitened(&mut matrix, rates.len(), &bare);
+            let (moduli, smoothing, sum) = smoothed(&matrix);
+            let forces: Vec<f64> =
+                (0..problem.len()).map(|k| (0..rates.len()).map(|j| matrix[(k, j)] * moduli[j]).sum()).collect();
+            let greatest = forces.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+            let change = last.as_ref().map_or(f64::INFINITY, |last| {
+                last.iter().zip(&forces).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+            });
+            let total: f64 = moduli.iter().sum();
+            prony = Prony { moduli: moduli.iter().map(|m| m.max(LEAST * total)).collect(), rates: rates.clone() };
+            if change <= AGREED * greatest || round == MAX_ROUNDS && change <= 1e-3 * greatest {
+                let of_curve = |curve: usize| problem.force(curve, self.values(), &prony);
+                return Ok(FreeSpectrum {
+                    equilibrium: moduli[0],
+                    terms: rates[1..].iter().zip(&moduli[1..]).map(|(rate, &modulus)| (1.0 / rate, modulus)).collect(),
+                    smoothing,
+                    sigma: (sum / problem.len() as f64).sqrt(),
+                    forces: (0..problem.parts.len()).map(of_curve).collect::<Result<_>>()?,
+                    rounds: round,
+                });
+            }
+            last = Some(forces);
+        }
+        let reason = "the spectrum and the extent of the contact do not agree: fit a model with few parameters instead";
+        Err(Error::NotConverged { iterations: MAX_ROUNDS, reason })
+    }
+
+    /// For each decade of relaxation times, from the sampling interval to a hundred times the length of the curves, whether the data determine
+    /// how much modulus relaxes in it, without a model.
+    ///
+    /// # Errors
+    /// As [`Fit::free_spectrum`].
+    pub fn decades(&self) -> Result<Vec<Decade>> {
+        let problem = self.problem()?;
+        let [shortest, longest] = problem.window;
+        let first = shortest.log10().floor();
+        let count = (longest.log10() - first).ceil().max(1.0) as usize + 2;
+        let edges: Vec<[f64; 2]> =
+            (0..count).map(|k| [0.0, 1.0].map(|end| 10.0_f64.powf(first + k as f64 + end))).collect();
+        // three times in each decade share its modulus
+        let times = edges.iter().flat_map(|[low, _]| [1.0, 3.0, 5.0].map(|sixth| low * 10.0_f64.powf(sixth / 6.0)));
+        let rates: Vec<f64> = std::iter::once(0.0).chain(times.map(|time| 1.0 / time)).collect();
+        let total = self.modulus(0.0);
+        let prony = Prony { moduli: vec![LEAST * total; rates.len()], rates: rates.clone() };
+        let mut path = self.prony().clone();
+        let own = path.moduli.len();
+        path.moduli.extend(prony.moduli);
+        path.rates.extend(prony.rates);
+        let basis = basis(&problem, self.values(), &path)?;
+        let column = |decade: usize| -> Vec<f64> {
+            let of = |term: usize| &basis[own + term];
+            let terms: &[usize] = if decade == 0 { &[0] } else { &[3 * decade - 2, 3 * decade - 1, 3 * decade] };
+            let mut all = Vec::with_capacity(problem.len());
+            for (curve, part) in problem.parts.iter().enumerate() {
+                let share = 1.0 / terms.len() as f64;
+                let mut sum: Vec<f64> =
+                    (0..part.len()).map(|k| terms.iter().map(|&t| of(t)[curve][k] * share).sum()).collect();
+                part.whitening.apply(&mut sum);
+                all.append(&mut sum);
+            }
+            all
+        };
+        let columns: Vec<Vec<f64>> = (0..=count).map(column).collect();
+        let sigma = self.sigma();
+        // nobody expects more in a decade than the modulus at the shortest times: a weak prior, without which decades that the data do
+        // not see have no deviation
+        let scaled = Mat::from_fn(count + 1, count + 1, |i, j| {
+            let product: f64 = columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
+            product * (total / sigma).powi(2) + if i == j { 1.0 } else { 0.0 }
+        });
+        let inverse = scaled.llt(Side::Lower).map_err(|_| Error::NotConverged {
+            iterations: 0,
+            reason: "the forces of the decades are not finite: check the times and the noise",
+        })?;
+        let inverse = inverse.inverse();
+        let modulus = |[low, high]: [f64; 2]| {
+            let prony = self.prony();
+            let inside =
+                prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| (low..high).contains(&(1.0 / **rate)));
+            inside.map(|(modulus, _)| modulus).sum::<f64>()
+        };
+        let decade = |(k, times): (usize, [f64; 2])| {
+            let deviation = total * inverse[(k + 1, k + 1)].sqrt();
+            Decade { times, modulus: modulus(times), deviation, is_determined: deviation < DETERMINED * total }
+        };
+        Ok(edges.into_iter().enumerate().map(decade).collect())
+    }
+}
+
+/// Rates from 0 to twice the fastest that samples show.
+fn rates([shortest, longest]: [f64; 2]) -> Vec<f64> {
+    let [first, last] = [(0.5 * shortest).log10(), (3.0 * longest).log10()];
+    let count = ((last - first) * PER_DECADE).ceil() as usize;
+    let time = |k: usize| 10.0_f64.powf(first + (last - first) * k as f64 / count as f64);
+    std::iter::once(0.0).chain((0..=count).map(|k| 1.0 / time(k))).collect()
+}
+
+/// The modulus of a fit, shared out to the nearest rates.
+fn nearest(fit: &Fit, rates: &[f64]) -> Prony {
+    let total: f64 = fit.prony().moduli.iter().sum();
+    let mut moduli = vec![LEAST * total; rates.len()];
+    for (modulus, rate) in fit.prony().moduli.iter().zip(&fit.prony().rates) {
+        let distance = |other: f64| {
+            if *rate == 0.0 || other == 0.0 {
+                if *rate == other { 0.0 } else { 1e9 }
+            } else {
+                (rate / other).ln().abs()
+            }
+        };
+        let at = (0..rates.len()).min_by(|&a, &b| distance(rates[a]).total_cmp(&distance(rates[b]))).unwrap_or(0);
+        moduli[at] += modulus;
+    }
+    Prony { moduli, rates: rates.to_vec() }
+}
+
+/// Force of each term per unit modulus, by term, curve and sample.
+fn basis(problem: &Problem<'_>, values: &[f64], prony: &Prony) -> Result<Vec<Vec<Vec<f64>>>> {
+    let mut basis = vec![Vec::with_capacity(problem.parts.len()); prony.moduli.len()];
+    for (curve, part) in problem.parts.iter().enumerate() {
+        let contact_point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
+        let mut columns = vec![Vec::with_capacity(part.len()); prony.moduli.len()];
+        let mut is_single = true;
+        part.respond(curve, prony, contact_point, problem.stiffness(curve, values), |_, terms| {
+            is_single = is_single && terms.is_some();
+            for (column, (term, modulus)) in columns.iter_mut().zip(terms.unwrap_or_default().iter().zip(&prony.moduli))
+            {
+                column.push(term / modulus);
+            }
+        })?;
+        if !is_single {
+            return Err(Error::Returns { curve });
+        }
+        for (of_term, column) in basis.iter_mut().zip(columns) {
+            of_term.push(column);
+        }
+    }
+    Ok(basis)
+}
+
+/// The smoothed moduli of the least criterion of cross-validation, with the strength of the smoothing and the sum of squares. The last
+/// column of the matrix is the data.
+fn smoothed(matrix: &Mat<f64>) -> (Vec<f64>, f64, f64) {
+    let count = matrix.ncols() - 1;
+    let all = matrix.transpose() * matrix;
+    let right: Vec<f64> = (0..count).map(|j| all[(j, count)]).collect();
+    // second differences of neighbouring relaxation times; the equilibrium modulus is the first unknown
+    let roughness = Mat::from_fn(count - 3, count, |i, j| {
+        [(1, 1.0), (2, -2.0), (3, 1.0)].iter().find(|(k, _)| i + k == j).map_or(0.0, |(_, v)| *v)
+    });
+    let penalty = roughness.transpose() * &roughness;
+    let scale = (0..count).map(|j| all[(j, j)]).fold(0.0, f64::max);
+    let points = matrix.nrows() as f64;
+    let mut best: Option<(f64, Vec<f64>, f64, f64)> = None;
+    for k in 0..STRENGTHS {
+        let strength = 10.0_f64.powf(-12.0 + 0.5 * k as f64);
+        let gram = Mat::from_fn(count, count, |i, j| {
+            all[(i, j)] + scale * (strength * penalty[(i, j)] + if i == j { 1e-14 } else { 0.0 })
+        });
+        let (moduli, free) = non_negative(&gram, &right);
+        let product = |j: usize| (0..count).map(|i| all[(j, i)] * moduli[i]).sum::<f64>();
+        let sum = (all[(count, count)] - 2.0 * (0..count).map(|j| moduli[j] * right[j]).sum::<f64>()
+            + (0..count).map(|j| moduli[j] * product(j)).sum::<f64>())
+        .max(0.0);
+        // degrees of freedom: the trace of the influence matrix over the free unknowns
+        let at: Vec<usize> = (0..count).filter(|&j| free[j]).collect();
+        let part = |of: &Mat<f64>| Mat::from_fn(at.len(), at.len(), |i, j| of[(at[i], at[j])]);
+        let freedom = part(&gram).llt(Side::Lower).map_or(at.len() as f64, |factor| {
+            let influence = factor.inverse() * part(&all);
+            (0..at.len()).map(|i| influence[(i, i)]).sum()
+        });
+        let criterion = sum / (points - freedom).powi(2);
+        if best.as_ref().is_none_or(|(least, ..)| criterion < *least) {
+            best = Some((criterion, moduli, strength, sum));
+        }
+    }
+    best.map_or((vec![0.0; count], 0.0, 0.0), |(_, moduli, strength, sum)| (moduli, strength, sum))
+}
