@@ -108,6 +108,13 @@ pub enum Error {
     #[error(transparent)]
     Data(#[from] crate::data::DataError),
 
+    /// A table of results cannot be written.
+    #[error("the results cannot be written: {reason}")]
+    Unwritable {
+        /// The error of the writer or its format.
+        reason: String,
+    },
+
     /// An error of the contact, its tip or a file.
     #[error(transparent)]
     Contact(#[from] viscocontact::Error),

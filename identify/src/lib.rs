@@ -1,4 +1,38 @@
-//! From measured indentation curves to the moduli of viscoelastic bodies.
+//! From measured indentation curves to the moduli of viscoelastic bodies, for experimenters with an atomic force microscope, a
+//! nanoindenter or a load cell.
+//!
+//! A tip is pressed into a body, held, and drawn back; force and drive are measured over time. The crate finds the contact
+//! modulus over time, E*(t), with its uncertainty. The force of every model is computed exactly, for any tip, layer and
+//! history, retraction included ([`viscocontact::states`]).
+//!
+//! | task | start at |
+//! |---|---|
+//! | read a curve from a file, check its signs and units | [`Recording`] |
+//! | plan an experiment, and predict how well it determines a material | [`Protocol`], [`Identification::bounds`] |
+//! | fit a model to one or more curves | [`Identification::fit`] |
+//! | fit each curve of a force map, on several threads | [`Identification::fit_each`] |
+//! | find a spectrum without a model, and the decades that the data determine | [`Fit::free_spectrum`], [`Fit::decades`] |
+//! | compare models | [`ranked`] |
+//! | check a fit by the stepper in space | [`Fit::verify`] |
+//! | tables and pictures | [`Summary`], `Fit::picture` with the feature `plot` |
+//! | the complex modulus of a small oscillation | [`Curve::complex_modulus`] |
+//! | creep or drainage of a pore fluid | [`TimeAtSize::scaling`] |
+//! | the usual formulas, for comparison | [`usual`] |
+//!
+//! The [`guide`] has a program for each of these.
+//!
+//! # Conventions
+//!
+//! * **Units**: SI. Drive and force grow toward the sample; the drive is the depth of the tip, or the position of the base of a
+//!   spring that carries the tip.
+//! * **Modulus**: E* is the contact modulus: 2G/(1 − ν) of a body of shear modulus G under a rigid tip. One contact does not
+//!   determine ν, so that G needs a ν from elsewhere ([`Fit::shear_modulus`]).
+//! * **Deviations** of moduli and times are deviations of their logarithms.
+//!
+//! # Features
+//!
+//! `rayon` (on by default): many curves on several threads. `plot`: pictures of data, fit, band and residuals. `serde`: results as JSON, and `Serialize` for them.
+
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
@@ -13,16 +47,27 @@ mod fit;
 mod forward;
 mod identification;
 mod least_squares;
+mod many;
 mod model;
 mod noise;
 mod non_negative;
 mod parameters;
+#[cfg(feature = "plot")]
+mod plot;
 mod problem;
 mod protocol;
+mod results;
 mod spectrum;
 mod start;
 mod statistics;
 pub mod usual;
+mod verify;
+#[cfg(any(doc, doctest))]
+pub mod guide {
+    #![doc = include_str!("../docs/guide.md")]
+
+    use crate::*;
+}
 
 pub use bounds::Bounds;
 pub use data::{DataError, Recording};
@@ -37,5 +82,11 @@ pub use model::{Model, Scale};
 pub use noise::Noise;
 pub use parameters::Nuisance;
 pub use protocol::{Protocol, ProtocolBuilder};
+pub use results::Summary;
 pub use spectrum::{Decade, FreeSpectrum};
 pub use statistics::ResidualTest;
+pub use verify::Verification;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+struct Readme;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::prelude::*;
-use viscocontact_identify::{Curve, Experiment, Identification, Model, Nuisance, Protocol};
+use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol};
 
 use crate::random::normal;
 
@@ -61,26 +61,4 @@ fn decades_that_the_data_do_not_see_are_named() {
     assert!(at(0.03).is_determined && at(0.3).is_determined);
     assert!(!at(300.0).is_determined);
     assert!((at(0.03).modulus - 0.45).abs() < 0.05);
-}
-
-/// A contact in space agrees with the fit of a tip that was swept on its grid.
-#[test]
-fn the_contact_in_space_verifies_a_fit() {
-    let grid = Grid::square(48, 10e-6).unwrap();
-    let ball = Sphere::new(5e-6).unwrap();
-    let tip = Sweep::new(grid.clone(), &ball).run(Reach::Approach(1e-6)).unwrap();
-    let times: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
-    let drive = times.iter().map(|&t: &f64| 0.5e-6 * t.min(1.0).min(2.5 - t)).collect();
-    let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), tip);
-    let zener = Identification::new(Model::Zener).contact_point(Nuisance::Fixed(0.0));
-    let samples = zener.respond(&experiment, &[("E0", 1e3), ("Einf", 3e2), ("tau", 0.5)]).unwrap();
-    let force = samples.iter().map(|sample| sample.force).collect();
-    let fit = zener.fit(&[Curve::new(experiment, force).unwrap()]).unwrap();
-    let contact = ViscoelasticContact::builder(grid).geometry(&ball).material(fit.material().unwrap());
-    let difference = fit.verify(0, &mut contact.build().unwrap()).unwrap();
-    assert!(difference < 3e-3, "{difference}");
-    // a wrong material is seen
-    let other = Material::incompressible(Zener::relaxing(250.0, 75.0, 0.2).unwrap());
-    let contact = ViscoelasticContact::builder(Grid::square(48, 10e-6).unwrap()).geometry(&ball).material(other);
-    assert!(fit.verify(0, &mut contact.build().unwrap()).unwrap() > 0.05);
 }

@@ -8,6 +8,8 @@ mod noise;
 mod protocols;
 mod random;
 mod recovery;
+mod results;
 mod scenes;
 mod spectra;
 mod usual;
+mod verify;

@@ -1,10 +1,7 @@
 //! What was identified.
 
 mod intervals;
-#[cfg(feature = "rayon")]
-mod many;
 mod report;
-mod verify;
 
 use faer::Mat;
 use viscocontact::rheology::Material;
@@ -268,11 +265,6 @@ impl Fit {
             None => points * (self.sum / points).ln(),
         };
         misfit - self.log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
-    }
-
-    /// Stiffness of the spring of a curve \[N/m\]; infinite where the drive is the depth.
-    pub(crate) fn stiffness(&self, curve: usize) -> f64 {
-        self.estimate("stiffness").map_or(self.curves[curve].experiment.stiffness, |estimate| estimate.value)
     }
 
     /// The problem that was solved.

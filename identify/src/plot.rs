@@ -1,0 +1,106 @@
+//! Pictures of fits. Feature `plot`.
+
+use viscocontact::plot::{COLORS, Chart, Legend, Picture, Quantity, Scale, Style};
+
+use crate::error::{Result, within};
+use crate::fit::Fit;
+
+/// Standard deviations of a normal distribution within which 95 % of the draws are.
+const WITHIN_95: f64 = 1.96;
+/// Points of a curve of the modulus.
+const POINTS: usize = 100;
+
+/// Pictures of the fit; those of one curve by its index.
+///
+/// ```
+/// use viscocontact::states::ElasticStates;
+/// use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol};
+///
+/// let protocol = Protocol::trapezoid(1.0e-6, [0.1, 1.0, 0.1], 0.01)?;
+/// let experiment = Experiment::new(protocol, ElasticStates::sphere(5.0e-6)?);
+/// let maxwell = Identification::new(Model::Maxwell);
+/// let force = maxwell.respond(&experiment, &[("E0", 2.0e3), ("tau", 0.5)])?;
+/// // 1 % of scatter, in place of a measurement
+/// let scatter = |k: usize| 1.0e-10 * (k as f64 * k as f64).sin();
+/// let force = force.iter().enumerate().map(|(k, sample)| sample.force + scatter(k)).collect();
+/// let fit = maxwell.fit(&[Curve::new(experiment, force)?])?;
+/// # let path = std::env::temp_dir().join(format!("viscocontact-doc-fit-{}.png", std::process::id()));
+/// fit.picture(0)?.save(&path)?;
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), viscocontact_identify::Error>(())
+/// ```
+impl Fit {
+    /// Measured and fitted force of a curve over time.
+    ///
+    /// # Errors
+    /// If there is no such curve.
+    pub fn force_chart(&self, curve: usize) -> Result<Chart> {
+        let times = self.times(curve)?;
+        let [time, force] = [Quantity::new("time", "s"), Quantity::new("force", "N")];
+        let mut chart = Chart::new("Force", time, force, Legend::UpperRight);
+        let measured = self.curves()[curve].force();
+        chart.add("measured", COLORS[0], Style::Dots, pairs(times, measured));
+        chart.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, self.force(curve)));
+        Ok(chart)
+    }
+
+    /// Measured less fitted force of a curve over time, with the limits within which 95 % of the residuals should be. Neighbours on
+    /// the same side show that the model is wrong.
+    ///
+    /// # Errors
+    /// If there is no such curve.
+    pub fn residual_chart(&self, curve: usize) -> Result<Chart> {
+        let times = self.times(curve)?;
+        let [time, force] = [Quantity::new("time", "s"), Quantity::new("measured - fitted force", "N")];
+        let mut chart = Chart::new("Residuals", time, force, Legend::UpperRight);
+        chart.add("", COLORS[0], Style::Dots, pairs(times, self.residuals(curve)));
+        // of correlated noise, the whole standard deviation
+        let phi = self.autoregression().unwrap_or_default();
+        let limit = WITHIN_95 * self.sigma() / (1.0 - phi * phi).sqrt();
+        for (label, value) in [("95 % of the noise", limit), ("", -limit)] {
+            chart.add(label, COLORS[1], Style::Line, vec![(times[0], value), (times[times.len() - 1], value)]);
+        }
+        Ok(chart)
+    }
+
+    /// The contact modulus over time with its band of 95 %, from the shortest sampling interval to the length of the curves.
+    pub fn modulus_chart(&self) -> Chart {
+        let [first, last] = self.window();
+        let times = (0..=POINTS).map(|k| first * (last / first).powf(k as f64 / POINTS as f64));
+        let band: Vec<(f64, [f64; 2])> = times.map(|time| (time, self.modulus_band(time))).collect();
+        let falls_by_decades = band[0].1[0] > 10.0 * band[POINTS].1[0];
+        let (scale, modulus) = if falls_by_decades {
+            (Scale::LogLog, Quantity::from("E* [Pa]"))
+        } else {
+            (Scale::LogX, Quantity::new("E*", "Pa"))
+        };
+        let mut chart = Chart::new("Contact modulus", "time [s]", modulus, Legend::UpperRight);
+        chart.scale = scale;
+        let line = |deviations: f64| -> Vec<(f64, f64)> {
+            band.iter().map(|&(time, [modulus, relative])| (time, modulus * (deviations * relative).exp())).collect()
+        };
+        chart.add("95 %", COLORS[5], Style::Line, line(WITHIN_95));
+        chart.add("", COLORS[5], Style::Line, line(-WITHIN_95));
+        chart.add("identified", COLORS[1], Style::Line, line(0.0));
+        chart
+    }
+
+    /// Force and residuals of a curve, and the contact modulus, side by side.
+    ///
+    /// # Errors
+    /// If there is no such curve; those of [`Chart::draw`] and [`Picture::beside`].
+    pub fn picture(&self, curve: usize) -> Result<Picture> {
+        let charts = [self.force_chart(curve)?, self.residual_chart(curve)?, self.modulus_chart()];
+        let pictures = charts.iter().map(Chart::draw).collect::<viscocontact::Result<Vec<_>>>()?;
+        Ok(Picture::beside(&pictures)?)
+    }
+
+    fn times(&self, curve: usize) -> Result<&[f64]> {
+        within("index of the curve", curve as f64, curve < self.curves().len(), "below the number of curves")?;
+        Ok(self.curves()[curve].experiment().protocol().times())
+    }
+}
+
+fn pairs(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
+    x.iter().copied().zip(y.iter().copied()).collect()
+}

@@ -1,0 +1,149 @@
+//! Tables of results.
+
+use std::fmt;
+use std::io::Write;
+
+use crate::error::{Error, Result};
+use crate::fit::{Estimate, Fit, FitWarning};
+use crate::model::Model;
+use crate::statistics::ResidualTest;
+
+/// The numbers of a fit without its curves: what a table of results contains.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Summary {
+    /// The model.
+    pub model: Model,
+    /// Its parameters.
+    pub estimates: Vec<Estimate>,
+    /// Akaike's criterion, corrected: less is better.
+    pub aicc: f64,
+    /// Standard deviation of the noise \[N\].
+    pub sigma: f64,
+    /// Autoregressive coefficient of the noise, if it has one.
+    pub autoregression: Option<f64>,
+    /// Samples with the tip in contact.
+    pub points_in_contact: usize,
+    /// Iterations of the search.
+    pub iterations: usize,
+    /// Runs test of the residuals.
+    pub runs: ResidualTest,
+    /// Correlation test of the residuals.
+    pub correlations: ResidualTest,
+    /// What a user should know before the parameters are used.
+    pub warnings: Vec<FitWarning>,
+}
+
+/// Columns of a table of results.
+const COLUMNS: [&str; 11] = [
+    "model",
+    "aicc",
+    "parameter",
+    "value",
+    "unit",
+    "deviation",
+    "scale of deviation",
+    "robust deviation",
+    "lower 95 %",
+    "upper 95 %",
+    "warnings",
+];
+
+/// The name of the model, without its settings.
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let debug = format!("{self:?}");
+        f.pad(debug.split(" {").next().unwrap_or(&debug))
+    }
+}
+
+impl Fit {
+    /// The numbers of this fit without its curves.
+    pub fn summary(&self) -> Summary {
+        Summary {
+            model: self.model(),
+            estimates: self.estimates().to_vec(),
+            aicc: self.aicc(),
+            sigma: self.sigma(),
+            autoregression: self.autoregression(),
+            points_in_contact: self.points_in_contact(),
+            iterations: self.iterations(),
+            runs: self.runs(),
+            correlations: self.correlations(),
+            warnings: self.warnings(),
+        }
+    }
+}
+
+impl Summary {
+    /// Writes a table of some fits as CSV with headings: a row for each parameter, in SI units.
+    ///
+    /// ```
+    /// use viscocontact::states::ElasticStates;
+    /// use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol, Summary};
+    ///
+    /// let protocol = Protocol::trapezoid(1.0e-6, [0.1, 1.0, 0.1], 0.01)?;
+    /// let experiment = Experiment::new(protocol, ElasticStates::sphere(5.0e-6)?);
+    /// let maxwell = Identification::new(Model::Maxwell);
+    /// let force = maxwell.respond(&experiment, &[("E0", 2.0e3), ("tau", 0.5)])?;
+    /// let curve = Curve::new(experiment, force.iter().map(|sample| sample.force).collect())?;
+    /// let mut table = Vec::new();
+    /// Summary::write_csv(&[maxwell.fit(&[curve])?.summary()], &mut table)?;
+    /// assert!(String::from_utf8_lossy(&table).starts_with("model,aicc,parameter,value,unit"));
+    /// # Ok::<(), viscocontact_identify::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Unwritable`].
+    pub fn write_csv(summaries: &[Summary], to: impl Write) -> Result<()> {
+        let unwritable = |error: csv::Error| Error::Unwritable { reason: error.to_string() };
+        let mut table = csv::Writer::from_writer(to);
+        table.write_record(COLUMNS).map_err(unwritable)?;
+        for summary in summaries {
+            let warnings: Vec<String> = summary.warnings.iter().map(|warning| format!("{warning:?}")).collect();
+            for Estimate { name, value, scale, deviation, robust_deviation, interval, .. } in &summary.estimates {
+                let [low, high] = interval.map(|limit| limit.to_string());
+                table
+                    .write_record([
+                        summary.model.to_string(),
+                        summary.aicc.to_string(),
+                        name.clone(),
+                        value.to_string(),
+                        unit(name).to_owned(),
+                        deviation.to_string(),
+                        format!("{scale:?}"),
+                        robust_deviation.to_string(),
+                        low,
+                        high,
+                        warnings.join("; "),
+                    ])
+                    .map_err(unwritable)?;
+            }
+        }
+        table.flush().map_err(|error| Error::Unwritable { reason: error.to_string() })
+    }
+
+    /// Writes some fits as a JSON array of objects with the names of the fields of [`Summary`].
+    ///
+    /// # Errors
+    /// [`Error::Unwritable`].
+    #[cfg(feature = "serde")]
+    pub fn write_json(summaries: &[Summary], to: impl Write) -> Result<()> {
+        serde_json::to_writer_pretty(to, summaries).map_err(|error| Error::Unwritable { reason: error.to_string() })
+    }
+}
+
+/// The unit of a parameter.
+fn unit(name: &str) -> &'static str {
+    match name.split(' ').next().unwrap_or_default() {
+        "stiffness" => "N/m",
+        "contact" => "m",
+        "offset" => "N",
+        "drift" => "N/s",
+        "drag" => "N s/m",
+        "alpha" => "1",
+        other if other.starts_with("tau") => "s",
+        _ => "Pa",
+    }
+}

@@ -1,0 +1,128 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use viscocontact::states::ElasticStates;
+use viscocontact_identify::{Curve, Error, Experiment, Fit, Identification, Model, Protocol, Result, Summary};
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+use crate::random::normal;
+
+/// A map of six curves, one of which has no contact.
+#[test]
+fn each_curve_of_a_map_is_fitted_as_if_alone() -> Result<()> {
+    let experiment =
+        Experiment::new(Protocol::trapezoid(1.0e-6, [0.5, 2.0, 0.5], 0.05)?, ElasticStates::sphere(5.0e-6)?);
+    let zener = Identification::new(Model::Zener);
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let mut map = Vec::new();
+    for k in 0..6 {
+        let modulus = if k == 2 { 1.0e-3 } else { 1.0e3 * f64::from(k + 1) };
+        let exact = zener.respond(&experiment, &[("E0", modulus), ("Einf", 0.3 * modulus), ("tau", 0.4)])?;
+        let force = exact.iter().map(|sample| sample.force + 1.0e-10 * normal(&mut rng)).collect();
+        map.push(Curve::new(experiment.clone(), force)?);
+    }
+    let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let fits = zener.fit_each(&map, |fit| {
+        done.fetch_add(1, Ordering::Relaxed);
+        failed.fetch_add(usize::from(fit.is_err()), Ordering::Relaxed);
+    });
+    assert_eq!((fits.len(), done.into_inner(), failed.into_inner()), (6, 6, 1));
+    for (k, fit) in fits.iter().enumerate() {
+        match (fit, zener.fit(std::slice::from_ref(&map[k]))) {
+            (Ok(fit), Ok(alone)) => assert_eq!(fit.estimates(), alone.estimates()),
+            (Err(fit), Err(alone)) => assert!(*fit == alone && k == 2, "{fit}"),
+            (fit, alone) => panic!("curve {k}: {fit:?}, alone {alone:?}"),
+        }
+    }
+    Ok(())
+}
+
+/// Two fits of a noisy curve.
+fn fits() -> Result<[Fit; 2]> {
+    let experiment =
+        Experiment::new(Protocol::trapezoid(1.0e-6, [0.5, 2.0, 0.5], 0.01)?, ElasticStates::sphere(5.0e-6)?);
+    let zener = Identification::new(Model::Zener);
+    let exact = zener.respond(&experiment, &[("E0", 2.0e3), ("Einf", 5.0e2), ("tau", 0.4)])?;
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let force = exact.iter().map(|sample| sample.force + 1.0e-10 * normal(&mut rng)).collect();
+    let curve = [Curve::new(experiment, force)?];
+    Ok([zener.fit(&curve)?, Identification::new(Model::PowerLaw { cutoff: 1.0e-4 }).fit(&curve)?])
+}
+
+#[test]
+fn a_table_holds_every_parameter_to_the_last_bit() -> Result<()> {
+    let summaries = fits()?.map(|fit| fit.summary());
+    let mut text = Vec::new();
+    Summary::write_csv(&summaries, &mut text)?;
+    let mut table = csv::Reader::from_reader(text.as_slice());
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
+    let expected =
+        summaries.iter().flat_map(|summary| summary.estimates.iter().map(move |estimate| (summary, estimate)));
+    assert_eq!(rows.len(), 5);
+    for (row, (summary, estimate)) in rows.iter().zip(expected) {
+        let number = |column: usize| row[column].parse::<f64>().expect("a number");
+        assert_eq!((&row[0], &row[2]), (summary.model.to_string().as_str(), estimate.name.as_str()));
+        assert_eq!([number(1), number(3), number(5)], [summary.aicc, estimate.value, estimate.deviation]);
+        assert_eq!(
+            [number(7), number(8), number(9)],
+            [estimate.robust_deviation, estimate.interval[0], estimate.interval[1]]
+        );
+    }
+    let units: Vec<&str> = rows.iter().map(|row| &row[4]).collect();
+    assert_eq!(units, ["Pa", "Pa", "s", "Pa", "1"]);
+    assert_eq!((&rows[0][0], &rows[4][0]), ("Zener", "PowerLaw"));
+    // the power law misses these data
+    assert!(rows[0][10].is_empty() && rows[4][10].contains("Misfit"), "{rows:?}");
+    Ok(())
+}
+
+#[test]
+fn a_table_that_cannot_be_written_is_an_error() -> Result<()> {
+    /// A full disk.
+    struct Full;
+    impl std::io::Write for Full {
+        fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+            Err(std::io::Error::other("no space left"))
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let summaries = fits()?.map(|fit| fit.summary());
+    let error = Summary::write_csv(&summaries, Full).expect_err("the disk is full");
+    assert!(matches!(&error, Error::Unwritable { reason } if reason.contains("no space left")), "{error}");
+    Ok(())
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn json_has_the_same_numbers() -> Result<()> {
+    let summaries = fits()?.map(|fit| fit.summary());
+    let mut text = Vec::new();
+    Summary::write_json(&summaries, &mut text)?;
+    let read: serde_json::Value = serde_json::from_slice(&text).expect("valid JSON");
+    // the reader rounds the last bit
+    let same =
+        |read: &serde_json::Value, value: f64| read.as_f64().is_some_and(|read| (read / value - 1.0).abs() < 4e-16);
+    for (read, summary) in read.as_array().expect("an array").iter().zip(&summaries) {
+        assert!(same(&read["aicc"], summary.aicc));
+        for (read, estimate) in read["estimates"].as_array().expect("an array").iter().zip(&summary.estimates) {
+            assert_eq!(read["name"].as_str(), Some(estimate.name.as_str()));
+            assert!(same(&read["value"], estimate.value) && same(&read["interval"][1], estimate.interval[1]), "{read}");
+        }
+    }
+    Ok(())
+}
+
+#[cfg(feature = "plot")]
+#[test]
+fn pictures_show_each_curve_and_refuse_others() -> Result<()> {
+    let [fit, _] = fits()?;
+    let picture = fit.picture(0)?;
+    assert_eq!(picture.size(), [3600, 800]);
+    // all of it is not one colour
+    assert!(picture.rgb().chunks(3).any(|pixel| pixel != &picture.rgb()[..3]));
+    assert!(matches!(fit.picture(1), Err(Error::OutOfRange { field: "index of the curve", .. })));
+    Ok(())
+}
