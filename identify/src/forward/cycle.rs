@@ -124,7 +124,8 @@ impl<'a> Cycle<'a> {
         let sample = match self.phase {
             Phase::Growing => {
                 let held = if self.give > 0.0 { z - self.give * self.force_at(depth, elastic) } else { z };
-                if held >= depth - HELD * self.greatest {
+                // what has just touched grows
+                if last == 0 || held >= depth - HELD * self.greatest {
                     self.grow(z)?
                 } else {
                     self.shrink(time, z, Place { interval: last.saturating_sub(1), share: 1.0 })?

@@ -7,7 +7,7 @@ use viscocontact::states::{ElasticState, ElasticStates};
 /// Relative distance of the levels from which a slope is taken.
 const NEAR: f64 = 1e-4;
 /// Least depth, relative to the greatest: there the stiffness is taken of a tip that just touches.
-const TOUCH: f64 = 1e-14;
+const TOUCH: f64 = 1e-6;
 
 /// Elastic contact of unit modulus at one depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,10 +72,15 @@ impl Tip {
         inside.then(|| Elastic { force: level, stiffness: self.stiffness(level) })
     }
 
-    /// The elastic contact at first touch: a flat punch is stiff there.
+    /// The elastic contact at first touch: only a flat punch is stiff there. The stiffness is a secant, since a rough or layered tip rests
+    /// at an approach that hides the digits of smaller depths.
     pub(super) fn first(&self) -> Elastic {
-        let level = self.states.level_at(self.rest + TOUCH * self.last_depth);
-        Elastic { force: 0.0, stiffness: if level > 0.0 { self.stiffness(level) } else { 0.0 } }
+        let depth = TOUCH * self.last_depth;
+        let stiffness = match self.power {
+            Some([.., exponent]) if exponent > 1.0 + CLOSED => 0.0,
+            _ => self.states.level_at(self.rest + depth) / depth,
+        };
+        Elastic { force: 0.0, stiffness }
     }
 
     /// dl/dδ between two levels nearby: the derivative of the curve that the states interpolate.
