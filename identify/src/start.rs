@@ -36,11 +36,13 @@ pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
             values[at] = contact_point(part.experiment, &part.data, give, has_offset);
         }
     }
+    let reference = elastic_modulus(problem, &values);
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut failure = None;
     for candidate in candidates(problem.model, problem.window) {
         for (k, value) in candidate.iter().enumerate() {
-            values[k] = problem.parameters[k].given.unwrap_or(*value);
+            let unit = if is_modulus(&problem.parameters[k].name) { reference } else { 1.0 };
+            values[k] = problem.parameters[k].given.unwrap_or(value * unit);
         }
         match scaled(problem, &mut values) {
             Ok(sum) if sum.is_finite() => found.push((sum, problem.coordinates(&values))),
@@ -54,6 +56,30 @@ pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.truncate(STARTS);
     Ok(found.into_iter().map(|(_, coordinates)| coordinates).collect())
+}
+
+fn is_modulus(name: &str) -> bool {
+    name.starts_with('E')
+}
+
+/// The modulus of an elastic body that fits the forces best, at the depths that a spring leaves of the drive: a softer body would let
+/// the tip deeper than it was, perhaps beyond its last elastic state.
+fn elastic_modulus(problem: &Problem<'_>, values: &[f64]) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for (curve, part) in problem.parts.iter().enumerate() {
+        let tip = &part.experiment.tip;
+        let point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
+        let give = 1.0 / problem.stiffness(curve, values);
+        for (z, force) in part.experiment.protocol.drive().iter().zip(&part.data) {
+            let depth = z - point - give * force.max(0.0);
+            let elastic = if depth > 0.0 { tip.level_at(tip.approach(0.0) + depth) } else { 0.0 };
+            if elastic.is_finite() {
+                (product, square) = (product + elastic * force, square + elastic * elastic);
+            }
+        }
+    }
+    let modulus = product / square;
+    if modulus.is_finite() && modulus > 0.0 { modulus } else { 1.0 }
 }
 
 /// Standard deviation of the noise, from second differences.
@@ -89,7 +115,6 @@ fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
             return Ok(f64::INFINITY);
         }
         sum = data_square - product * factor;
-        let is_modulus = |name: &str| name.starts_with('E');
         for (value, parameter) in values.iter_mut().zip(&problem.parameters) {
             if is_modulus(&parameter.name) && parameter.given.is_none() {
                 *value *= factor;
@@ -102,7 +127,7 @@ fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
     Ok(sum)
 }
 
-/// Parameters of a model on a coarse grid, with a modulus of 1.
+/// Parameters of a model on a coarse grid, in units of a modulus.
 fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
     let [low, high] = [(2.0 * shortest).ln(), longest.ln()];
     let time = |k: f64| (low + (high - low) * k).exp();

@@ -1,6 +1,7 @@
 //! Parameters are found again.
 
-use viscocontact_identify::{Curve, Nuisance};
+use viscocontact::states::ElasticStates;
+use viscocontact_identify::{Curve, Experiment, Identification, Model, Nuisance, Protocol};
 
 use crate::scenes::scene;
 
@@ -56,4 +57,30 @@ fn parameters_are_found_without_noise() {
     println!("{identifiable} of {} scenes are identifiable", scenes());
     assert!(wrong.is_empty(), "{} of {identifiable}:\n{}", wrong.len(), wrong.join("\n"));
     assert!(identifiable as u64 > scenes() / 2);
+}
+
+/// A soft spring takes most of the drive, and the states of the tip end a little deeper than the tip went.
+#[test]
+fn states_need_not_reach_as_deep_as_the_drive() {
+    let protocol = Protocol::trapezoid(10.0e-6, [0.5, 2.0, 0.5], 0.01).unwrap();
+    let zener = Identification::new(Model::Zener);
+    let body = [("E0", 4.0e4), ("Einf", 1.0e4), ("tau", 0.5)];
+    let force = |tip: &std::sync::Arc<ElasticStates>| {
+        let experiment = Experiment::new(protocol.clone(), tip.clone()).with_spring(0.05).unwrap();
+        let samples = zener.respond(&experiment, &body).unwrap();
+        let deepest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.depth));
+        (Curve::new(experiment, samples.iter().map(|sample| sample.force).collect()).unwrap(), deepest)
+    };
+    let sphere = ElasticStates::sphere(5.0e-6).unwrap();
+    let (_, deepest) = force(&sphere);
+    assert!(deepest < 7.0e-6, "{deepest:e}");
+    let row = |depth: f64| {
+        let level = sphere.level_at(depth);
+        (level, depth, sphere.stiffness(level), sphere.area(level))
+    };
+    let short = ElasticStates::from_table(&[row(1e-3 * deepest), row(1.05 * deepest)]).unwrap();
+    let fit = zener.fit(&[force(&short).0]).unwrap();
+    for (name, value) in body {
+        assert!((fit.estimate(name).unwrap().value / value - 1.0).abs() < 1e-6, "{name}");
+    }
 }
