@@ -11,5 +11,6 @@ mod recovery;
 mod results;
 mod scenes;
 mod spectra;
+mod statements;
 mod usual;
 mod verify;

@@ -1,0 +1,107 @@
+//! What a fit states of its parameters.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use viscocontact::states::ElasticStates;
+use viscocontact_identify::{
+    Curve, Error, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, ranked,
+};
+
+use crate::random::normal;
+
+const BODY: [(&str, f64); 3] = [("E0", 1.0), ("Einf", 0.25), ("tau", 1.0)];
+
+/// A ball pressed to a depth of 1 in `rise`, held until 2, and drawn back, in `count` samples; 1 % of noise.
+fn curve(rise: f64, count: usize, noise: f64, seed: u64) -> Curve {
+    let times: Vec<f64> = (0..count).map(|k| 2.6 * k as f64 / (count - 1) as f64).collect();
+    let drive = times.iter().map(|&t: &f64| (t / rise).min(1.0).min(3.0 - t)).collect();
+    let sphere = ElasticStates::sphere(9.0 / 16.0).unwrap();
+    let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere);
+    let samples = Identification::new(Model::Zener).respond(&experiment, &BODY).unwrap();
+    let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let force = samples.iter().map(|sample| sample.force + noise * greatest * normal(&mut rng)).collect();
+    Curve::new(experiment, force).unwrap()
+}
+
+/// Many samples make the sum of squares a parabola: both intervals agree. Few make it a valley that is open to one side, and the
+/// profile is longer there.
+#[test]
+fn profile_intervals_are_the_others_where_the_sum_of_squares_is_a_parabola() {
+    let fit = Identification::new(Model::Zener).fit(&[curve(1.0, 1000, 0.01, 1)]).unwrap();
+    for name in ["E0", "Einf", "tau"] {
+        let (profile, plain) = (fit.profile_interval(name, 0.95).unwrap(), fit.estimate(name).unwrap().interval);
+        let width = (plain[1] / plain[0]).ln();
+        for (a, b) in profile.iter().zip(plain) {
+            assert!((a / b).ln().abs() < 0.1 * width, "{name}: {profile:?} {plain:?}");
+        }
+    }
+    let fit = Identification::new(Model::Zener).fit(&[curve(1.0, 40, 0.05, 2)]).unwrap();
+    let (profile, plain) = (fit.profile_interval("Einf", 0.95).unwrap(), fit.estimate("Einf").unwrap().interval);
+    assert!(profile[0] < 0.8 * plain[0] && profile[1] < plain[1], "{profile:?} {plain:?}");
+    assert!(matches!(fit.profile_interval("alpha", 0.95), Err(Error::UnknownParameter { .. })));
+    assert!(matches!(fit.profile_interval("tau", 1.0), Err(Error::OutOfRange { .. })));
+}
+
+/// Two curves of other speeds leave less doubt than either, as their information adds up.
+#[test]
+fn curves_are_fitted_together() {
+    let curves = [curve(1.0, 400, 0.01, 3), curve(0.05, 400, 0.01, 4)];
+    let zener = Identification::new(Model::Zener).contact_point(Nuisance::Fitted);
+    let both = zener.fit(&curves).unwrap();
+    let each = curves.each_ref().map(|curve| zener.fit(std::slice::from_ref(curve)).unwrap());
+    for name in ["E0", "Einf", "tau"] {
+        let deviation = both.estimate(name).unwrap().deviation;
+        assert!(each.iter().all(|fit| deviation < fit.estimate(name).unwrap().deviation), "{name}");
+    }
+    assert!(both.estimate("contact point 1").is_some() && both.estimate("contact point").is_none());
+    assert!(both.warnings().is_empty(), "{:?}", both.warnings());
+}
+
+/// A given covariance of independent noise is white noise of known size; one of autoregressive noise is autoregressive noise.
+#[test]
+fn a_given_covariance_is_the_noise_it_describes() {
+    let curve = curve(1.0, 150, 0.01, 5);
+    let (count, sigma) = (curve.force().len(), 2e-3);
+    let fit = |noise: Noise| Identification::new(Model::Zener).noise(noise).fit(std::slice::from_ref(&curve)).unwrap();
+    for phi in [0.0, 0.6_f64] {
+        let entry = |k: usize| sigma * sigma * phi.powi((k / count).abs_diff(k % count) as i32) / (1.0 - phi * phi);
+        let given = fit(Noise::Covariance(vec![(0..count * count).map(entry).collect()]));
+        let known = Noise::AutoregressiveWith(phi);
+        let other = Identification::new(Model::Zener).noise(known).known_sigma(sigma);
+        let other = other.fit(std::slice::from_ref(&curve)).unwrap();
+        for (a, b) in given.estimates().iter().zip(other.estimates()) {
+            assert!((a.value / b.value - 1.0).abs() < 1e-6, "φ = {phi}: {a:?} {b:?}");
+            assert!((a.deviation / b.deviation - 1.0).abs() < 1e-4, "φ = {phi}: {a:?} {b:?}");
+        }
+        assert!((given.aicc() - other.aicc()).abs() < 1e-3, "{} {}", given.aicc(), other.aicc());
+    }
+}
+
+/// A loading that is short against the relaxation time does not determine it, and a fit says so.
+#[test]
+fn data_that_do_not_contain_a_time_are_named() {
+    let times: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k) / 299.0).collect();
+    let drive = times.iter().map(|t| 100.0 * t).collect();
+    let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), ElasticStates::sphere(9.0 / 16.0).unwrap());
+    let samples = Identification::new(Model::Zener).respond(&experiment, &BODY).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let force: Vec<f64> = samples.iter().map(|sample| sample.force + 0.01 * normal(&mut rng)).collect();
+    let curve = Curve::new(experiment, force).unwrap();
+    let fit = |model: Model| Identification::new(model).fit(std::slice::from_ref(&curve));
+    match fit(Model::Zener) {
+        Ok(fit) => {
+            let is_about = |warning: &FitWarning| {
+                matches!(
+                    warning,
+                    FitWarning::Undetermined { .. } | FitWarning::TimeOutside { .. } | FitWarning::Correlated { .. }
+                )
+            };
+            assert!(fit.warnings().iter().any(is_about), "{:?} {:?}", fit.warnings(), fit.estimates());
+            let best =
+                ranked(vec![fit, Identification::new(Model::Elastic).fit(std::slice::from_ref(&curve)).unwrap()]);
+            assert_eq!(best[0].0.model(), Model::Elastic);
+        }
+        Err(error) => assert!(matches!(error, Error::NotConverged { .. }), "{error}"),
+    }
+}
