@@ -50,10 +50,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let heights = support::noise(count, 2.0e-8, 0.0, 3);
     let stiff = |k: usize| k >= count / 2;
     let mut curves = Vec::new();
-    for k in 0..count {
+    for (k, height) in heights.into_iter().enumerate() {
         let modulus = if stiff(k) { 8.0e3 } else { 3.0e3 };
         let body = [("E0", modulus), ("Einf", 0.3 * modulus), ("tau", 0.3)];
-        let height = Nuisance::Fixed(heights[k]);
+        let height = Nuisance::Fixed(height);
         let samples = zener.clone().contact_point(height).respond(&experiment, &body)?;
         let noise = support::noise(samples.len(), 2.0e-11, 0.0, 4 + k as u64);
         let force = samples.iter().zip(noise).map(|(sample, noise)| sample.force + noise).collect();

@@ -92,7 +92,7 @@ fn scatter(data: &[f64]) -> f64 {
 fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
     // with a spring, the force is not proportional to the moduli
     let is_stiff = (0..problem.parts.len()).all(|curve| problem.stiffness(curve, values) == f64::INFINITY);
-    let rounds = if is_stiff { 1 } else { 4 };
+    let rounds = if is_stiff { 1 } else { 2 };
     let mut sum = f64::INFINITY;
     for round in 0..=rounds {
         let prony = problem.prony(values)?;
