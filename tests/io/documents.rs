@@ -85,9 +85,11 @@ fn commands_and_files_exist() {
     for (path, text) in documents().into_iter().chain(examples) {
         for (option, folder) in OPTIONS {
             for name in between(&text, option, '\n').map(name_in).filter(|name| !name.is_empty()) {
-                // examples of MPI are a crate of their own
-                let of_mpi = option == "--example " && source_of("mpi/examples", name).is_some();
-                if source_of(folder, name).is_none() && !of_mpi {
+                // crates of their own have examples, too
+                let is_there = |folder: &str| source_of(folder, name).is_some();
+                let of_other =
+                    option == "--example " && ["identify/examples", "mpi/examples"].into_iter().any(is_there);
+                if !is_there(folder) && !of_other {
                     missing.push(format!("{}: {option}{name}", path.display()));
                 }
             }
