@@ -19,7 +19,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    pub(crate) fn new(problem: &Problem<'_>, _values: &[f64], jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
+    pub(crate) fn new(problem: &Problem<'_>, jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
         let units: Vec<f64> = problem.free().map(|parameter| parameter.unit).collect();
         let inverse = inverse_gram(jacobian)?;
         let row = |i: usize| (0..units.len()).map(|j| sigma * sigma * inverse[(i, j)] * units[i] * units[j]).collect();

@@ -182,7 +182,7 @@ impl Identification {
         let problem = self.problem(experiments.iter().map(|experiment| (experiment, None)))?;
         let values = self.given(&problem, values)?;
         let jacobian = problem.jacobian(&problem.coordinates(&values), DIFFERENCE)?;
-        Bounds::new(&problem, &values, &jacobian, sigma)
+        Bounds::new(&problem, &jacobian, sigma)
     }
 
     /// The problem of fitted curves with the whitening of the fit.

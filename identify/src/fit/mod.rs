@@ -203,19 +203,19 @@ impl Fit {
         self.prony.material()
     }
 
-    /// Force and depth of the fit at each sample of a curve.
+    /// Force and depth of the fit at each sample of a curve; empty if there is no such curve, as its forces and residuals are.
     pub fn samples(&self, curve: usize) -> &[Sample] {
-        &self.samples[curve]
+        self.samples.get(curve).map_or(&[], Vec::as_slice)
     }
 
     /// Force of the fit at each sample of a curve, offset, drift and drag included \[N\].
     pub fn force(&self, curve: usize) -> &[f64] {
-        &self.forces[curve]
+        self.forces.get(curve).map_or(&[], Vec::as_slice)
     }
 
     /// Measured less fitted force at each sample of a curve \[N\].
     pub fn residuals(&self, curve: usize) -> &[f64] {
-        &self.residuals[curve]
+        self.residuals.get(curve).map_or(&[], Vec::as_slice)
     }
 
     /// The curves.
