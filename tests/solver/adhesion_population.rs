@@ -13,7 +13,7 @@ use viscocontact::prelude::*;
 
 const SIDE: f64 = 8.0;
 
-fn law(draws: &mut Draws, range: f64) -> Arc<dyn Attraction> {
+pub(super) fn law(draws: &mut Draws, range: f64) -> Arc<dyn Attraction> {
     match draws.below(4) {
         0 | 1 => Arc::new(ExponentialAttraction::new(1.0, range).unwrap()),
         2 => Arc::new(VanDerWaals::new(1.0, range).unwrap()),
@@ -77,7 +77,8 @@ pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attract
         contact.kernel().convolve(&traction, &mut image, &mut contact.kernel().workspace().unwrap()).unwrap();
         let most = image.iter().fold(0.0f64, |most, v| most.max(v.abs()));
         for (v, u) in image.iter().zip(contact.displacement()) {
-            assert!((v - u).abs() < 1e-4 * most, "{name}: {v} {u}");
+            // bodies apart keep the rounding of earlier steps
+            assert!((v - u).abs() < 1e-4 * most + 1e-12, "{name}: {v} {u}");
         }
     }
 }

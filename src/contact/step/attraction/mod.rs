@@ -6,7 +6,8 @@
 //! (Le Thi & Pham, Ann. Oper. Res. 133, 2005), and where no pass changes s any more, the state is stationary.
 //!
 //! Passes are extrapolated by Anderson's method (J. ACM 12, 1965). An extrapolated s is kept only where the energy falls; else the plain pass
-//! follows. So a step descends from the state before it, and ends in the valley that this state belongs to.
+//! follows. Next to a jump an inexact pass does not determine the energy: an extrapolation that leads uphill is reversed there, in place of
+//! plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state belongs to.
 
 mod energy;
 mod passes;
@@ -77,7 +78,8 @@ impl AttractedStep<'_> {
         own.open.copy_from_slice(&trial.gap);
         (own.known, own.report) = (0, PassReport::default());
         let mut counts = self.guess(own, window, trial, greatest);
-        let (mut least, mut inner, mut plain, mut convolved) = (f64::INFINITY, LOOSEST, true, true);
+        let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
+            (f64::INFINITY, LOOSEST, true, true, false);
         let (mut change, mut exactness) = (f64::INFINITY, 0.0);
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1);
@@ -125,7 +127,7 @@ impl AttractedStep<'_> {
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
-            if !plain && found.change >= change {
+            if !plain && !reversed && found.change >= change {
                 // it gained nothing: the more often, the more plain passes follow
                 (wait, penalty) = (penalty, 2 * penalty);
             }
@@ -148,12 +150,13 @@ impl AttractedStep<'_> {
                 own.known -= 1;
                 continue;
             }
-            plain = own.known == 1 || wait > 0;
+            let next = &mut trial.solution.attraction;
+            // where a stable state has just vanished, plain passes would creep
+            reversed = own.known > 1 && own.extrapolate(state, greatest, next);
+            plain = own.known == 1 || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             if plain {
-                trial.solution.attraction.copy_from_slice(&own.kept[0][1]);
-            } else {
-                own.extrapolate(state, greatest, &mut trial.solution.attraction);
+                next.copy_from_slice(&own.kept[0][1]);
             }
         }
         let (time, passes) = (step.interval.time, own.report.passes);

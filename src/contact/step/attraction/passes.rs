@@ -78,29 +78,38 @@ impl Passes {
         }
     }
 
-    /// The next s: from the kept passes, the last of which led from s to g, with g − Σ γ (g − g′), where γ makes the change f = g − s
-    /// less Σ γ (f − f′) as small as it can.
-    pub(super) fn extrapolate(&self, state: &State, greatest: f64, next: &mut [f64]) {
+    /// Writes the next s: from the kept passes, the last of which led from s to g, g − Σ γ (g − g′), where γ makes the change f = g − s
+    /// less Σ γ (f − f′) as small as it can. Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and
+    /// the signs of γ are reversed (saddle-free Newton method, Dauphin et al., NIPS 27, 2014). Returns whether they were.
+    pub(super) fn extrapolate(&self, state: &State, greatest: f64, next: &mut [f64]) -> bool {
         const OTHERS: usize = KEPT - 1;
+        const SQUARE: usize = OTHERS * OTHERS;
         let [[s, g], others @ ..] = &self.kept;
         let known = self.known - 1;
         let change = |k: usize, j: usize| (g[k] - s[k]) - (others[j][1][k] - others[j][0][k]);
         let sums = state.region.rows().sum_terms(|k| {
-            let mut terms = [0.0; OTHERS * (OTHERS + 1)];
+            let mut terms = [0.0; SQUARE + 2 * OTHERS + 1];
+            let f = g[k] - s[k];
             for i in 0..known {
                 let own = change(k, i);
-                terms[OTHERS * OTHERS + i] = own * (g[k] - s[k]);
+                terms[SQUARE + i] = own * f;
+                terms[SQUARE + OTHERS + i] = (g[k] - others[i][1][k]) * f;
                 (0..known).for_each(|j| terms[OTHERS * i + j] = own * change(k, j));
             }
+            terms[SQUARE + 2 * OTHERS] = f * f;
             Some(terms)
         });
         let gram: [[f64; OTHERS]; OTHERS] = std::array::from_fn(|i| std::array::from_fn(|j| sums[OTHERS * i + j]));
-        let weights = solve_normal_equations(&gram, std::array::from_fn(|i| sums[OTHERS * OTHERS + i]), DEPENDENT);
+        let weights = solve_normal_equations(&gram, std::array::from_fn(|i| sums[SQUARE + i]), DEPENDENT);
+        let along = (0..known).map(|j| weights[j] * sums[SQUARE + OTHERS + j]).sum::<f64>();
+        let reversed = along > sums[SQUARE + 2 * OTHERS];
+        let sign = if reversed { -1.0 } else { 1.0 };
         for_each_band([next], |first, [next]| {
             for (next, k) in next.iter_mut().zip(first..) {
                 let moved = (0..known).map(|j| weights[j] * (g[k] - others[j][1][k])).sum::<f64>();
-                *next = (g[k] - moved).clamp(0.0, greatest);
+                *next = (g[k] - sign * moved).clamp(0.0, greatest);
             }
         });
+        reversed
     }
 }
