@@ -67,5 +67,5 @@ use run::progress::Progress;
 use scene::Scene;
 use state::{Clock, Equilibrium, State};
 use step::request::{Step, Trial};
+use window::Window;
 use window::region::Region;
-use window::window::Window;

@@ -1,7 +1,6 @@
 //! The rigid bodies that press on the creeping body: their gap, its symmetry, and the hulls where loads may act.
 
 pub(in crate::contact) mod hull;
-pub(in crate::contact) mod replacement;
 mod slope;
 
 use std::sync::OnceLock;

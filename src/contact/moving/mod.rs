@@ -1,12 +1,91 @@
-//! Indenters that move along the surface, and the lateral force that moves them.
-
-use crate::contact::ViscoelasticContact;
+//! Indenters that move along the surface or are replaced, and the lateral force that moves them.
 
 pub(in crate::contact) mod along_path;
-mod over_bodies;
 pub(in crate::contact) mod steady;
 
+use std::sync::Arc;
+
+use crate::contact::{Frame, Indenter, StepReport, ViscoelasticContact};
+use crate::error::{Error, Result, exact_length};
+use crate::geometry::{Gap, Geometry, evaluate};
+use crate::load::Loads;
+
 impl ViscoelasticContact {
+    /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
+    /// and touch the new one from the next step on.
+    ///
+    /// # Errors
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or the new gap breaks a symmetry and there is
+    /// no memory for the mirror images. The contact then keeps the old indenter.
+    pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
+        self.set_geometries(&[geometry])
+    }
+
+    /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry per body.
+    pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
+        self.not_shared("another geometry")?;
+        exact_length("geometries of the rigid bodies", geometries.len(), self.scene.bodies)?;
+        let gaps =
+            geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
+        let indenter = Indenter::new(Gap::new(gaps, &self.scene.grid)?, self.scene.bodies);
+        let region = &self.computation.state.region;
+        let still_folded = indenter.keeps_folded(region.folded(), &self.scene.grid);
+        if still_folded != region.folded() {
+            // the next step unfolds the fields
+            self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
+        }
+        let state = &mut self.computation.state;
+        let before = std::mem::replace(&mut state.indenter, Arc::new(indenter));
+        state.start.replaced.get_or_insert(before);
+        state.indenter_is_new = true;
+        state.extrapolation.interrupt();
+        state.history.reset_differences();
+        Ok(())
+    }
+
+    /// Takes a step in which the indenter and the grid move over the bodies by whole cells along x1 and x2: the
+    /// material under the cell `[i, j] + cells` moves under `[i, j]`. All rigid bodies move alike. At a velocity v along x1, one cell per step takes
+    /// dt = Δ1/v.
+    ///
+    /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
+    /// enters at the other. Otherwise the history of material that leaves is dropped: the grid should be long enough
+    /// behind the contact for the bodies to recover, or for the remaining displacement to be far away. Needs
+    /// [`Frame::Indenter`].
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// // a sphere slides at 50 mm/s; the contact leans forward, so that the motion takes a force
+    /// let (grid, shape) = (Grid::new([96, 48], [8.0e-3, 4.0e-3])?, Shifted::new(Sphere::new(10.0e-3)?, [2.0e-3, 0.0])?);
+    /// let mut contact = ViscoelasticContact::builder(grid.clone())
+    ///     .geometry(&shape)
+    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.01e6)?))
+    ///     .settings(Settings::default().with_frame(Frame::Indenter))
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// for _ in 0..60 {
+    ///     contact.step_over([1, 0], grid.spacing()[0] / 0.05, Load::force(0.5))?;
+    /// }
+    /// let [resistance, across] = contact.lateral_force(&shape);
+    /// assert!(resistance > 0.005 && across.abs() < 1.0e-9);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
+    pub fn step_over<'a>(&mut self, cells: [isize; 2], dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
+        if self.settings().frame != Frame::Indenter {
+            return Err(Error::WrongFrame { what: "a step over the bodies" });
+        }
+        let loads = loads.into();
+        let mut step = self.request_next(dt, loads.as_slice())?;
+        step.interval.stride = cells;
+        self.take(step)
+    }
+
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt
     /// times the normal force. `shape` is the shape of the (first) indenter at its present position, or its moving
     /// part. Of several rigid bodies only the pressure under the first one counts.
@@ -16,7 +95,7 @@ impl ViscoelasticContact {
     /// normal force, it is the coefficient of hysteretic friction.
     ///
     /// The pressure is constant on a cell. The slope of a cell is therefore the rise of
-    /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) from side to side. On interpolated maps it is
+    /// [`Geometry::initial_gap`] from side to side. On interpolated maps it is
     /// as accurate as the interpolation: for a rough slider on an elastic body the error is 3e-4 of the normal force
     /// with waves of 2 cells, 2e-5 with waves of 8 cells. Where the rise is not finite, beside the rim of a face, the
     /// slope counts as zero: only [`TravelReport::power`](crate::contact::TravelReport) includes the force of a rim.
@@ -36,7 +115,7 @@ impl ViscoelasticContact {
     /// assert!(contact.lateral_force(&sphere).iter().all(|force| force.abs() < 1.0e-12));
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
-    pub fn lateral_force(&self, shape: &dyn crate::geometry::Geometry) -> [f64; 2] {
+    pub fn lateral_force(&self, shape: &dyn Geometry) -> [f64; 2] {
         let (n2, [half1, half2]) = (self.grid().cells()[1], self.grid().spacing().map(|side| 0.5 * side));
         let rise = |ahead: f64, behind: f64| {
             let rise = ahead - behind;

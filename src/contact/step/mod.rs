@@ -21,7 +21,6 @@ pub(in crate::contact) mod error_in_time;
 mod gap;
 mod initial_guess;
 mod jump;
-mod needed_width;
 pub(in crate::contact) mod request;
 pub(in crate::contact) mod spring;
 

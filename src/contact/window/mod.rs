@@ -3,5 +3,111 @@
 pub(in crate::contact) mod fields;
 pub(crate) mod placement;
 pub(crate) mod region;
-#[expect(clippy::module_inception, reason = "the file is named after its type")]
-pub(crate) mod window;
+
+use crate::contact::{Indenter, Region, Scene, Solver, Trial};
+use crate::geometry::Gap;
+use crate::kernel::{LocalKernel, Workspace};
+use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
+
+/// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
+/// another region and never saved.
+#[derive(Debug, Clone)]
+pub(crate) struct Window {
+    pub(in crate::contact) kernel: LocalKernel,
+    pub(in crate::contact) work: Workspace,
+    solver: ContactSolver,
+    /// The gap of the indenter on the region, if that is not the whole grid.
+    gap: Option<Gap>,
+    /// The lowest of the gaps outside the region and its mirror images, above the datum.
+    pub(super) lowest_outside: f64,
+    /// The number of the indenter that the gap belongs to.
+    indenter: Option<u64>,
+    /// Exchange of halo rows, if ranks share out the region.
+    beside: Option<(HaloExchange, HaloRows)>,
+}
+
+#[derive(Debug, Clone)]
+enum ContactSolver {
+    ActiveSet(Box<ActiveSet>),
+    PolonskyKeer(Box<PolonskyKeer>),
+}
+
+impl Window {
+    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
+        let rows = region.rows();
+        let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &rows);
+        let mut work = kernel.workspace();
+        let solver = match scene.settings.solver {
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, scene.bodies))),
+        };
+        let beside = HaloExchange::new(&rows, rows.cells()[1])
+            .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
+        let mut window =
+            Window { beside, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+        window.follow(region, indenter);
+        window
+    }
+
+    /// Brings the gap up to date with an indenter that has moved.
+    pub(crate) fn follow(&mut self, region: &Region, indenter: &Indenter) {
+        if self.indenter == Some(indenter.id()) {
+            return;
+        }
+        region.cut_gap(indenter.gap(), &mut self.gap);
+        self.lowest_outside = region.lowest_outside(&indenter.gap().above);
+        self.indenter = Some(indenter.id());
+    }
+
+    /// The gap of the indenter on the region, which the window follows.
+    pub(crate) fn gap<'a>(&'a self, indenter: &'a Indenter) -> &'a Gap {
+        self.gap.as_ref().unwrap_or(indenter.gap())
+    }
+
+    /// The halo row of a field before the local rows, if another rank has it.
+    pub(crate) fn row_before(&mut self, field: &[f64]) -> Option<&[f64]> {
+        let (neighbours, ghosts) = self.beside.as_mut()?;
+        let [rows, columns] = self.kernel.grid().cells();
+        neighbours.fetch(ghosts, columns, rows, |row, out| out.copy_from_slice(&field[row * columns..][..columns]));
+        ghosts.before()
+    }
+
+    /// Whether the solver needs K p of a guess, rather than computing it itself.
+    pub(crate) fn needs_potential(&self) -> bool {
+        matches!(self.solver, ContactSolver::ActiveSet(_))
+    }
+
+    /// Solves the contact problem of a step of compliance `c`, from the guess that the trial holds; `prescribed` is the
+    /// greatest motion that was taken from its gap. Where c is 0, the guess is the solution.
+    pub(crate) fn solve(
+        &mut self,
+        indenter: &Indenter,
+        [c, prescribed]: [f64; 2],
+        stop: Stop<'_>,
+        trial: &mut Trial,
+    ) -> Outcome {
+        let Window { kernel, work, solver, gap, .. } = self;
+        let Trial { solution, gap: open, free, likely, predicted, .. } = trial;
+        let owner = gap.as_ref().unwrap_or(indenter.gap()).owner.as_deref();
+        let problem = Problem {
+            kernel,
+            compliance: c,
+            gap: open,
+            prescribed,
+            bodies: free,
+            owner,
+            likely: predicted.then_some(&likely[..]),
+        };
+        let outcome = match solver {
+            _ if c == 0.0 => Outcome::Converged,
+            _ if problem.loaded_bodies().next().is_none() => {
+                solution.release();
+                Outcome::Converged
+            }
+            ContactSolver::ActiveSet(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
+            ContactSolver::PolonskyKeer(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
+        };
+        solution.follow_surface(&problem);
+        outcome
+    }
+}

@@ -24,7 +24,7 @@ use crate::contact::step::constraints::converged;
 use crate::contact::step::initial_guess::{begin, fill_guess};
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
-use crate::contact::window::window::Window;
+use crate::contact::window::Window;
 use crate::error::{AdhesionError, Result, StepError};
 use crate::load::Load;
 use crate::parallel::for_each_band;
