@@ -7,6 +7,7 @@ mod adhesion;
 mod claim;
 mod creep;
 mod elastic;
+mod energies;
 mod history;
 mod layers;
 #[path = "../support/scenes/noise.rs"]
@@ -57,7 +58,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 30] = [
+const SCENES: [fn() -> Outcome; 32] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -88,6 +89,8 @@ const SCENES: [fn() -> Outcome; 30] = [
     adhesion::exponential,
     adhesion::dugdale,
     adhesion::creeping,
+    energies::held,
+    energies::loop_of_a_sticking_ball,
 ];
 
 /// The table, in Markdown.
