@@ -32,6 +32,7 @@ fn main() {
     ranks::ranks_announce_what_is_counted();
     println!("ranks announce what is counted: ok");
     memory::documents_state_what_builders_announce();
+    memory::attraction_takes_what_is_announced();
     println!("documents state what builders announce: ok");
     memory::builders_announce_what_is_counted();
     println!("builders announce what is counted: ok");

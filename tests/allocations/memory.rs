@@ -8,6 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use stats_alloc::Region;
 use viscocontact::Result;
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::{Builder, Memory};
 use viscocontact::prelude::*;
 
@@ -126,6 +127,34 @@ impl Scene {
             _ => Material::incompressible(GeneralizedMaxwell::new(1.0e6, &terms).unwrap()),
         })
     }
+}
+
+/// An attraction takes 72 bytes a cell, the passes of its first steps included.
+pub fn attraction_takes_what_is_announced() {
+    let cells = 128.0 * 128.0;
+    let [without, with] = [false, true].map(|attracts| {
+        let grid = Grid::square(128, 8.0).unwrap();
+        let kernel = Arc::new(InfluenceKernel::half_space(&grid).unwrap());
+        let region = Region::new(ALLOCATOR);
+        let mut builder = ViscoelasticContact::builder(grid)
+            .geometry(&Sphere::new(1.0).unwrap())
+            .kernel(kernel)
+            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
+            .settings(Settings::default().with_window(false).with_symmetry(false).with_edge(Edge::Allow));
+        if attracts {
+            builder = builder.attraction(ExponentialAttraction::new(1.0, 1.0).unwrap());
+        }
+        let told = builder.memory().unwrap().total() as f64 / cells;
+        let mut contact = builder.build().unwrap();
+        for approach in [0.5, 0.4, 0.3] {
+            let report = contact.step(1.0, Load::approach(approach)).unwrap();
+            assert!(report.contact_cells > 0);
+        }
+        (told, taken(&region) / cells)
+    });
+    let [told, counted] = [with.0 - without.0, with.1 - without.1];
+    println!("an attraction takes {counted:.2} bytes a cell, {told:.2} are told");
+    assert!((told - 72.0).abs() < 1e-9 && (counted - 72.0).abs() < 0.5, "{told} {counted}");
 }
 
 pub fn builders_announce_what_is_counted() {

@@ -17,30 +17,28 @@ pub(super) struct Found {
 }
 
 impl AttractedStep<'_> {
-    /// Keeps s of the pass and s at the gap that it led to; energy and change of the pass. The energy is the value of the Lagrangian, in which
+    /// Energy and change of the pass; writes s at the gap that it led to in place of the gap of its problem. The energy is the value of the Lagrangian, in which
     /// the error of the pass enters with its square.
-    pub(super) fn find(&self, wanted: Freedom, own: &mut Passes, trial: &Trial) -> Found {
+    pub(super) fn find(&self, wanted: Freedom, own: &Passes, trial: &mut Trial) -> Found {
         let AttractedStep { state, law, given: [c, _], .. } = *self;
-        let (rows, solution, gap) = (state.region.rows(), &trial.solution, &trial.gap);
+        let (rows, solution, gap) = (state.region.rows(), &trial.solution, &mut trial.gap);
         let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
-        let height = |k: usize| gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
-        let [s, g] = &mut own.kept[0];
-        s.copy_from_slice(&solution.attraction);
-        for_each_band([&mut *g], |first, [g]| {
-            for (g, k) in g.iter_mut().zip(first..) {
-                let h = if solution.pressure[k] > 0.0 { 0.0 } else { height(k).max(0.0) };
-                *g = if h.is_finite() { law.traction(h) } else { 0.0 };
-            }
-        });
-        let (s, g, image) = (&*s, &*g, &own.image);
+        let height = |gap: f64, k: usize| gap + c * solution.potential[k] - modes.displacement(motion, k);
+        let (s, image) = (&solution.attraction, &own.image);
         let cell = |k: usize| {
-            let (z, h) = (solution.pressure[k], height(k));
+            let (z, h) = (solution.pressure[k], height(gap[k], k));
             let [open, wall] = if z > 0.0 { [0.0, z * h] } else { [h.max(0.0), 0.0] };
             [z - s[k], solution.potential[k] - image[k], open, wall]
         };
         let [energy, parts] = self.energy(wanted, modes.physical(motion), cell);
         let pressed = rows.sum_of_pairs(&solution.pressure, &solution.potential, |z, v| c * z * v);
-        let changes = s.iter().zip(g).map(|(s, g)| (g - s).abs());
+        for_each_band([&mut *gap], |first, [gap]| {
+            for (gap, k) in gap.iter_mut().zip(first..) {
+                let h = if solution.pressure[k] > 0.0 { 0.0 } else { height(*gap, k).max(0.0) };
+                *gap = if h.is_finite() { law.traction(h) } else { 0.0 };
+            }
+        });
+        let changes = s.iter().zip(&*gap).map(|(s, g)| (g - s).abs());
         let change = changes.fold(0.0, f64::max) / law.traction(0.0);
         Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change }
     }
@@ -65,7 +63,7 @@ impl AttractedStep<'_> {
     }
 
     /// The energy over the area of a cell of the state before the step, under the load and the creep of its end.
-    pub(super) fn energy_at_start(&self, wanted: Freedom, own: &Passes, trial: &Trial) -> f64 {
+    pub(super) fn energy_at_start(&self, wanted: Freedom, trial: &Trial) -> f64 {
         let (state, step, c) = (self.state, self.step, self.given[0]);
         let Solution { pressure, attraction, potential, .. } = &state.current.solution;
         let (RigidMotion { approach, tilt }, prescribed) = (state.current.motions[0], step.prescribed(0));
@@ -76,7 +74,7 @@ impl AttractedStep<'_> {
             tilt: [0, 1].map(|axis| free(freedom.tilt[axis], tilt[axis] - prescribed.tilt[axis])),
         };
         let cell = |k: usize| {
-            let h = own.open[k] + c * potential[k] - motion.at(state.region.center(k));
+            let h = trial.gap[k] + c * potential[k] - motion.at(state.region.center(k));
             let traction = pressure[k] - attraction[k];
             // the wall of the state before holds its cells while the gap changes by what the step begins with
             let [open, wall] = if pressure[k] > 0.0 { [0.0, traction * h] } else { [h.max(0.0), 0.0] };

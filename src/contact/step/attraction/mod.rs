@@ -15,12 +15,11 @@ mod passes;
 pub use passes::PassReport;
 pub(in crate::contact) use passes::Passes;
 
-use passes::KEPT;
-
 use crate::adhesion::Attraction;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::constraints::converged;
+use crate::contact::step::gap::RigidBodies;
 use crate::contact::step::initial_guess::{begin, fill_guess};
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
@@ -49,6 +48,7 @@ pub(super) struct AttractedStep<'a> {
     pub(super) law: &'a dyn Attraction,
     pub(super) state: &'a State,
     pub(super) step: &'a Step<'a>,
+    pub(super) bodies: RigidBodies<'a>,
     /// The compliance of the step, and the greatest motion taken from its gap.
     pub(super) given: [f64; 2],
     pub(super) stop: Stop<'a>,
@@ -67,7 +67,6 @@ impl AttractedStep<'_> {
         let mut own = trial.passes.take().unwrap_or_else(|| Box::new(Passes::new(cells)));
         trial.solution.attraction.resize(cells, 0.0);
         let solved = self.iterate(&mut own, window, trial);
-        trial.gap.copy_from_slice(&own.open);
         trial.passes = Some(own);
         solved
     }
@@ -75,8 +74,7 @@ impl AttractedStep<'_> {
     fn iterate(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Result<()> {
         let AttractedStep { state, step, stop, given: [c, _], .. } = *self;
         let (greatest, limit, wanted) = (self.law.traction(0.0), CHANGE * stop.tolerance, trial.free[0]);
-        own.open.copy_from_slice(&trial.gap);
-        (own.known, own.report) = (0, PassReport::default());
+        (own.known, own.has_last, own.report) = (0, false, PassReport::default());
         let mut counts = self.guess(own, window, trial, greatest);
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
@@ -84,6 +82,9 @@ impl AttractedStep<'_> {
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1);
         while own.report.passes < MAX_PASSES {
+            if own.report.passes > 0 {
+                self.open_gap(window, trial);
+            }
             own.report.passes += 1;
             if !std::mem::replace(&mut convolved, false) {
                 let Window { kernel, work, .. } = &mut *window;
@@ -91,8 +92,7 @@ impl AttractedStep<'_> {
                 counts.convolutions += 1;
             }
             for_each_band([&mut trial.gap], |first, [gap]| {
-                let fields = gap.iter_mut().zip(&own.open[first..]).zip(&own.image[first..]);
-                fields.for_each(|((gap, &open), &image)| *gap = open - c * image);
+                gap.iter_mut().zip(&own.image[first..]).for_each(|(gap, &image)| *gap -= c * image);
             });
             let pulled = self.add_to_load(wanted, trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
@@ -107,22 +107,20 @@ impl AttractedStep<'_> {
                 trial.solution.counts = counts;
                 converged(outcome, self.scene, &trial.solution, step)?;
             }
-            own.kept.rotate_right(1);
             let found = if outcome == Outcome::Converged { Some(self.find(wanted, own, trial)) } else { None };
             let unsure = UNSURE * tolerance.max(std::mem::replace(&mut exactness, tolerance));
             let kept = found.filter(|found| plain || found.energy <= least + unsure * found.scale);
             let Some(found) = kept else {
                 // the plain pass from the last state that was kept
-                own.kept.rotate_left(1);
-                own.known = 1;
+                own.forget_changes();
                 own.report.rejected += 1;
-                trial.solution.attraction.copy_from_slice(&own.kept[0][1]);
+                trial.solution.attraction.copy_from_slice(&own.last[1]);
                 (plain, wait, penalty) = (true, penalty, 2 * penalty);
                 continue;
             };
             if own.report.passes == 1 {
-                let Passes { first, kept: [[s, g], ..], .. } = own;
-                first.iter_mut().zip(s.iter().zip(g)).for_each(|(first, (s, g))| *first = *g - *s);
+                let changed = trial.solution.attraction.iter().zip(&trial.gap);
+                own.first.iter_mut().zip(changed).for_each(|(first, (s, g))| *first = g - s);
             }
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
@@ -132,13 +130,13 @@ impl AttractedStep<'_> {
                 (wait, penalty) = (penalty, 2 * penalty);
             }
             (least, change) = (found.energy, found.change);
-            own.known = (own.known + 1).min(KEPT);
             inner = (INNER * change).min(LOOSEST);
             if change <= limit && trial.solution.residual <= stop.tolerance {
                 trial.solution.counts = counts;
                 let net = &mut trial.solution.potential;
                 net.iter_mut().zip(&own.image).for_each(|(net, image)| *net -= image);
-                own.report.released = self.area() * (self.energy_at_start(wanted, own, trial) - found.energy);
+                self.open_gap(window, trial);
+                own.report.released = self.area() * (self.energy_at_start(wanted, trial) - found.energy);
                 own.report.response = self.response(own, trial);
                 own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
                 return Ok(());
@@ -146,21 +144,26 @@ impl AttractedStep<'_> {
             if change <= limit {
                 // the same pass, more exactly
                 (inner, convolved) = (0.0, true);
-                own.kept.rotate_left(1);
-                own.known -= 1;
                 continue;
             }
+            own.keep(&trial.solution.attraction, &trial.gap, greatest);
             let next = &mut trial.solution.attraction;
             // where a stable state has just vanished, plain passes would creep
-            reversed = own.known > 1 && own.extrapolate(state, greatest, next);
-            plain = own.known == 1 || wait > 0 && !reversed;
+            reversed = own.known > 0 && own.extrapolate(state, greatest, next);
+            plain = own.known == 0 || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             if plain {
-                next.copy_from_slice(&own.kept[0][1]);
+                next.copy_from_slice(&own.last[1]);
             }
         }
         let (time, passes) = (step.interval.time, own.report.passes);
         Err(AdhesionError::NotConverged { time, passes, change, tolerance: limit }.into())
+    }
+
+    /// Writes the gap before any traction.
+    fn open_gap(&self, window: &Window, trial: &mut Trial) {
+        let (state, initial) = (self.state, window.gap(&self.step.indenter));
+        self.bodies.fill_gap(initial, &state.history, &state.current.solution.pressure, &mut trial.gap);
     }
 
     /// Writes z, s and K z of a guess, and K s: extrapolated from the last two states, or the last state where s has changed much.
@@ -193,14 +196,14 @@ impl AttractedStep<'_> {
 
     /// Writes the guess of a first step: no pressure, and s of undeformed bodies, which just touch under a force.
     fn first_guess(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Counts {
-        let lowest = self.state.region.rows().least(own.open.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
+        let lowest = self.state.region.rows().least(trial.gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
         let motion = match self.step.loads[0] {
             Load::Approach { .. } => 0.0,
             _ => lowest,
         };
         let solution = &mut trial.solution;
         solution.release();
-        for (s, &open) in solution.attraction.iter_mut().zip(&own.open) {
+        for (s, &open) in solution.attraction.iter_mut().zip(&trial.gap) {
             *s = if open.is_finite() { self.law.traction((open - motion).max(0.0)) } else { 0.0 };
         }
         let Window { kernel, work, .. } = &mut *window;
