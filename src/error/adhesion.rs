@@ -30,7 +30,28 @@ pub enum AdhesionError {
     },
 
     /// The load pulls harder than the surfaces hold: no state carries it. The contact stays as it was before the step; under a given
-    /// approach ([`Load::approach`](crate::load::Load::approach)) it goes on apart.
+    /// approach ([`Load::approach`](crate::load::Load::approach)) it goes on apart:
+    ///
+    /// ```
+    /// use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(24, 8.0)?)
+    ///     .geometry(&Sphere::new(1.0)?)
+    ///     .material(Material::incompressible(Zener::relaxing(0.5, 0.25, 1.0)?))
+    ///     .attraction(ExponentialAttraction::new(1.0, 1.0)?)
+    ///     .settings(Settings::default().with_edge(Edge::Allow))
+    ///     .build()?;
+    /// contact.step(1.0, Load::force(1.0))?;
+    /// // a pull that grows, until it separates the bodies
+    /// let pulled_off = (1..).find_map(|k| contact.step(0.5, Load::force(-0.5 * f64::from(k))).err());
+    /// let Some(Error::Adhesion(AdhesionError::PulledOff { time, force })) = pulled_off else { panic!("{pulled_off:?}") };
+    /// assert!(force < -4.0 && time == contact.time() + 0.5);
+    /// // 20 R away nothing acts: the surface recovers
+    /// let apart = contact.step(0.5, Load::approach(-20.0))?;
+    /// assert!(apart.contact_cells == 0 && apart.force.abs() < 1e-6);
+    /// # Ok::<(), Error>(())
+    /// ```
     #[error("at t = {} s the force of {force} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME))]
     PulledOff {
         /// End of the step \[s\].

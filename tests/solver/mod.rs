@@ -5,6 +5,7 @@ mod adhesion_adaptive;
 mod adhesion_balance;
 mod adhesion_bodies;
 mod adhesion_dense;
+mod adhesion_jkr;
 mod adhesion_jumps;
 mod adhesion_population;
 mod adhesion_steps;

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
 use crate::common::{builder_on, elastic, zener};
+use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
 
@@ -188,6 +189,23 @@ fn a_contact_that_one_rank_cannot_build_is_built_by_none() {
     for error in &errors {
         assert!(matches!(error, Error::Ranks(RanksError::Failed { rank: 2, .. })), "{error}");
         assert_eq!(error, &errors[0]);
+    }
+}
+
+/// Attraction is not shared out: all ranks refuse it.
+#[test]
+fn attraction_is_refused() {
+    let errors = within_a_minute(|| {
+        Threads::run(2, |ranks| {
+            let law = ExponentialAttraction::new(0.05, 1.0e-5).unwrap();
+            let builder = ViscoelasticContact::builder(Grid::square(32, 1.0e-3).unwrap()).ranks(ranks);
+            builder.geometry(&Sphere::new(1.0e-2).unwrap()).material(elastic()).attraction(law).build().unwrap_err()
+        })
+        .unwrap()
+    });
+    for error in &errors {
+        assert!(matches!(error, Error::Adhesion(AdhesionError::NotCovered { .. })), "{error}");
+        assert!(error.to_string().contains("compute it in one process"), "{error}");
     }
 }
 
