@@ -92,7 +92,7 @@ pub(crate) struct Weights {
     pub(super) ratios: [f64; 2],
     /// γ_k of the degrees 2 and 3, each as if the step had it: what v lacks is this times d_k.
     defects: [f64; 2],
-    /// γ of a change of u that was not to be expected from the steps before.
+    /// γ of a change of u that the steps before do not predict, without what it changes of the step before.
     answer: f64,
     /// (Δ + Δ′)/Δ.
     pub(super) span: f64,
@@ -202,18 +202,18 @@ impl ExponentialRule {
         })
     }
 
-    /// What v lacks at a cell whose u, going on as before, was met by a body within the step: from then on u has changed more, as
-    /// fast as by `jump` in a whole step, to be off by `bend` in the end. With θ = bend/jump the share of the step after the
-    /// meeting, v responds by Σ E_i (1 − e^(−θ z_i))/z_i jump, and by η jump/Δ.
-    pub(super) fn kink(&self, jump: f64, bend: f64) -> f64 {
-        let share = bend / jump;
-        if !(share > 0.0 && share < 1.0) {
-            return 0.0;
-        }
-        let answered =
-            |&(modulus, tau): &(f64, f64)| -modulus * tau / self.tried.dt * (-share * self.tried.dt / tau).exp_m1();
-        let relaxing: f64 = self.relaxation.terms().iter().map(answered).sum();
-        (relaxing + self.relaxation.viscosity() / self.tried.dt) * jump - self.tried.answer * bend
+    /// The responses of v, in the step predicted last, to a unit of u that the steps before do not predict: of the polynomial on the
+    /// step, and γ₁ + γ₂ + γ₃ = 1/c − E∞. The change raises all differences of u, and so what puts the step before right.
+    pub(super) fn responses_to_unexpected(&self) -> [f64; 2] {
+        [self.tried.answer, 1.0 / self.tried.c - self.equilibrium()]
+    }
+
+    /// The response of the relaxation times, at the end of such a `share` of the step predicted last, to a u that has grown at the
+    /// rate 1/Δ since its start: Σ E_i (1 − e^(−share z_i))/z_i.
+    pub(super) fn relaxing(&self, share: f64) -> f64 {
+        let dt = self.tried.dt;
+        let response = |&(modulus, tau): &(f64, f64)| -modulus * tau / dt * (-share * dt / tau).exp_m1();
+        self.relaxation.terms().iter().map(response).sum()
     }
 
     /// Whether the next step puts right the one predicted last.

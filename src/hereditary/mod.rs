@@ -28,6 +28,7 @@ mod field;
 mod group_history;
 mod history;
 mod interval;
+mod kink;
 mod lasting_error;
 mod moments;
 mod moving_frame;

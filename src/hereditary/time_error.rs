@@ -5,8 +5,9 @@ use std::ops::Range;
 use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
+use crate::hereditary::kink::Kinks;
 use crate::parallel::Rows;
-use crate::sum::named_sums;
+use crate::sum::{add, greatest, named_sums};
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
@@ -44,6 +45,8 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) on_switch: f64,
     /// The mean v of the greatest loads, to which that error is relative; 0 where no such switch is to come.
     pub(crate) greatest_on_switch: f64,
+    /// The response of v to a unit of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
+    pub(crate) on_jump: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
     /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
@@ -168,6 +171,9 @@ impl History {
             RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
         let on_meeting = relative(peak, of_surface) * (on_return + error_on_return);
+        // no step puts this one right before the jump, and u has the error of all of its defect
+        let before_jump = if rule.corrects() { peak / CORRECTED } else { peak };
+        let on_jump = relative(measure.on_jump * (outside + rule.compliance() * before_jump), scales[1]);
         let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
@@ -175,7 +181,7 @@ impl History {
             by_kinks: error >= error_on_return
                 && error > error_on_switch
                 && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
-            greatest: relative(greatest, scales[1]).max(on_meeting),
+            greatest: relative(greatest, scales[1]).max(on_meeting).max(on_jump),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,
@@ -190,6 +196,7 @@ impl History {
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
         let [tried, now, before] = measure.pressure;
+        let kinks = Kinks::of(rule);
         let part = |cells: Range<usize>| {
             let mut sums = Sums::NOTHING;
             for k in cells {
@@ -209,10 +216,15 @@ impl History {
                 let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
                 let bend = (u - u_before) - going_on;
                 if touches && !touched {
-                    let jump = (measure.advance)(k) - going_on;
-                    let (kink, widest) = (rule.kink(jump, bend), rule.kink(jump, 0.5 * jump));
-                    (sums.kinks, sums.squares) = (sums.kinks + kink, sums.squares + widest * widest);
-                    sums.sharpest = sums.sharpest.max(kink.abs()).max(widest.abs());
+                    // u would have gone on by the polynomial through its last nodes, not by the one found
+                    let expected = if lacking < 3 { going_on } else { going_on + to_second * second[k] };
+                    let (jump, bend) = ((measure.advance)(k) - expected, (u - u_before) - expected);
+                    let [kink, with_correction] = kinks.at_end(jump, bend);
+                    let widest = greatest(&kinks.at_end(jump, 0.5 * jump));
+                    sums.kinks = add(sums.kinks, [kink, with_correction, 0.0]);
+                    sums.kinks_within = add(sums.kinks_within, kinks.within(jump, bend));
+                    sums.squares += widest * widest;
+                    sums.sharpest = sums.sharpest.max(greatest(&[kink, with_correction, widest]));
                     continue;
                 }
                 let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
@@ -263,8 +275,10 @@ named_sums! {
         touching: +,
         /// Number of cells in contact before the step.
         touched: +,
-        /// Sum of what v lacks by kinks.
-        kinks: +,
+        /// Sums of what v lacks by kinks at the end of the step, by its polynomial and with its correction of the step before.
+        kinks: modes,
+        /// The same at ¼, ½ and ¾ of the step.
+        kinks_within: modes,
         /// Sum of the squares of the most that v can lack by each kink.
         squares: +,
         /// The greatest of either.
@@ -308,12 +322,13 @@ impl Sums {
         // the load of cells that leave goes to those that stay
         let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
         let left = if counts { LEFT * shed * self.left } else { 0.0 };
-        let kinks = if counts { self.kinks.abs().max(LASTING * self.squares.sqrt()) } else { 0.0 };
+        let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(LASTING * self.squares.sqrt());
+        let kinks = if counts { kinks } else { 0.0 };
         Defect {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1.0),
-            greatest: self.sharpest.max(scale * self.steepest),
+            greatest: (EDGE * self.sharpest).max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
             peak: scale * self.peak,

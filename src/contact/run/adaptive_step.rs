@@ -9,7 +9,7 @@ use crate::contact::run::step_control::{NODES, StepControl};
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
-use crate::contact::step::error_in_time::error_in_time;
+use crate::contact::step::error_in_time::{StepContext, error_in_time};
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
@@ -83,7 +83,8 @@ pub(super) fn adaptive_step(
         }
         let age = step.interval.reduced - clock.undisturbed_until;
         let end = scene.reduced_time(clock, kink.min(until))?;
-        let outlook = control.outlook(scene, &loads[0], [time, age, step.interval.dt, end])?;
+        let on_jump = stiffness_on_jump(scene, [&loads[0], &history.at(time)]);
+        let outlook = StepContext { on_jump, ..control.outlook(scene, &loads[0], [time, age, step.interval.dt, end])? };
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, tolerance, [time, step.interval.dt], &outlook);
         let attempt = match contact.attempt(&step) {
@@ -251,6 +252,19 @@ fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     match state.history.exponential_rule() {
         Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),
         None => (1, false),
+    }
+}
+
+/// The response of v to an error of u of the cells that are met where the load jumps, if a force does so upwards: glassy.
+fn stiffness_on_jump(scene: &Scene, [before, after]: [&Load; 2]) -> f64 {
+    let compliance = scene.material.contact_compliance(0.0);
+    match (before, after) {
+        (Load::Force { normal: before, .. }, Load::Force { normal: after, .. })
+            if after > before && compliance > 0.0 =>
+        {
+            1.0 / compliance
+        }
+        _ => 0.0,
     }
 }
 

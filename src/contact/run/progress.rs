@@ -255,7 +255,8 @@ pub struct ErrorBudget {
     /// Greatest estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the
     /// error of the pressure at a point, and of the greatest pressure. It is largest where a body meets cells faster
     /// than the steps resolve, which hardly changes its approach. Where a given approach is to return to a surface that
-    /// recovers, it includes the error of the cells that the body may meet. `None` before the first step.
+    /// recovers, or a force jumps up, it includes the error of the cells that the body may meet. `None` before the first
+    /// step.
     pub pressure: Option<f64>,
     /// Errors due to the mesh in the present state; `None` without contact, for a contact that the cells do not
     /// resolve, and where [ranks](crate::parallel) share out the rows.

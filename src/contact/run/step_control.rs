@@ -226,6 +226,7 @@ impl StepControl {
                 .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
             on_switch,
             greatest_on_switch: if on_switch[1] > 0.0 { greatest } else { 0.0 },
+            on_jump: 0.0,
             tolerance: self.tolerance,
             agreement: self.defects.as_ref().map_or(1.0, DefectAccumulation::agreement),
             steps: self.steps as f64 + 1.0,

@@ -72,6 +72,8 @@ pub(in crate::contact) struct StepContext {
     pub(in crate::contact) on_switch: [f64; 2],
     /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
     pub(in crate::contact) greatest_on_switch: f64,
+    /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
+    pub(in crate::contact) on_jump: f64,
     /// How far the defects of the run agree in sign, 0 … 1.
     pub(in crate::contact) agreement: f64,
     /// Steps so far, this one included.
@@ -93,6 +95,7 @@ impl Default for StepContext {
             tolerance: 1.0,
             on_switch: [0.0; 2],
             greatest_on_switch: 0.0,
+            on_jump: 0.0,
             agreement: 1.0,
             steps: f64::INFINITY,
             resolution: 0.0,
@@ -115,7 +118,7 @@ pub(in crate::contact) fn error_in_time(
     outlook: StepContext,
 ) -> TimeError {
     let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
-    let StepContext { greatest_on_switch, steps, resolution, beginning, length_is_given, .. } = outlook;
+    let StepContext { greatest_on_switch, on_jump, steps, resolution, beginning, length_is_given, .. } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -175,6 +178,7 @@ pub(in crate::contact) fn error_in_time(
         amplification,
         on_switch,
         greatest_on_switch,
+        on_jump,
         agreement,
         resolution,
         beginning,
