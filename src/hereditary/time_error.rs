@@ -47,6 +47,8 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) greatest_on_switch: f64,
     /// The response of v to a unit of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
     pub(crate) on_jump: f64,
+    /// Whether no step puts this one right: the load has a corner or jumps at its end.
+    pub(crate) is_last: bool,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
     /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
@@ -138,7 +140,7 @@ impl History {
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
-            sums.defect(rule, measure.resolution);
+            sums.defect(rule, measure.resolution, measure.is_last);
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
@@ -171,9 +173,7 @@ impl History {
             RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
         let on_meeting = relative(peak, of_surface) * (on_return + error_on_return);
-        // no step puts this one right before the jump, and u has the error of all of its defect
-        let before_jump = if rule.corrects() { peak / CORRECTED } else { peak };
-        let on_jump = relative(measure.on_jump * (outside + rule.compliance() * before_jump), scales[1]);
+        let on_jump = relative(measure.on_jump * (outside + rule.compliance() * peak), scales[1]);
         let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
@@ -310,10 +310,16 @@ struct Defect {
 }
 
 impl Sums {
-    fn defect(&self, rule: &ExponentialRule, resolution: f64) -> Defect {
+    fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
-            Some((_, missing)) if rule.corrects() => CORRECTED * missing,
+            Some((_, missing)) if rule.corrects() => {
+                if is_last {
+                    missing
+                } else {
+                    CORRECTED * missing
+                }
+            }
             // the greatest of |s (s − Δ)| is Δ²/4, as in the error of u
             Some(_) => NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance(),
             None => 0.0,

@@ -84,7 +84,9 @@ pub(super) fn adaptive_step(
         let age = step.interval.reduced - clock.undisturbed_until;
         let end = scene.reduced_time(clock, kink.min(until))?;
         let on_jump = stiffness_on_jump(scene, [&loads[0], &history.at(time)]);
-        let outlook = StepContext { on_jump, ..control.outlook(scene, &loads[0], [time, age, step.interval.dt, end])? };
+        let is_last = time == kink && !is_held(history, [now, time]);
+        let outlook = control.outlook(scene, &loads[0], [time, age, step.interval.dt, end])?;
+        let outlook = StepContext { on_jump, is_last, ..outlook };
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, tolerance, [time, step.interval.dt], &outlook);
         let attempt = match contact.attempt(&step) {
@@ -129,7 +131,7 @@ pub(super) fn adaptive_step(
         }
         let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
         control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, motion_is_given);
-        let is_kink = time == kink && !is_held(history, [now, time]);
+        let is_kink = outlook.is_last;
         control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], is_kink, order);
         let mut report = contact.accept(attempt, step, error)?;
         if jumps {

@@ -227,6 +227,7 @@ impl StepControl {
             on_switch,
             greatest_on_switch: if on_switch[1] > 0.0 { greatest } else { 0.0 },
             on_jump: 0.0,
+            is_last: false,
             tolerance: self.tolerance,
             agreement: self.defects.as_ref().map_or(1.0, DefectAccumulation::agreement),
             steps: self.steps as f64 + 1.0,

@@ -74,6 +74,8 @@ pub(in crate::contact) struct StepContext {
     pub(in crate::contact) greatest_on_switch: f64,
     /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
     pub(in crate::contact) on_jump: f64,
+    /// Whether the load has a corner or jumps at the end of the step, which no step then puts right.
+    pub(in crate::contact) is_last: bool,
     /// How far the defects of the run agree in sign, 0 … 1.
     pub(in crate::contact) agreement: f64,
     /// Steps so far, this one included.
@@ -96,6 +98,7 @@ impl Default for StepContext {
             on_switch: [0.0; 2],
             greatest_on_switch: 0.0,
             on_jump: 0.0,
+            is_last: false,
             agreement: 1.0,
             steps: f64::INFINITY,
             resolution: 0.0,
@@ -118,7 +121,8 @@ pub(in crate::contact) fn error_in_time(
     outlook: StepContext,
 ) -> TimeError {
     let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
-    let StepContext { greatest_on_switch, on_jump, steps, resolution, beginning, length_is_given, .. } = outlook;
+    let StepContext { greatest_on_switch, on_jump, is_last, steps, resolution, beginning, length_is_given, .. } =
+        outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -179,6 +183,7 @@ pub(in crate::contact) fn error_in_time(
         on_switch,
         greatest_on_switch,
         on_jump,
+        is_last,
         agreement,
         resolution,
         beginning,
