@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result, StepError};
 use crate::load::{Load, Tilt};
-use crate::plan::steps::{Differences, relative};
+use crate::plan::steps::{Differences, relative, unseen};
 use crate::plan::trial_runs::{Run, StepState, TrialScene};
 use crate::states::{ElasticState, ElasticStates, Rest, StatesContact};
 
@@ -123,31 +123,31 @@ impl Curve {
         self.radius(level).powi(if self.line { 2 } else { 1 })
     }
 
-    /// A pressure at a distance √(`share` a²) from the middle of the contact, in a unit of its own: Σ w ∫ q dl, with q =
-    /// dp/dl ∝ 1/(a √(a² − r²)) and l ∝ a³ between two levels; on a line 1/√(a² − x²) and a².
-    fn pressure(&self, levels: impl Iterator<Item = (f64, f64)>, edge: f64, share: f64) -> f64 {
-        let (place, power) = (share * edge * edge, if self.line { 2 } else { 3 });
-        let (mut bottom, mut inner, mut pressure) = (0.0, 0.0_f64, 0.0);
-        for (level, traction) in levels {
-            let outer = self.edge(level);
-            let width = outer.powi(power) - inner.powi(power);
-            if width > 0.0 {
-                let [near, far] = [inner, outer].map(|radius| (radius * radius - place).max(0.0).sqrt());
-                pressure += traction * (level - bottom) / width * (far - near);
+    /// What the groups of a contact add to its pressure: q = dp/dl ∝ 1/(a √(a² − r²)) and l ∝ a³ between two levels, on a
+    /// line 1/√(a² − x²) and a². `edges` holds the last levels with their radii: most groups stay from step to step.
+    fn rings(&self, levels: impl Iterator<Item = (f64, f64)>, edges: &mut Vec<[f64; 2]>) -> Vec<Ring> {
+        let power = if self.line { 2 } else { 3 };
+        let (mut bottom, mut inner) = (0.0, 0.0_f64);
+        let ring = |(k, (level, traction)): (usize, (f64, f64))| {
+            if edges.get(k).is_none_or(|[last, _]| *last != level) {
+                edges.truncate(k);
+                edges.push([level, self.edge(level)]);
             }
+            let outer = edges[k][1];
+            let width = outer.powi(power) - inner.powi(power);
+            let ring = Ring { share: traction * (level - bottom) / width, squares: [inner, outer].map(|a| a * a) };
             (bottom, inner) = (level, outer);
-        }
-        pressure
+            (width > 0.0).then_some(ring)
+        };
+        levels.enumerate().filter_map(ring).collect()
     }
 
-    /// Takes the steps of a trial run, each in so many parts; returns the states at their ends.
-    fn follow(&self, scene: &TrialScene<'_>, steps: &[(f64, Load)], parts: u32) -> Result<Vec<LevelState>> {
+    /// Takes the steps of a trial run, each in so many parts; returns the states at the ends of all parts.
+    fn follow(&self, scene: &TrialScene<'_>, run: &Run, parts: u32) -> Result<Vec<LevelState>> {
         let mut contact = self.contact(scene)?;
-        let (mut states, mut time) = (Vec::with_capacity(steps.len()), 0.0);
-        let mut corner = scene.history.next_breakpoint(0.0).unwrap_or(f64::INFINITY);
-        for &(dt, load) in steps {
-            let start = time;
-            time += dt;
+        let (mut states, mut edges) = (Vec::with_capacity(run.steps.len() * parts as usize), Vec::new());
+        for (&(dt, load), &StepState { time, .. }) in run.steps.iter().zip(&run.states) {
+            let start = contact.time();
             let parts = if dt > 0.0 { parts } else { 1 };
             for part in 1..=parts {
                 let end = if part == parts { time } else { start + dt * f64::from(part) / f64::from(parts) };
@@ -157,31 +157,31 @@ impl Curve {
                     Err(Error::Step(StepError::NoElasticResponse { .. })) if dt == 0.0 => {}
                     other => drop(other?),
                 }
+                let is_by_force = matches!(load, Load::Force { .. });
+                states.push(LevelState { is_end: part == parts, is_by_force, ..self.state(&contact, &mut edges) });
             }
-            let heated = contact.next_temperature_corner(start) <= time * (1.0 + f64::EPSILON);
-            if time >= corner * (1.0 - 1e-12) || heated {
+            if scene.next_corner(start) <= time {
                 contact.reset_differences();
-                while corner <= time * (1.0 + 1e-12) {
-                    corner = scene.history.next_breakpoint(corner).unwrap_or(f64::INFINITY);
-                }
             }
-            states.push(self.state(&contact));
         }
         Ok(states)
     }
 
-    fn state(&self, contact: &StatesContact) -> LevelState {
-        let (level, edge) = (contact.level(), self.edge(contact.level()));
-        let at = |share: f64| self.pressure(contact.tractions(), edge, share);
-        let (centre, traction) = (at(0.0), contact.tractions().map(|(_, traction)| traction).fold(0.0, f64::max));
-        let elastic = self.pressure([(level, 1.0)].into_iter(), edge, 0.0);
+    fn state(&self, contact: &StatesContact, edges: &mut Vec<[f64; 2]>) -> LevelState {
+        let (level, rings) = (contact.level(), self.rings(contact.tractions(), edges));
+        let square = self.edge(level).powi(2);
+        let (centre, traction) = (pressure(&rings, 0.0), contact.tractions().map(|(_, w)| w).fold(0.0, f64::max));
+        let elastic = pressure(&self.rings([(level, 1.0)].into_iter(), &mut Vec::new()), 0.0);
         LevelState {
+            time: contact.time(),
+            is_end: true,
+            is_by_force: true,
             level,
             depth: contact.depth(),
             force: contact.force(),
             radius: self.radius(level),
             centre,
-            aside: PLACES.into_iter().map(at).fold(0.0, f64::max),
+            aside: PLACES.into_iter().map(|place| pressure(&rings, place * square)).fold(0.0, f64::max),
             traction,
             amplification: relative(traction * elastic, centre),
         }
@@ -190,49 +190,70 @@ impl Curve {
     /// Error in time of a trial run, and what its pressures are made of.
     pub(super) fn trace(&self, scene: &TrialScene<'_>, run: &Run) -> Result<Trace> {
         let parts = (MAX_PARTS / run.steps.len().max(1)).clamp(MIN_PARTS, PARTS);
-        let [taken, exact] = [1, parts as u32].map(|parts| self.follow(scene, &run.steps, parts));
+        let [taken, exact] = [1, parts as u32].map(|parts| self.follow(scene, run, parts));
         let (taken, exact) = (taken?, exact?);
+        // greatest values hold between the ends of steps, too
+        let most = |of: fn(&LevelState) -> f64| exact.iter().map(|state| of(state).abs()).fold(0.0, f64::max);
+        let ends = || exact.iter().filter(|state| state.is_end);
         let over = |of: fn(&LevelState) -> f64| {
-            let most = exact.iter().map(|state| of(state).abs()).fold(0.0, f64::max);
-            let off = taken.iter().zip(&exact).map(|(taken, exact)| (of(taken) - of(exact)).abs()).fold(0.0, f64::max);
-            relative(off, most)
+            let off = taken.iter().zip(ends()).map(|(taken, exact)| (of(taken) - of(exact)).abs()).fold(0.0, f64::max);
+            relative(off, most(of))
         };
-        let greatest = |states: &[LevelState]| states.iter().map(|state| state.centre).fold(0.0, f64::max);
-        let (centre, force) = (greatest(&exact), exact.iter().map(|state| state.force).fold(0.0, f64::max));
-        let aside = exact.iter().map(|state| state.aside).fold(0.0, f64::max);
+        let (centre, force, aside) = (most(|state| state.centre), most(|state| state.force), most(|state| state.aside));
         let highest = exact.iter().find(|state| state.centre == centre);
-        let widest = exact.iter().map(|state| state.radius).fold(0.0, f64::max);
+        let of_steps = [
+            taken.iter().map(|state| state.centre).fold(0.0, f64::max),
+            ends().map(|state| state.centre).fold(0.0, f64::max),
+        ];
+        let over_time: Vec<[f64; 2]> = exact.iter().map(|state| [state.time, state.centre]).collect();
         let counts = |(state, level): &(&StepState, &LevelState)| state.resolved && level.force > NEGLIGIBLE * force;
         let resolved = run.states.iter().zip(&taken).filter(counts);
         let rim = RIM_MARGIN * resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
-        let loads = exact.iter().zip(&run.steps).filter(|(_, (_, load))| !matches!(load, Load::Force { .. }));
         let error = Differences {
             main: over(|state| state.depth).max(over(|state| state.force)),
-            pressure: relative((greatest(&taken) - centre).abs(), centre),
+            pressure: relative((of_steps[0] - of_steps[1]).abs(), centre),
             pressure_over_time: over(|state| state.centre),
             radius: over(|state| state.radius),
         };
+        let others = exact.iter().filter(|state| !state.is_by_force);
         Ok(Trace {
             error,
+            unseen: unseen(scene, run, &over_time),
             level: highest.map_or(0.0, |state| state.level),
-            levels: exact
-                .iter()
-                .filter(|state| state.level > 0.0)
-                .fold([f64::INFINITY, 0.0], |[least, greatest], state| {
-                    [least.min(state.level), greatest.max(state.level)]
-                }),
+            levels: [
+                ends().map(|state| state.level).filter(|level| *level > 0.0).fold(f64::INFINITY, f64::min),
+                most(|state| state.level),
+            ],
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
-            force_amplification: loads
-                .map(|(state, _)| relative(state.traction * state.level, force))
-                .fold(1.0, f64::max),
-            rim: relative(rim, widest),
+            force_amplification: others.map(|state| relative(state.traction * state.level, force)).fold(1.0, f64::max),
+            rim: relative(rim, most(|state| state.radius)),
             excess: relative((aside - centre).max(0.0), aside),
         })
     }
 }
 
+/// What a group of levels adds to the pressure of a contact.
+struct Ring {
+    share: f64,
+    /// Squares of its inner and outer radius [m²].
+    squares: [f64; 2],
+}
+
+/// The pressure where the squared distance from the middle of the contact is `place`, in a unit of its own: Σ w ∫ q dl.
+fn pressure(rings: &[Ring], place: f64) -> f64 {
+    let part = |ring: &Ring| {
+        let [near, far] = ring.squares.map(|square| (square - place).max(0.0).sqrt());
+        ring.share * (far - near)
+    };
+    rings.iter().map(part).sum()
+}
+
 /// A state of a contact on levels.
 struct LevelState {
+    time: f64,
+    /// Whether it is the state at the end of a step, not within one.
+    is_end: bool,
+    is_by_force: bool,
     level: f64,
     depth: f64,
     force: f64,
@@ -250,6 +271,8 @@ struct LevelState {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trace {
     pub(super) error: Differences,
+    /// [`unseen`] of the pressure in the middle.
+    pub(super) unseen: f64,
     /// The level at which the pressure is greatest, and the least and the greatest level of a contact.
     pub(super) level: f64,
     pub(super) levels: [f64; 2],

@@ -1,5 +1,6 @@
 //! The loads of a scene, as loads of an elastic body of unit compliance.
 
+use crate::ascending::Times;
 use crate::contact::Stepping;
 use crate::error::{Error, Result};
 use crate::load::Load;
@@ -112,10 +113,13 @@ fn sampled(scene: &TrialScene<'_>) -> Result<Vec<Load>> {
 /// The greatest level under a given force.
 fn greatest_level(scene: &TrialScene<'_>) -> Result<f64> {
     let mut contact = Curve::of_any_shape(scene.history.at(0.0).tilt())?.contact(scene)?;
-    let mut run = contact.follow(scene.history, Stepping::adaptive(LEVEL_TOLERANCE), scene.until);
+    let run = contact.follow(scene.history, Stepping::adaptive(LEVEL_TOLERANCE), scene.until);
+    let mut run = run.sample_at(Times::every(scene.until / f64::from(PARTS)))?;
     let mut greatest = 0.0_f64;
     while run.next_step()?.is_some() {
-        greatest = greatest.max(run.contact().level());
+        for sample in run.samples() {
+            greatest = greatest.max(sample?.level());
+        }
     }
     Ok(greatest)
 }

@@ -27,6 +27,8 @@ pub(super) struct Steps {
     pub(super) run: Run,
     /// `None` where steps short enough for a comparison do not exist.
     pub(super) error: Option<Differences>,
+    /// [`unseen`] of the greatest pressure.
+    pub(super) unseen: f64,
     /// The run on levels, where it is made of elastic states.
     pub(super) trace: Option<Trace>,
 }
@@ -39,9 +41,11 @@ impl Steps {
         left.clamp(MIN_MESH_SHARE * target, accuracy.space())
     }
 
-    /// Whether the greatest pressure of the run hardly depends on the steps.
+    /// Whether the greatest pressure of the run hardly depends on the steps, wherever they end.
     pub(super) fn resolve_pressure(&self, accuracy: Accuracy) -> bool {
-        self.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
+        let target = accuracy.target();
+        self.unseen <= MAX_TIME_SHARE * target
+            && self.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * target)
     }
 
     /// Shortens the steps while the error of approach, force or greatest pressure exceeds its share and falls with the
@@ -74,18 +78,26 @@ impl Steps {
     /// where nothing was estimated.
     fn worst(&self) -> f64 {
         let promised = self.trace.is_none_or(|trace| trace.excess == 0.0);
-        self.error.map_or(0.0, |error| if promised { error.main.max(error.pressure) } else { error.main })
+        let of_pressure = |error: Differences| if promised { error.pressure.max(self.unseen) } else { 0.0 };
+        self.error.map_or(0.0, |error| error.main.max(of_pressure(error)))
     }
 
     fn with_tolerance(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
         let (run, tolerance) = (scene.follow(grid.clone(), &[])?, scene.tolerance);
         // a trace fails where levels leave their order, as if there were no states
         if let Some(trace) = curve.and_then(|curve| curve.trace(scene, &run).ok()) {
-            return Ok(Steps { tolerance, run, error: Some(trace.error), trace: Some(trace) });
+            return Ok(Steps { tolerance, run, error: Some(trace.error), unseen: trace.unseen, trace: Some(trace) });
         }
         let finer = scene.with_shorter_steps(&run, grid.clone())?;
-        let error = finer.map(|finer| Differences::between(&run.states, &finer, None));
-        Ok(Steps { tolerance, run, error, trace: None })
+        let (mut error, mut found) = (None, 0.0);
+        if let Some(finer) = finer {
+            let mut all = finer.states.iter();
+            let same = run.states.iter().map(|state| all.find(|other| other.time == state.time).copied());
+            error = same.collect::<Option<Vec<_>>>().map(|same| Differences::between(&run.states, &same, None));
+            let over_time: Vec<[f64; 2]> = finer.states.iter().map(|state| [state.time, state.pressure]).collect();
+            found = unseen(scene, &run, &over_time);
+        }
+        Ok(Steps { tolerance, run, error, unseen: found, trace: None })
     }
 }
 
@@ -125,6 +137,30 @@ fn difference(coarse: &[StepState], fine: &[StepState], of: impl Fn(&StepState) 
     let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
     let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
     relative(most, greatest(fine, of))
+}
+
+/// The share of the greatest of values, given with their times, that a run in steps of these lengths misses where its steps end least
+/// luckily: two of them around the greatest value.
+pub(super) fn unseen(scene: &TrialScene<'_>, run: &Run, values: &[[f64; 2]]) -> f64 {
+    let Some(&[at, greatest]) = values.iter().max_by(|a, b| a[1].total_cmp(&b[1])) else { return 0.0 };
+    // every run ends a step at a corner, and at its end
+    let (mut start, mut end) = (0.0, scene.next_corner(0.0));
+    while end <= at {
+        (start, end) = (end, scene.next_corner(end));
+    }
+    if at <= start || at >= scene.until {
+        return 0.0;
+    }
+    let end = end.min(scene.until);
+    let step = run.states.partition_point(|state| state.time < at);
+    let around = run.steps.iter().skip(step.saturating_sub(1)).take(3);
+    let length = around.map(|(dt, _)| *dt).fold(0.0, f64::max);
+    let within = values.iter().filter(|[time, _]| *time > start && (at - length..=at).contains(time));
+    let shown = within.map(|&[time, before]| {
+        let next = values.iter().find(|[next, _]| *next >= end.min(time + length));
+        next.map_or(before, |[_, after]| before.max(*after))
+    });
+    relative(greatest - shown.fold(greatest, f64::min), greatest)
 }
 
 pub(super) fn relative(value: f64, scale: f64) -> f64 {

@@ -173,6 +173,13 @@ impl TrialScene<'_> {
         }
     }
 
+    /// The first corner of the load or the temperature after a time, at which every run ends a step; infinite where there is none.
+    pub(super) fn next_corner(&self, after: f64) -> f64 {
+        let heated = self.temperature.and_then(|temperature| temperature.next_corner(after));
+        let corners = [self.history.next_breakpoint(after), heated];
+        corners.into_iter().flatten().fold(f64::INFINITY, f64::min)
+    }
+
     /// The compliance at the end of the run, at its start where it is infinite then.
     pub(super) fn softest_compliance(&self) -> Result<f64> {
         let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
@@ -238,9 +245,9 @@ impl TrialScene<'_> {
         Ok(run)
     }
 
-    /// The states at the times of `run` from a run with shorter steps on the same mesh. `None` if the steps are too
-    /// short for `f64` or the solver does not converge.
-    pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<StepState>>> {
+    /// A run with shorter steps on the same mesh, some of which end at the times of `run`. `None` if the steps are too short for
+    /// `f64` or the solver does not converge.
+    pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Run>> {
         let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
         let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
         // splits every step of the run, since its control may have missed an event within a step
@@ -248,10 +255,7 @@ impl TrialScene<'_> {
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
         match (TrialScene { tolerance, ..*self }.follow(grid, &stops)) {
             Err(Error::Step(StepError::StepTooShort { .. }) | Error::Step(StepError::NotConverged { .. })) => Ok(None),
-            finer => {
-                let mut states = finer?.states.into_iter();
-                Ok(times.iter().map(|&time| states.find(|state| state.time == time)).collect())
-            }
+            finer => finer.map(Some),
         }
     }
 
