@@ -1,5 +1,7 @@
 //! The error of v where the course of u has a kink within a step: where a body meets a cell.
 
+use std::sync::OnceLock;
+
 use crate::hereditary::exponential_rule::ExponentialRule;
 
 /// Shares of a step at which the states within it are judged, besides its end.
@@ -16,13 +18,13 @@ const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 pub(super) struct Kinks<'a> {
     rule: &'a ExponentialRule,
     /// The response, at each of the [`SHARES`] σ, to a u that has grown linearly by 1 since the start of the step:
-    /// Σ E_i (1 − e^(−σ z_i))/(σ z_i).
-    linear: [f64; SHARES.len()],
+    /// Σ E_i (1 − e^(−σ z_i))/(σ z_i). Computed for the first kink: most steps have none.
+    linear: OnceLock<[f64; SHARES.len()]>,
 }
 
 impl Kinks<'_> {
     pub(super) fn of(rule: &ExponentialRule) -> Kinks<'_> {
-        Kinks { rule, linear: SHARES.map(|share| rule.relaxing(share) / share) }
+        Kinks { rule, linear: OnceLock::new() }
     }
 
     /// What v lacks at the end of the step: by the polynomial on it, and with what the kink wrongly changes of the step before, which
@@ -42,12 +44,13 @@ impl Kinks<'_> {
     /// An immediate dashpot responds by a finite pressure to a cell just met, however short the step: nothing resolves that.
     pub(super) fn within(&self, jump: f64, bend: f64) -> [f64; SHARES.len()] {
         let met = 1.0 - bend / jump;
+        let linear = || SHARES.map(|share| self.rule.relaxing(share) / share);
         std::array::from_fn(|k| {
             let since = SHARES[k] - met;
             if !(met > 0.0 && since > 0.0) || self.rule.has_dashpot() {
                 return 0.0;
             }
-            (self.rule.relaxing(since) - since * self.linear[k]) * jump
+            (self.rule.relaxing(since) - since * self.linear.get_or_init(linear)[k]) * jump
         })
     }
 }

@@ -313,13 +313,8 @@ impl Sums {
     fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
-            Some((_, missing)) if rule.corrects() => {
-                if is_last {
-                    missing
-                } else {
-                    CORRECTED * missing
-                }
-            }
+            Some((_, missing)) if rule.corrects() && !is_last => CORRECTED * missing,
+            Some((_, missing)) if rule.corrects() => missing,
             // the greatest of |s (s − Δ)| is Δ²/4, as in the error of u
             Some(_) => NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance(),
             None => 0.0,
