@@ -1,7 +1,6 @@
 //! Results of a contact: fields, scalars, observations, stress, energies, reports and warnings.
 
 pub(in crate::contact) mod accessors;
-mod adhesion;
 pub(in crate::contact) mod energies;
 pub(in crate::contact) mod observations;
 pub(in crate::contact) mod report;
