@@ -6,7 +6,7 @@ use viscocontact::prelude::*;
 
 use crate::claim::{Checked, Outcome};
 
-/// A ball pressed at once and held: its contact stays as it is, and the dashpot of every cell dissipates what its spring lets go.
+/// A ball pressed at once and held: its contact stays as it is, and the dashpot of every cell dissipates the energy that its spring loses.
 pub fn held() -> Outcome {
     let [instant, relaxed, radius, depth] = [4.0e6, 1.0e6, 10.0e-3, 1.0e-4];
     let mut contact = ViscoelasticContact::builder(Grid::square(128, 4.0e-3)?)

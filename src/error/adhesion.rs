@@ -30,7 +30,7 @@ pub enum AdhesionError {
     },
 
     /// The load pulls harder than the surfaces hold: no state carries it. The contact stays as it was before the step; under a given
-    /// approach ([`Load::approach`](crate::load::Load::approach)) it goes on apart:
+    /// approach ([`Load::approach`](crate::load::Load::approach)) it continues apart:
     ///
     /// ```
     /// use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
