@@ -9,8 +9,9 @@ const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// The errors of v by kinks of u in the step predicted last.
 ///
-/// u of a cell follows its extrapolated course until a body meets the cell within the step of length Δ. From then on u changes faster, by `jump` Δ⁻¹ more, and at the
-/// end it is off by `bend`: it was met at the time (1 − θ) Δ, θ = bend/jump. With z_i = Δ/τ_i, v responds at the time σ Δ by
+/// u of a cell follows its extrapolated course until a body meets the cell within the step of length Δ. From then on u changes
+/// faster, by `jump` Δ⁻¹ more, and at the end it is off by `bend`: the cell was met at the time (1 − θ) Δ, θ = bend/jump. With
+/// z_i = Δ/τ_i, v responds at the time σ Δ by
 ///
 /// Σ E_i (1 − e^(−(σ − 1 + θ) z_i))/z_i jump + η jump/Δ.
 ///
