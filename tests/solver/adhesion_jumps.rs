@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::adhesion_population::{check, law};
+use super::adhesion_population::{check, law, material};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use viscocontact::adhesion::AdhesionError;
@@ -14,16 +14,6 @@ use viscocontact::prelude::*;
 const SIDE: f64 = 4.0;
 /// Steps tried on a way down or back, at most.
 const MOST_STEPS: usize = 400;
-
-fn material(draws: &mut Draws) -> (bool, Material) {
-    let creeping = draws.chance(0.4);
-    let terms: Vec<_> = (0..1 + draws.below(3)).map(|_| (draws.scale(0.05, 2.0), draws.scale(0.1, 10.0))).collect();
-    let rheology: Box<dyn Rheology> = match creeping {
-        false => Box::new(Elastic::new(0.25).unwrap()),
-        true => Box::new(GeneralizedMaxwell::new(0.25, &terms).unwrap()),
-    };
-    (creeping, Material::incompressible(rheology))
-}
 
 #[test]
 fn every_step_beside_a_jump_ends() {
@@ -37,7 +27,7 @@ fn every_step_beside_a_jump_ends() {
         let wavy = Wavy::new(draws.between(0.05, 0.5), SIDE / draws.between(2.0, 4.0)).unwrap();
         let shape: Box<dyn Geometry> =
             if draws.chance(0.5) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
-        let (creeping, material) = material(&mut draws);
+        let (creeping, material) = material(&mut draws, 0.4);
         let cells = (2.0 * (2.0 * SIDE * mu * mu).ceil()).max(16.0) as usize;
         let tolerance = draws.scale(1e-9, 1e-3);
         let (kind, shortest, time) = (draws.below(3), draws.scale(1e-6, 1e-3), draws.scale(0.1, 10.0));

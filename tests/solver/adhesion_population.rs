@@ -47,8 +47,9 @@ fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
     }
 }
 
-fn material(draws: &mut Draws) -> (bool, Material) {
-    let creeping = draws.chance(0.6);
+/// A body that creeps in such a share of all draws, and whether it does.
+pub(super) fn material(draws: &mut Draws, share: f64) -> (bool, Material) {
+    let creeping = draws.chance(share);
     let terms: Vec<_> = (0..1 + draws.below(3)).map(|_| (draws.scale(0.05, 2.0), draws.scale(0.1, 10.0))).collect();
     let rheology: Box<dyn Rheology> = match creeping {
         false => Box::new(Elastic::new(0.25).unwrap()),
@@ -92,7 +93,7 @@ fn random_scenes() {
         let mut draws = Draws::new(1000 * seed + scene);
         let mu = draws.scale(0.1, tabor);
         let law = law(&mut draws, 1.0 / mu);
-        let ((shape_name, shape), (creeping, material)) = (shape(&mut draws), material(&mut draws));
+        let ((shape_name, shape), (creeping, material)) = (shape(&mut draws), material(&mut draws, 0.6));
         let cells = (2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize;
         let grid = Grid::square(cells, SIDE).unwrap();
         let periodic = draws.chance(0.4);
