@@ -121,7 +121,7 @@ impl InfluenceKernel {
             }
             _ => {
                 let symbol = self.symbol(layout, None);
-                let most = indices(period.map(|n| n / 2 + 1)).map(|[k1, k2]| symbol(k1, k2)).fold(0.0, f64::max);
+                let most = waves(layout).map(|[k1, k2]| symbol(k1, k2)).fold(0.0, f64::max);
                 Box::new(move |k1, k2| {
                     let compliance = symbol(k1, k2);
                     // a mean of zero compliance is fixed, not infinitely stiff
@@ -131,6 +131,20 @@ impl InfluenceKernel {
             }
         };
         (layout, symbol)
+    }
+
+    /// The near field of the operator: a layout without padding, and the factor of each of its waves. It is the operator between
+    /// cells that are less than half of the period apart; farther ones act as if they were nearer, the other way round. `None` where
+    /// the operator has no ends along both axes.
+    pub(super) fn near(&self, cells: [usize; 2], folded: [bool; 2]) -> Option<(Layout, Symbol)> {
+        if self.periodic != [false; 2] || cells.contains(&1) {
+            return None;
+        }
+        let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
+        let symbol = self.symbol(layout, None);
+        let most = waves(layout).map(|[k1, k2]| symbol(k1, k2)).fold(0.0, f64::max);
+        // energies stay positive
+        Some((layout, Box::new(move |k1, k2| symbol(k1, k2).max(LEAST_COMPLIANCE * most))))
     }
 
     /// All values of the response of a grid, and how many belong to an index along x1.
@@ -221,6 +235,11 @@ pub(super) fn magnitude(grid: &Grid, period: [usize; 2]) -> impl Fn([usize; 2]) 
 /// The length of the longest wave of a periodic grid \[m\]: 0 on a single cell.
 pub(super) fn longest_side(grid: &Grid) -> f64 {
     (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| grid.lengths()[axis]).fold(0.0, f64::max)
+}
+
+/// The independent waves of a layout.
+fn waves(layout: Layout) -> impl Iterator<Item = [usize; 2]> {
+    indices([0, 1].map(|axis| layout.period(axis) / 2 + 1))
 }
 
 /// All pairs of indices below the `count` of each axis.

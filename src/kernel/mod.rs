@@ -101,6 +101,14 @@ struct Facts {
 #[derive(Debug, Clone)]
 pub struct Workspace(pub(crate) TransformWorkspace);
 
+impl Workspace {
+    /// Swaps the buffers, but for those between the passes of a transform, which remain here.
+    pub(crate) fn trade(&mut self, other: &mut Workspace) {
+        std::mem::swap(&mut self.0, &mut other.0);
+        self.0.trade_tiles(&mut other.0);
+    }
+}
+
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalKernel {
@@ -300,6 +308,15 @@ impl LocalKernel {
         let inverse = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
         let work = inverse.workspace_beside(&self.operator);
         (inverse, work)
+    }
+
+    /// The near field, [`InfluenceKernel::near`], and its work space, which has no tiles of its own: those of
+    /// [`LocalKernel::workspace`] suffice. `None` of periodic bodies and of single rows.
+    pub(crate) fn near(&self) -> Option<(LocalKernel, Workspace)> {
+        let (layout, symbol) = self.whole.near(self.rows.cells(), self.folded)?;
+        let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
+        let work = Workspace(operator.workspace_beside(&self.operator));
+        Some((LocalKernel { operator: Arc::new(operator), ..self.clone() }, work))
     }
 
     /// Axes along which the cells are one whole period.

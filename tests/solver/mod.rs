@@ -9,6 +9,7 @@ mod adhesion_jkr;
 mod adhesion_jumps;
 mod adhesion_population;
 mod adhesion_steps;
+mod adhesion_work;
 mod adhesion_zone;
 mod conditions;
 mod differential;

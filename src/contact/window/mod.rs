@@ -15,6 +15,8 @@ use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Pr
 pub(crate) struct Window {
     pub(in crate::contact) kernel: LocalKernel,
     pub(in crate::contact) work: Workspace,
+    /// The near field of the kernel, and its work space, where surfaces attract each other.
+    near: Option<(LocalKernel, Workspace)>,
     solver: ContactSolver,
     /// The gap of the indenter on the region, if that is not the whole grid.
     gap: Option<Gap>,
@@ -43,8 +45,9 @@ impl Window {
         };
         let beside = HaloExchange::new(&rows, rows.cells()[1])
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
+        let near = scene.attraction.as_ref().and_then(|_| kernel.near());
         let mut window =
-            Window { beside, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+            Window { beside, near, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
         window.follow(region, indenter);
         window
     }
@@ -57,6 +60,26 @@ impl Window {
         region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
         self.indenter = Some(indenter.id());
+    }
+
+    /// Whether there is a near field.
+    pub(in crate::contact) fn has_near_field(&self) -> bool {
+        self.near.is_some()
+    }
+
+    /// Does the job with the near field in place of the kernel, if there is one.
+    pub(in crate::contact) fn with_near_field<T>(&mut self, job: impl FnOnce(&mut Window) -> T) -> T {
+        self.trade_kernels();
+        let done = job(self);
+        self.trade_kernels();
+        done
+    }
+
+    fn trade_kernels(&mut self) {
+        if let Some((kernel, work)) = &mut self.near {
+            std::mem::swap(&mut self.kernel, kernel);
+            self.work.trade(work);
+        }
     }
 
     /// The gap of the indenter on the region, which the window follows.

@@ -91,7 +91,7 @@ impl SpectralOperator {
 
 impl TransformWorkspace {
     /// Swaps the buffers between the passes.
-    pub(super) fn trade_tiles(&mut self, other: &mut TransformWorkspace) {
+    pub(in crate::kernel) fn trade_tiles(&mut self, other: &mut TransformWorkspace) {
         std::mem::swap(&mut self.tiles, &mut other.tiles);
         std::mem::swap(&mut self.result, &mut other.result);
     }

@@ -10,6 +10,7 @@
 //! plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state belongs to.
 
 mod energy;
+mod near_field;
 mod passes;
 
 pub use passes::PassReport;
@@ -20,14 +21,14 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::constraints::converged;
 use crate::contact::step::gap::RigidBodies;
-use crate::contact::step::initial_guess::{begin, fill_guess};
+use crate::contact::step::initial_guess::begin;
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
 use crate::contact::window::Window;
 use crate::error::{AdhesionError, Result, StepError};
 use crate::load::Load;
 use crate::parallel::for_each_band;
-use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Stop};
+use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop};
 
 /// Greatest number of passes of a step.
 const MAX_PASSES: usize = 500;
@@ -52,6 +53,8 @@ pub(super) struct AttractedStep<'a> {
     /// The compliance of the step, and the greatest motion taken from its gap.
     pub(super) given: [f64; 2],
     pub(super) stop: Stop<'a>,
+    /// The free motions, and the load that they carry without attraction.
+    pub(super) wanted: Freedom,
 }
 
 impl AttractedStep<'_> {
@@ -72,19 +75,50 @@ impl AttractedStep<'_> {
     }
 
     fn iterate(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Result<()> {
-        let AttractedStep { state, step, stop, given: [c, _], .. } = *self;
-        let (greatest, limit, wanted) = (self.law.traction(0.0), CHANGE * stop.tolerance, trial.free[0]);
-        (own.known, own.has_last, own.report) = (0, false, PassReport::default());
-        let mut counts = self.guess(own, window, trial, greatest);
+        let (state, mut counts) = (self.state, Counts::default());
+        own.report = PassReport::default();
+        if !self.solve_near(own, window, trial, &mut counts)? {
+            self.solve_whole(own, window, trial, &mut counts)?;
+        }
+        trial.solution.counts = counts;
+        self.open_gap(window, trial);
+        own.report.released = self.area() * (self.energy_at_start(trial) - self.energy_at_end(trial));
+        own.report.response = self.response(own, trial);
+        own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
+        Ok(())
+    }
+
+    /// The step with K alone.
+    fn solve_whole(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<()> {
+        self.guess(window, trial, counts);
+        let Window { kernel, work, .. } = &mut *window;
+        let Solution { pressure, attraction, potential, .. } = &mut trial.solution;
+        kernel.apply(attraction, &mut own.image, work);
+        counts.convolutions += 1;
+        own.far.fill(0.0);
+        if self.state.extrapolation.refresh_is_due() {
+            kernel.apply(pressure, potential, work);
+            counts.convolutions += 1;
+        } else {
+            potential.iter_mut().zip(&own.image).for_each(|(v, image)| *v += image);
+        }
+        self.descend(own, window, trial, counts)?;
+        trial.solution.potential.iter_mut().zip(&own.image).for_each(|(v, image)| *v -= image);
+        Ok(())
+    }
+
+    /// Passes until one changes s no more, from z, s, K z and K s (or, of the near field, N z and N s) of the trial. Returns whether they changed anything.
+    fn descend(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<bool> {
+        let AttractedStep { step, wanted, stop, given: [c, _], .. } = *self;
+        let (greatest, limit, before) = (self.law.traction(0.0), CHANGE * stop.tolerance, counts.convolutions);
+        (own.known, own.has_last) = (0, false);
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
         let (mut change, mut exactness) = (f64::INFINITY, 0.0);
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1);
-        while own.report.passes < MAX_PASSES {
-            if own.report.passes > 0 {
-                self.open_gap(window, trial);
-            }
+        for _ in 0..MAX_PASSES {
+            self.open_gap(window, trial);
             own.report.passes += 1;
             if !std::mem::replace(&mut convolved, false) {
                 let Window { kernel, work, .. } = &mut *window;
@@ -92,9 +126,10 @@ impl AttractedStep<'_> {
                 counts.convolutions += 1;
             }
             for_each_band([&mut trial.gap], |first, [gap]| {
-                gap.iter_mut().zip(&own.image[first..]).for_each(|(gap, &image)| *gap -= c * image);
+                let distant = own.far[first..].iter().zip(&own.image[first..]);
+                gap.iter_mut().zip(distant).for_each(|(gap, (far, image))| *gap += c * (far - image));
             });
-            let pulled = self.add_to_load(wanted, trial);
+            let pulled = self.add_to_load(trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
             if !carried && plain {
                 let force = wanted.total * self.area();
@@ -102,12 +137,12 @@ impl AttractedStep<'_> {
             }
             let tolerance = inner.max(stop.tolerance);
             let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
-            add(&mut counts, trial.solution.counts);
+            add(counts, trial.solution.counts);
             if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
-                trial.solution.counts = counts;
+                trial.solution.counts = *counts;
                 converged(outcome, self.scene, &trial.solution, step)?;
             }
-            let found = if outcome == Outcome::Converged { Some(self.find(wanted, own, trial)) } else { None };
+            let found = if outcome == Outcome::Converged { Some(self.find(own, trial)) } else { None };
             let unsure = UNSURE * tolerance.max(std::mem::replace(&mut exactness, tolerance));
             let kept = found.filter(|found| plain || found.energy <= least + unsure * found.scale);
             let Some(found) = kept else {
@@ -132,14 +167,7 @@ impl AttractedStep<'_> {
             (least, change) = (found.energy, found.change);
             inner = (INNER * change).min(LOOSEST);
             if change <= limit && trial.solution.residual <= stop.tolerance {
-                trial.solution.counts = counts;
-                let net = &mut trial.solution.potential;
-                net.iter_mut().zip(&own.image).for_each(|(net, image)| *net -= image);
-                self.open_gap(window, trial);
-                own.report.released = self.area() * (self.energy_at_start(wanted, trial) - found.energy);
-                own.report.response = self.response(own, trial);
-                own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
-                return Ok(());
+                return Ok(counts.convolutions > before);
             }
             if change <= limit {
                 // the same pass, more exactly
@@ -149,7 +177,7 @@ impl AttractedStep<'_> {
             own.keep(&trial.solution.attraction, &trial.gap, greatest);
             let next = &mut trial.solution.attraction;
             // where a stable state has just vanished, plain passes would creep
-            reversed = own.known > 0 && own.extrapolate(state, greatest, next);
+            reversed = own.known > 0 && own.extrapolate(self.state, greatest, next);
             plain = own.known == 0 || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             if plain {
@@ -166,55 +194,51 @@ impl AttractedStep<'_> {
         self.bodies.fill_gap(initial, &state.history, &state.current.solution.pressure, &mut trial.gap);
     }
 
-    /// Writes z, s and K z of a guess, and K s: extrapolated from the last two states, or the last state where s has changed much.
-    fn guess(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, greatest: f64) -> Counts {
+    /// Writes z, s and K (z − s) of a guess: extrapolated from the last two states, or the last state where s has changed much.
+    fn guess(&self, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
         let (state, step) = (self.state, self.step);
         if state.is_undisturbed() {
-            return self.first_guess(own, window, trial);
+            return self.first_guess(window, trial, counts);
         }
         let (now, before) = (&state.current.solution, &state.previous.solution);
         let mut reach = state.extrapolation.reach(step.interval.dt);
         let changes = now.attraction.iter().zip(&before.attraction).map(|(now, before)| (now - before).abs());
-        if changes.fold(0.0, f64::max) > GREATEST_CHANGE * greatest {
+        if changes.fold(0.0, f64::max) > GREATEST_CHANGE * self.law.traction(0.0) {
             reach = 0.0;
         }
         trial.reach = reach;
-        fill_guess(state, window, trial, |now, before| now + reach * (now - before));
-        let afresh = state.extrapolation.refresh_is_due();
+        let guess = |now: f64, before: f64| now + reach * (now - before);
         let solution = &mut trial.solution;
-        let states = now.attraction.iter().zip(&before.attraction);
-        solution.attraction.iter_mut().zip(states).for_each(|(s, (&now, &before))| *s = now + reach * (now - before));
-        let Window { kernel, work, .. } = &mut *window;
-        kernel.apply(&solution.attraction, &mut own.image, work);
-        solution.counts.convolutions += 1;
-        if !afresh {
-            // the potential of a state is K (z − s)
-            solution.potential.iter_mut().zip(&own.image).for_each(|(v, image)| *v += image);
+        for (guesses, now, before) in [
+            (&mut solution.pressure, &now.pressure, &before.pressure),
+            (&mut solution.attraction, &now.attraction, &before.attraction),
+            (&mut solution.potential, &now.potential, &before.potential),
+        ] {
+            guesses.iter_mut().zip(now.iter().zip(before)).for_each(|(g, (&now, &before))| *g = guess(now, before));
         }
-        solution.counts
     }
 
     /// Writes the guess of a first step: no pressure, and s of undeformed bodies, which just touch under a force.
-    fn first_guess(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Counts {
+    fn first_guess(&self, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
         let lowest = self.state.region.rows().least(trial.gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
         let motion = match self.step.loads[0] {
             Load::Approach { .. } => 0.0,
             _ => lowest,
         };
-        let solution = &mut trial.solution;
-        solution.release();
-        for (s, &open) in solution.attraction.iter_mut().zip(&trial.gap) {
+        let Solution { pressure, attraction, potential, .. } = &mut trial.solution;
+        pressure.fill(0.0);
+        for (s, &open) in attraction.iter_mut().zip(&trial.gap) {
             *s = if open.is_finite() { self.law.traction((open - motion).max(0.0)) } else { 0.0 };
         }
         let Window { kernel, work, .. } = &mut *window;
-        kernel.apply(&solution.attraction, &mut own.image, work);
-        solution.counts.convolutions += 1;
-        solution.counts
+        kernel.apply(attraction, potential, work);
+        counts.convolutions += 1;
+        potential.iter_mut().for_each(|v| *v = -*v);
     }
 
     /// Adds Σ s to the load that the wall carries, and its moments; returns the force of the attraction \[N\].
-    fn add_to_load(&self, wanted: Freedom, trial: &mut Trial) -> f64 {
-        let (state, s) = (self.state, &trial.solution.attraction);
+    fn add_to_load(&self, trial: &mut Trial) -> f64 {
+        let (state, wanted, s) = (self.state, self.wanted, &trial.solution.attraction);
         let region = &state.region;
         let [sum, moment1, moment2] = if wanted.tilts() {
             region.rows().sum_terms(|k| {

@@ -16,8 +16,10 @@ const LEAST_OF_JUMP: f64 = 15.0;
 /// What the passes of a step work in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
 pub(in crate::contact) struct Passes {
-    /// K s.
+    /// K s, or N s of the [near field](super::near_field).
     pub(super) image: Vec<f64>,
+    /// F (z − s) of the far field; zero where passes work with K.
+    pub(super) far: Vec<f64>,
     /// s of the last pass that was kept, and s at the gap that it led to.
     pub(super) last: [Vec<f64>; 2],
     pub(super) has_last: bool,
@@ -58,13 +60,14 @@ impl PassReport {
 
 impl Passes {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5 + 4 * 2 * OTHERS;
+    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 6 + 4 * 2 * OTHERS;
 
     pub(super) fn new(cells: usize) -> Passes {
         let field = || vec![0.0; cells];
         let changes = std::array::from_fn(|_| [vec![0.0; cells], vec![0.0; cells]]);
         Passes {
             image: field(),
+            far: field(),
             last: [field(), field()],
             has_last: false,
             changes,
