@@ -133,11 +133,15 @@ impl InfluenceKernel {
         (layout, symbol)
     }
 
+    /// Whether there is a near field that is cheaper: the operator has ends along both axes.
+    pub(super) fn has_near_field(&self, cells: [usize; 2]) -> bool {
+        self.periodic == [false; 2] && !cells.contains(&1)
+    }
+
     /// The near field of the operator: a layout without padding, and the factor of each of its waves. It is the operator between
-    /// cells that are less than half of the period apart; farther ones act as if they were nearer, the other way round. `None` where
-    /// the operator has no ends along both axes.
+    /// cells that are less than half of the period apart; farther ones act as if they were nearer, the other way round.
     pub(super) fn near(&self, cells: [usize; 2], folded: [bool; 2]) -> Option<(Layout, Symbol)> {
-        if self.periodic != [false; 2] || cells.contains(&1) {
+        if !self.has_near_field(cells) {
             return None;
         }
         let layout = Layout { cells, ends: self.ends(), folded }.wrapped();

@@ -218,17 +218,22 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on some rows, operator and workspace, and bytes of the approximate inverse. An operator that
+    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field. An operator that
     /// exists already counts zero.
-    pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 2] {
+    pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 3] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
-        let inverse = layout.wrapped();
-        let [shares, of_inverse] = [layout, inverse].map(|layout| Shares::new(&layout, rows));
-        let (shares, of_inverse) = (shares.as_ref(), of_inverse.as_ref());
+        let shares = Shares::new(&layout, rows);
+        let shares = shares.as_ref();
         let made = self.is_whole(&layout, rows) && self.operators[index(folded)].get().is_some();
         let operator = if made { 0 } else { layout.operator_bytes(shares) };
-        let beside = inverse.workspace_bytes(of_inverse) - inverse.lent_bytes(of_inverse, (&layout, shares));
-        [operator + layout.workspace_bytes(shares), inverse.operator_bytes(of_inverse) + beside]
+        // near field and inverse have layouts of one length
+        let wrapped = layout.wrapped();
+        let of_wrapped = Shares::new(&wrapped, rows);
+        let of_wrapped = of_wrapped.as_ref();
+        let beside = wrapped.workspace_bytes(of_wrapped) - wrapped.lent_bytes(of_wrapped, (&layout, shares));
+        let wrapped = wrapped.operator_bytes(of_wrapped) + beside;
+        let has_near_field = self.has_near_field(rows.cells());
+        [operator + layout.workspace_bytes(shares), wrapped, if has_near_field { wrapped } else { 0 }]
     }
 
     /// Whether rows with this layout are all of the grid, in this process.

@@ -12,7 +12,7 @@ use crate::geometry::Gap;
 use crate::hereditary::History;
 use crate::kernel::InfluenceKernel;
 use crate::parallel::Rows;
-use crate::solver::{ActiveSet, Bands, Extension};
+use crate::solver::{Bands, Extension};
 use crate::{Grid, memory};
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
@@ -28,7 +28,7 @@ use crate::{Grid, memory};
 /// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
-/// | attraction between surfaces | 80: its traction at both ends of a step and in the trial, 24, what its passes work in, 48, and the rigid mode of the solver, 8 |
+/// | attraction between surfaces | 72: its traction at both ends of a step and in the trial, 24, and what its passes work in, 48 |
 ///
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
@@ -106,11 +106,11 @@ impl Footprint<'_> {
         let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
         let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
         let layout = State::layout(indenter, region.clone(), self.history, self.attracts);
-        let passes = if self.attracts { Passes::BYTES_PER_CELL + ActiveSet::SHAPE_BYTES } else { 0 };
+        let passes = if self.attracts { Passes::BYTES_PER_CELL } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
-        let [kernel, inverse] = self.kernel.bytes(&rows, region.folded());
+        let [kernel, inverse, near] = self.kernel.bytes(&rows, region.folded());
         // three fields, a mark, and runs of cells
         let own = (24 + 1 + 4) * n + Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
@@ -124,7 +124,7 @@ impl Footprint<'_> {
             state: saturated((per_cell - of_history + Trial::BYTES_PER_CELL + passes) as u128 * n),
             history: saturated(of_history as u128 * n),
             solver: saturated(solver),
-            kernel: saturated(kernel),
+            kernel: saturated(kernel + if self.attracts { near } else { 0 }),
             each_step: if self.history.grows() { saturated(8 * n) } else { 0 },
         }
     }

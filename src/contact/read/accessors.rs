@@ -95,7 +95,7 @@ impl ViscoelasticContact {
         }
         if !region.is_shown() && self.view.displacement.get().is_none() {
             let whole = Region::whole(grid, region.folded());
-            let [kernel, _] = kernel.bytes(&whole.rows(), whole.folded());
+            let [kernel, ..] = kernel.bytes(&whole.rows(), whole.folded());
             let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
             memory::check("the displacement on the whole grid", kernel + fields)?;
         }

@@ -1,6 +1,5 @@
 //! One iteration of the active set: its residual, its direction and its length.
 
-use super::rigid_mode::RigidMode;
 use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS};
 use crate::solver::{ModeCoefficients, Outcome, Problem, ResidualSums, Solution, Solve, add, dot};
 
@@ -134,18 +133,13 @@ impl ActiveSet {
         if towards != Towards::Corrections {
             self.find_residual(problem, solution);
         }
-        let ActiveSet { set, bands, preconditioner, buffer: z, search, shifts, shape, .. } = self;
+        let ActiveSet { set, bands, preconditioner, buffer: z, search, shifts, .. } = self;
         match towards {
             Towards::Corrections => z.fill(0.0),
             Towards::Residual => {}
             Towards::Preconditioned => {
-                let rigid = RigidMode::of(problem, solution, set, preconditioner, shape);
-                let mean = rigid.as_ref().map_or(0.0, |rigid| rigid.take_out(set, z));
                 preconditioner.apply(z, set, work);
                 solution.counts.preconditioner_applications += 1;
-                if let Some(rigid) = rigid {
-                    rigid.put_back(problem, set, mean, z);
-                }
             }
         }
         let mut overlap = 0.0;

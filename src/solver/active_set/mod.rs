@@ -27,7 +27,6 @@ mod balance;
 mod fallback;
 mod iteration;
 mod membership;
-mod rigid_mode;
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::{Bands, ContactSet, ModeCoefficients, Outcome, PENETRATION_SLACK, Preconditioner, Search, Solve};
@@ -72,8 +71,8 @@ pub(crate) struct ActiveSet {
     /// A field that a method fills and reads under a name of its own: z, moved pressures and so on. Its values do not outlive
     /// the method.
     buffer: Vec<f64>,
-    /// The shape s of corrections of the balance, the pressure of the [`RigidMode`](rigid_mode::RigidMode), in the fall-back a second buffer:
-    /// allocated by the first solve with a tilting load, several bodies, attraction at a given approach, or the fall-back.
+    /// The shape s of corrections of the balance, in the fall-back a second buffer: allocated by the first solve with a tilting
+    /// load, several bodies or the fall-back.
     shape: Vec<f64>,
 }
 
@@ -109,9 +108,6 @@ enum Shape {
 }
 
 impl ActiveSet {
-    /// Bytes of the shape for each cell, which an attraction at a given approach needs.
-    pub(crate) const SHAPE_BYTES: usize = 8;
-
     /// A solver that works in the buffers of the kernel.
     pub(crate) fn new(kernel: &LocalKernel, bodies: usize, work: &mut Workspace) -> ActiveSet {
         let cells = kernel.grid().len();

@@ -18,17 +18,17 @@ pub(super) struct Found {
 
 impl AttractedStep<'_> {
     /// Energy and change of the pass; writes s at the gap that it led to in place of the gap of its problem. The energy is the value of the Lagrangian, in which
-    /// the error of the pass enters with its square; the far field acts as a load.
+    /// the error of the pass enters with its square; the far field is a part of the gap.
     pub(super) fn find(&self, own: &Passes, trial: &mut Trial) -> Found {
         let AttractedStep { state, law, given: [c, _], .. } = *self;
         let (rows, solution, gap) = (state.region.rows(), &trial.solution, &mut trial.gap);
         let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
         let height = |gap: f64, k: usize| gap + c * solution.potential[k] - modes.displacement(motion, k);
-        let (s, image, far) = (&solution.attraction, &own.image, &own.far);
+        let (s, image) = (&solution.attraction, &own.image);
         let cell = |k: usize| {
             let (z, h) = (solution.pressure[k], height(gap[k], k));
             let [open, wall] = if z > 0.0 { [0.0, z * h] } else { [h.max(0.0), 0.0] };
-            [z - s[k], solution.potential[k] - image[k] + 2.0 * far[k], open, wall]
+            [z - s[k], solution.potential[k] - image[k], open, wall]
         };
         let [energy, parts] = self.energy(modes.physical(motion), cell);
         let pressed = rows.sum_of_pairs(&solution.pressure, &solution.potential, |z, v| c * z * v);
@@ -97,14 +97,14 @@ impl AttractedStep<'_> {
     /// How the surfaces respond: of the change e of s from its guess, a first pass finds r, and e·e/(e·r) is 1/(1 − λ) for the rate λ of the
     /// passes.
     pub(super) fn response(&self, own: &Passes, trial: &Trial) -> f64 {
-        let (state, reach) = (self.state, trial.reach);
+        let (state, reach, greatest) = (self.state, trial.reach, self.law.traction(0.0));
         if state.is_undisturbed() {
             return 1.0;
         }
         let [now, before] = [&state.current.solution.attraction, &state.previous.solution.attraction];
         let [square, first] = state.region.rows().sum_terms(|k| {
             let change = trial.solution.attraction[k] - (now[k] + reach * (now[k] - before[k]));
-            Some([change * change, change * own.first[k]])
+            Some([change * change, change * greatest * f64::from(own.first[k])])
         });
         let ratio = square / first;
         // no change has no ratio

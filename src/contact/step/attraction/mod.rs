@@ -5,7 +5,7 @@
 //! pass before, a tangent of the concave part, and solves the contact problem of the gap − c K s under the load + Σ s: it lowers the energy
 //! (Le Thi & Pham, Ann. Oper. Res. 133, 2005), and where no pass changes s any more, the state is stationary.
 //!
-//! Passes are extrapolated by Anderson's method (J. ACM 12, 1965). An extrapolated s is kept only where the energy falls; else the plain pass
+//! Passes are extrapolated by Anderson's method (J. ACM 12, 1965) from the one before. An extrapolated s is kept only where the energy falls; else the plain pass
 //! follows. Next to a jump an inexact pass does not determine the energy: an extrapolation that leads uphill is reversed there, in place of
 //! plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state belongs to.
 
@@ -77,6 +77,7 @@ impl AttractedStep<'_> {
     fn iterate(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Result<()> {
         let (state, mut counts) = (self.state, Counts::default());
         own.report = PassReport::default();
+        self.guess(window, trial, &mut counts);
         if !self.solve_near(own, window, trial, &mut counts)? {
             self.solve_whole(own, window, trial, &mut counts)?;
         }
@@ -88,9 +89,8 @@ impl AttractedStep<'_> {
         Ok(())
     }
 
-    /// The step with K alone.
+    /// Finishes z, s and K (z − s) of the trial with K alone.
     fn solve_whole(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<()> {
-        self.guess(window, trial, counts);
         let Window { kernel, work, .. } = &mut *window;
         let Solution { pressure, attraction, potential, .. } = &mut trial.solution;
         kernel.apply(attraction, &mut own.image, work);
@@ -111,12 +111,12 @@ impl AttractedStep<'_> {
     fn descend(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<bool> {
         let AttractedStep { step, wanted, stop, given: [c, _], .. } = *self;
         let (greatest, limit, before) = (self.law.traction(0.0), CHANGE * stop.tolerance, counts.convolutions);
-        (own.known, own.has_last) = (0, false);
+        own.forget();
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
         let (mut change, mut exactness) = (f64::INFINITY, 0.0);
         // plain passes that are to follow, and after the next extrapolation that gains nothing
-        let (mut wait, mut penalty) = (0_usize, 1);
+        let (mut wait, mut penalty) = (0_usize, 1_usize);
         for _ in 0..MAX_PASSES {
             self.open_gap(window, trial);
             own.report.passes += 1;
@@ -147,22 +147,22 @@ impl AttractedStep<'_> {
             let kept = found.filter(|found| plain || found.energy <= least + unsure * found.scale);
             let Some(found) = kept else {
                 // the plain pass from the last state that was kept
-                own.forget_changes();
+                own.has_changes = false;
                 own.report.rejected += 1;
                 trial.solution.attraction.copy_from_slice(&own.last[1]);
-                (plain, wait, penalty) = (true, penalty, 2 * penalty);
+                (plain, wait, penalty) = (true, penalty, penalty.saturating_mul(2));
                 continue;
             };
             if own.report.passes == 1 {
                 let changed = trial.solution.attraction.iter().zip(&trial.gap);
-                own.first.iter_mut().zip(changed).for_each(|(first, (s, g))| *first = g - s);
+                own.first.iter_mut().zip(changed).for_each(|(first, (s, g))| *first = ((g - s) / greatest) as f32);
             }
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
             if !plain && !reversed && found.change >= change {
                 // it gained nothing: the more often, the more plain passes follow
-                (wait, penalty) = (penalty, 2 * penalty);
+                (wait, penalty) = (penalty, penalty.saturating_mul(2));
             }
             (least, change) = (found.energy, found.change);
             inner = (INNER * change).min(LOOSEST);
@@ -177,8 +177,8 @@ impl AttractedStep<'_> {
             own.keep(&trial.solution.attraction, &trial.gap, greatest);
             let next = &mut trial.solution.attraction;
             // where a stable state has just vanished, plain passes would creep
-            reversed = own.known > 0 && own.extrapolate(self.state, greatest, next);
-            plain = own.known == 0 || wait > 0 && !reversed;
+            reversed = own.has_changes && own.extrapolate(self.state, greatest, next);
+            plain = !own.has_changes || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             if plain {
                 next.copy_from_slice(&own.last[1]);

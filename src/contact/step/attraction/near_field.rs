@@ -7,18 +7,19 @@
 //! error after a round is about the share of F in the potential.
 
 use super::{AttractedStep, Passes};
+use crate::contact::step::initial_guess::begin;
 use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
 use crate::error::{Error, Result};
 use crate::solver::{Counts, Solution};
 
-/// The share of F in the potential up to which the rounds gain.
-const MAX_SHARE: f64 = 0.2;
-/// Rounds of passes after which a step begins again with K alone.
-const MAX_ROUNDS: usize = 10;
+/// The share of F in the potential below which rounds of passes pay off.
+const MAX_SHARE: f64 = 0.006;
+/// What a round may leave of the change of F (z − s) in the round before.
+const LEAST_GAIN: f64 = 0.1;
 
 impl AttractedStep<'_> {
-    /// The step with the near field; false where that does not suffice.
+    /// Improves z, s and K (z − s) of the trial by rounds of passes with the near field. Returns whether that sufficed.
     pub(super) fn solve_near(
         &self,
         own: &mut Passes,
@@ -29,44 +30,57 @@ impl AttractedStep<'_> {
         if !window.has_near_field() {
             return Ok(false);
         }
-        self.guess(window, trial, counts);
-        own.far.copy_from_slice(&trial.solution.potential);
         self.split(own, window, trial, counts);
-        if std::env::var("DBG").is_ok() { eprintln!("share {:.3}", self.share(own, trial)); }
-        if self.share(own, trial) > std::env::var("SHARE").map_or(MAX_SHARE, |l| l.parse().unwrap()) {
-            return Ok(false);
-        }
-        for round in 0..MAX_ROUNDS {
+        let (mut solved, mut pays, mut last) = (false, self.share(own, trial) < MAX_SHARE, f64::INFINITY);
+        while pays && !solved {
             let before = counts.convolutions;
-            let changed = window.with_near_field(|window| self.descend(own, window, trial, counts));
+            let passed = window.with_near_field(|window| self.descend(own, window, trial, counts));
             counts.preconditioner_applications += counts.convolutions - before;
             counts.convolutions = before;
-            match changed {
+            match passed {
                 Err(Error::Cancelled { what }) => return Err(Error::Cancelled { what }),
-                // perhaps there is a state with K
-                Err(_) => return Ok(false),
-                Ok(false) if round > 0 => {
-                    let near = own.image.iter().zip(&own.far);
-                    trial.solution.potential.iter_mut().zip(near).for_each(|(v, (image, far))| *v += far - image);
-                    return Ok(true);
+                Err(_) => {
+                    // perhaps there is a state with K
+                    trial.free[0] = self.wanted;
+                    self.open_gap(window, trial);
+                    begin(self.state, trial, self.step);
+                    self.guess(window, trial, counts);
+                    return Ok(false);
                 }
-                Ok(_) => {}
+                Ok(changed) => solved = !changed && last.is_finite(),
             }
-            let Solution { pressure, attraction, potential, .. } = &trial.solution;
-            let net = &mut own.last[0];
-            net.iter_mut().zip(pressure.iter().zip(attraction)).for_each(|(net, (z, s))| *net = z - s);
-            let Window { kernel, work, .. } = &mut *window;
-            kernel.apply(net, &mut own.far, work);
-            counts.convolutions += 1;
-            let near = potential.iter().zip(&own.image);
-            own.far.iter_mut().zip(near).for_each(|(far, (v, image))| *far -= v - image);
+            if !solved {
+                let change = self.correct(own, window, trial, counts);
+                pays = change <= LEAST_GAIN * last;
+                last = change;
+            }
         }
-        Ok(false)
+        let near = own.image.iter().zip(&own.far);
+        trial.solution.potential.iter_mut().zip(near).for_each(|(v, (image, far))| *v += far - image);
+        Ok(solved)
+    }
+
+    /// F (z − s) anew; returns Σ (z + s) |ΔF (z − s)|.
+    fn correct(&self, own: &mut Passes, window: &mut Window, trial: &Trial, counts: &mut Counts) -> f64 {
+        let Solution { pressure, attraction, potential, .. } = &trial.solution;
+        let Passes { last: [net, exact], far, image, .. } = own;
+        net.iter_mut().zip(pressure.iter().zip(attraction)).for_each(|(net, (z, s))| *net = z - s);
+        let Window { kernel, work, .. } = &mut *window;
+        kernel.apply(net, exact, work);
+        counts.convolutions += 1;
+        let mut changed = 0.0;
+        for (k, far) in far.iter_mut().enumerate() {
+            let now = exact[k] - (potential[k] - image[k]);
+            changed += (pressure[k] + attraction[k]) * (now - *far).abs();
+            *far = now;
+        }
+        changed
     }
 
     /// Writes N z and N s to the potential and the image, and takes N (z − s) from K (z − s).
     fn split(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
         let Solution { pressure, attraction, potential, .. } = &mut trial.solution;
+        own.far.copy_from_slice(potential);
         window.with_near_field(|Window { kernel, work, .. }| {
             kernel.apply(pressure, potential, work);
             kernel.apply(attraction, &mut own.image, work);

@@ -1,14 +1,9 @@
 //! What the passes of a step work in, and how they went.
 
 use crate::contact::state::State;
-use crate::linalg::solve_normal_equations;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
-/// Passes that are extrapolated from, besides the last.
-const OTHERS: usize = 2;
-/// Share of the square of a change, independent of the other changes, that counts as zero.
-const DEPENDENT: f64 = 1e-10;
 /// Between the [response](PassReport::response) to a smooth change, on spheres at Tabor's numbers 0.5 to 3 at most 13, and to a jump, at least
 /// 19.
 const LEAST_OF_JUMP: f64 = 15.0;
@@ -22,13 +17,12 @@ pub(in crate::contact) struct Passes {
     pub(super) far: Vec<f64>,
     /// s of the last pass that was kept, and s at the gap that it led to.
     pub(super) last: [Vec<f64>; 2],
-    pub(super) has_last: bool,
-    /// By how much both changed from pass to pass, over the greatest traction, the last change first. They are directions: single precision
-    /// is as good.
-    changes: [[Vec<f32>; 2]; OTHERS],
-    pub(super) known: usize,
-    /// The change of s in the first pass.
-    pub(super) first: Vec<f64>,
+    has_last: bool,
+    /// By how much both differ from the pass before, over the greatest traction. They are directions: single precision is as good.
+    changes: [Vec<f32>; 2],
+    pub(super) has_changes: bool,
+    /// The change of s in the first pass, over the greatest traction.
+    pub(super) first: Vec<f32>,
     pub(in crate::contact) report: PassReport,
 }
 
@@ -60,50 +54,45 @@ impl PassReport {
 
 impl Passes {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 6 + 4 * 2 * OTHERS;
+    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5 + 4 * 3;
 
     pub(super) fn new(cells: usize) -> Passes {
         let field = || vec![0.0; cells];
-        let changes = std::array::from_fn(|_| [vec![0.0; cells], vec![0.0; cells]]);
         Passes {
             image: field(),
             far: field(),
             last: [field(), field()],
             has_last: false,
-            changes,
-            known: 0,
-            first: field(),
+            changes: [vec![0.0; cells], vec![0.0; cells]],
+            has_changes: false,
+            first: vec![0.0; cells],
             report: PassReport::default(),
         }
     }
 
-    /// Forgets all passes but the last.
-    pub(super) fn forget_changes(&mut self) {
-        self.known = 0;
+    /// Forgets all passes.
+    pub(super) fn forget(&mut self) {
+        (self.has_last, self.has_changes) = (false, false);
     }
 
     /// Keeps a pass from `s` to `g`.
     pub(super) fn keep(&mut self, s: &[f64], g: &[f64], greatest: f64) {
-        if std::mem::replace(&mut self.has_last, true) {
-            self.changes.rotate_right(1);
-            for ((change, last), now) in self.changes[0].iter_mut().zip(&self.last).zip([s, g]) {
-                let values = change.iter_mut().zip(now.iter().zip(last));
-                values.for_each(|(change, (now, last))| *change = ((now - last) / greatest) as f32);
-            }
-            self.known = (self.known + 1).min(OTHERS);
+        self.has_changes = std::mem::replace(&mut self.has_last, true);
+        for ((change, last), now) in self.changes.iter_mut().zip(&mut self.last).zip([s, g]) {
+            let values = change.iter_mut().zip(now.iter().zip(&*last));
+            values.for_each(|(change, (now, last))| *change = ((now - last) / greatest) as f32);
+            last.copy_from_slice(now);
         }
-        self.last[0].copy_from_slice(s);
-        self.last[1].copy_from_slice(g);
     }
 
     /// |z − s| at the end of a step that was solved, at its start, and at the start of the step before.
     pub(in crate::contact) fn weights(&self) -> [&[f64]; 3] {
-        [&self.last[0], &self.last[1], &self.first]
+        [&self.last[0], &self.last[1], &self.far]
     }
 
     pub(super) fn keep_weights(&mut self, solutions: [&Solution; 3]) {
-        let Passes { last: [now, before], first, .. } = self;
-        for (weights, Solution { pressure, attraction, .. }) in [now, before, first].into_iter().zip(solutions) {
+        let Passes { last: [now, before], far, .. } = self;
+        for (weights, Solution { pressure, attraction, .. }) in [now, before, far].into_iter().zip(solutions) {
             for (weight, (z, s)) in weights.iter_mut().zip(pressure.iter().zip(attraction)) {
                 // no cell counts as one that the bodies have yet to meet
                 *weight = (z - s).abs().max(f64::MIN_POSITIVE);
@@ -111,36 +100,22 @@ impl Passes {
         }
     }
 
-    /// Writes the next s: from the last pass, which led from s to g, g − Σ γ Δg, where γ makes f = g − s less Σ γ Δf as small as it can, Δ being
-    /// the changes from pass to pass. Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and
-    /// the signs of γ are reversed (saddle-free Newton method, Dauphin et al., NIPS 27, 2014). Returns whether they were.
+    /// Writes the next s: from the last pass, which led from s to g, g − γ Δg, where γ makes f = g − s less γ Δf as small as it can, Δ being the
+    /// change from the pass before. Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and the
+    /// sign of γ is reversed (saddle-free Newton method, Dauphin et al., NIPS 27, 2014). Returns whether it was.
     pub(super) fn extrapolate(&self, state: &State, greatest: f64, next: &mut [f64]) -> bool {
-        const SQUARE: usize = OTHERS * OTHERS;
-        let Passes { last: [s, g], changes, known, .. } = self;
-        let known = *known;
-        let of_g = |k: usize, j: usize| greatest * f64::from(changes[j][1][k]);
-        let change = |k: usize, j: usize| greatest * (f64::from(changes[j][1][k]) - f64::from(changes[j][0][k]));
-        let sums = state.region.rows().sum_terms(|k| {
-            let mut terms = [0.0; SQUARE + 2 * OTHERS + 1];
-            let f = g[k] - s[k];
-            for i in 0..known {
-                let own = change(k, i);
-                terms[SQUARE + i] = own * f;
-                terms[SQUARE + OTHERS + i] = of_g(k, i) * f;
-                (0..known).for_each(|j| terms[OTHERS * i + j] = own * change(k, j));
-            }
-            terms[SQUARE + 2 * OTHERS] = f * f;
-            Some(terms)
+        let Passes { last: [s, g], changes: [of_s, of_g], .. } = self;
+        let [overlap, square, along, remaining] = state.region.rows().sum_terms(|k| {
+            let (f, of_g) = (g[k] - s[k], greatest * f64::from(of_g[k]));
+            let of_f = of_g - greatest * f64::from(of_s[k]);
+            Some([of_f * f, of_f * of_f, of_g * f, f * f])
         });
-        let gram: [[f64; OTHERS]; OTHERS] = std::array::from_fn(|i| std::array::from_fn(|j| sums[OTHERS * i + j]));
-        let weights = solve_normal_equations(&gram, std::array::from_fn(|i| sums[SQUARE + i]), DEPENDENT);
-        let along = (0..known).map(|j| weights[j] * sums[SQUARE + OTHERS + j]).sum::<f64>();
-        let reversed = along > sums[SQUARE + 2 * OTHERS];
-        let sign = if reversed { -1.0 } else { 1.0 };
+        let weight = if square > 0.0 { overlap / square } else { 0.0 };
+        let reversed = weight * along > remaining;
+        let moved = if reversed { -weight } else { weight } * greatest;
         for_each_band([next], |first, [next]| {
             for (next, k) in next.iter_mut().zip(first..) {
-                let moved = (0..known).map(|j| weights[j] * of_g(k, j)).sum::<f64>();
-                *next = (g[k] - sign * moved).clamp(0.0, greatest);
+                *next = (g[k] - moved * f64::from(of_g[k])).clamp(0.0, greatest);
             }
         });
         reversed
