@@ -33,7 +33,12 @@ mod state;
 #[cfg(feature = "checkpoint")]
 pub(crate) mod checkpoint;
 mod computation;
-mod distributed;
+/// Operations of a contact whose rows ranks share out.
+mod distributed {
+    pub(in crate::contact) mod area;
+    pub(in crate::contact) mod gap;
+    pub(in crate::contact) mod local_rows;
+}
 mod indenter;
 mod scene;
 mod settings;

@@ -42,7 +42,8 @@ pub struct StepReport {
     pub fallback_iterations: usize,
     /// Convolutions with the influence kernel on the computed cells: forward and inverse padded transforms.
     pub convolutions: usize,
-    /// Applications of the preconditioner, each on an unpadded grid of a quarter of the size.
+    /// Applications of the preconditioner, and where surfaces attract each other of the near field of the kernel, each on an unpadded grid of a
+    /// quarter of the size.
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
@@ -85,7 +86,7 @@ impl fmt::Display for Estimated {
 }
 
 impl StepReport {
-    /// The transforms of the step in units of one convolution; a preconditioner application counts a quarter.
+    /// The transforms of the step in units of one convolution; a transform without padding counts a quarter.
     pub fn convolution_equivalents(&self) -> f64 {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64
     }

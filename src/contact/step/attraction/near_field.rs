@@ -13,8 +13,10 @@ use crate::contact::window::Window;
 use crate::error::{Error, Result};
 use crate::solver::{Counts, Solution};
 
-/// The share of F in the potential below which rounds of passes pay off.
-const MAX_SHARE: f64 = 0.006;
+/// Cells act where they touch, or with this share of the greatest attraction.
+const LEAST_ACTION: f64 = 0.1;
+/// The part of the grid that cells that act may span, along each axis.
+const MAX_EXTENT: f64 = 0.8;
 /// What a round may leave of the change of F (z − s) in the round before.
 const LEAST_GAIN: f64 = 0.1;
 
@@ -27,11 +29,11 @@ impl AttractedStep<'_> {
         trial: &mut Trial,
         counts: &mut Counts,
     ) -> Result<bool> {
-        if !window.has_near_field() {
+        if !window.has_near_field() || self.extent(trial) > MAX_EXTENT {
             return Ok(false);
         }
         self.split(own, window, trial, counts);
-        let (mut solved, mut pays, mut last) = (false, self.share(own, trial) < MAX_SHARE, f64::INFINITY);
+        let (mut solved, mut pays, mut last) = (false, true, f64::INFINITY);
         while pays && !solved {
             let before = counts.convolutions;
             let passed = window.with_near_field(|window| self.descend(own, window, trial, counts));
@@ -58,6 +60,23 @@ impl AttractedStep<'_> {
         let near = own.image.iter().zip(&own.far);
         trial.solution.potential.iter_mut().zip(near).for_each(|(v, (image, far))| *v += far - image);
         Ok(solved)
+    }
+
+    /// The greatest distance along an axis between cells that act, over the length of the grid.
+    fn extent(&self, trial: &Trial) -> f64 {
+        let (region, Solution { pressure, attraction, .. }) = (&self.state.region, &trial.solution);
+        let least = LEAST_ACTION * self.law.traction(0.0);
+        let columns = region.cells()[1];
+        let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for k in (0..pressure.len()).filter(|&k| pressure[k] > 0.0 || attraction[k] > least) {
+            for ([low, high], at) in ends.iter_mut().zip([(k / columns) as f64, (k % columns) as f64]) {
+                (*low, *high) = (low.min(at), high.max(at));
+            }
+        }
+        // along a folded axis the mirror image lies before its beginning
+        let begin = |axis: usize| if region.folded()[axis] { 0.0 } else { ends[axis][0] };
+        let [along1, along2] = [0, 1].map(|axis| (ends[axis][1] - begin(axis)) / region.cells()[axis] as f64);
+        along1.max(along2)
     }
 
     /// F (z − s) anew; returns Σ (z + s) |ΔF (z − s)|.
@@ -88,15 +107,5 @@ impl AttractedStep<'_> {
         counts.preconditioner_applications += 2;
         let near = potential.iter().zip(&own.image);
         own.far.iter_mut().zip(near).for_each(|(far, (v, image))| *far -= v - image);
-    }
-
-    /// The share of F (z − s) in the potential, where z and s act.
-    fn share(&self, own: &Passes, trial: &Trial) -> f64 {
-        let Solution { pressure, attraction, potential, .. } = &trial.solution;
-        let [far, near] = self.state.region.rows().sum_terms(|k| {
-            let acts = pressure[k].abs() + attraction[k];
-            Some([acts * own.far[k].abs(), acts * (potential[k].abs() + own.image[k])])
-        });
-        far / near
     }
 }
