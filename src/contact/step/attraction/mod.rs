@@ -5,9 +5,12 @@
 //! pass before, a tangent of the concave part, and solves the contact problem of the gap − c K s under the load + Σ s: it lowers the energy
 //! (Le Thi & Pham, Ann. Oper. Res. 133, 2005), and where no pass changes s any more, the state is stationary.
 //!
-//! Passes are extrapolated by Anderson's method (J. ACM 12, 1965) from the one before. An extrapolated s is kept only where the energy falls; else the plain pass
-//! follows. Next to a jump an inexact pass does not determine the energy: an extrapolation that leads uphill is reversed there, in place of
-//! plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state belongs to.
+//! Passes are extrapolated by Anderson's method (J. ACM 12, 1965) from the one before. An extrapolated s is kept only where the energy falls;
+//! else the plain pass follows. Next to a jump an inexact pass does not determine the energy: an extrapolation that leads uphill is reversed
+//! there, in place of plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state
+//! belongs to.
+//!
+//! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K.
 
 mod energy;
 mod near_field;
@@ -30,7 +33,7 @@ use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop};
 
-/// Greatest number of passes of a step.
+/// Greatest number of passes of a round.
 const MAX_PASSES: usize = 500;
 /// Change of s in a pass, over the greatest traction, that ends a step, in tolerances of the solver.
 const CHANGE: f64 = 100.0;
