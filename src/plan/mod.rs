@@ -102,10 +102,11 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Whether the greatest pressure of the run is promised. There are three exceptions: the pressure does not converge
+    /// Whether the greatest pressure of the run is promised. There are four exceptions: the pressure does not converge
     /// with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and under moving
-    /// edges of bodies that creep fast; the tilt or the load point changes, and the contact was small before; or it would
-    /// require more than 8192 cells along a side.
+    /// edges of bodies that creep fast; the tilt or the load point changes, and the contact was small before; it is a peak in
+    /// time between the ends of steps, which even the shortest steps tried may miss by more than their share of the error; or it
+    /// would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.mesh_error.max_pressure.is_some()
     }

@@ -155,6 +155,11 @@ pub(super) fn unseen(scene: &TrialScene<'_>, run: &Run, values: &[[f64; 2]]) -> 
     let step = run.states.partition_point(|state| state.time < at);
     let around = run.steps.iter().skip(step.saturating_sub(1)).take(3);
     let length = around.map(|(dt, _)| *dt).fold(0.0, f64::max);
+    missed(values, [at, greatest], [start, end], length)
+}
+
+/// The share of the greatest value that steps of this length miss, wherever they end between two corners.
+fn missed(values: &[[f64; 2]], [at, greatest]: [f64; 2], [start, end]: [f64; 2], length: f64) -> f64 {
     let within = values.iter().filter(|[time, _]| *time > start && (at - length..=at).contains(time));
     let shown = within.map(|&[time, before]| {
         let next = values.iter().find(|[next, _]| *next >= end.min(time + length));
@@ -165,4 +170,22 @@ pub(super) fn unseen(scene: &TrialScene<'_>, run: &Run, values: &[[f64; 2]]) -> 
 
 pub(super) fn relative(value: f64, scale: f64) -> f64 {
     if scale > 0.0 { value / scale } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::missed;
+
+    /// A parabola 1 − (t/2)² is missed most by a step that lies evenly about its vertex; a corner beside the vertex ends a step.
+    #[test]
+    fn what_steps_miss_of_a_peak() {
+        let values: Vec<[f64; 2]> =
+            (-1000..=1000).map(|k| f64::from(k) * 1e-3).map(|t| [t, 1.0 - 0.25 * t * t]).collect();
+        for length in [0.1_f64, 0.4, 0.8] {
+            let found = missed(&values, [0.0, 1.0], [-1.0, 1.0], length);
+            assert!((found - 0.0625 * length * length).abs() < 2e-3 * length, "{length}: {found}");
+            let beside = missed(&values, [0.0, 1.0], [-1.0, 0.1 * length], length);
+            assert!((beside - 0.0025 * length * length).abs() < 2e-3 * length, "{length}: {beside}");
+        }
+    }
 }
