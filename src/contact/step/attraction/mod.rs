@@ -114,7 +114,7 @@ impl AttractedStep<'_> {
     fn descend(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<bool> {
         let AttractedStep { step, wanted, stop, given: [c, _], .. } = *self;
         let (greatest, limit, before) = (self.law.traction(0.0), CHANGE * stop.tolerance, counts.convolutions);
-        own.forget();
+        own.has_last = false;
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
         let (mut change, mut exactness) = (f64::INFINITY, 0.0);
@@ -150,7 +150,6 @@ impl AttractedStep<'_> {
             let kept = found.filter(|found| plain || found.energy <= least + unsure * found.scale);
             let Some(found) = kept else {
                 // the plain pass from the last state that was kept
-                own.has_changes = false;
                 own.report.rejected += 1;
                 trial.solution.attraction.copy_from_slice(&own.last[1]);
                 (plain, wait, penalty) = (true, penalty, penalty.saturating_mul(2));
@@ -177,15 +176,13 @@ impl AttractedStep<'_> {
                 (inner, convolved) = (0.0, true);
                 continue;
             }
-            own.keep(&trial.solution.attraction, &trial.gap, greatest);
-            let next = &mut trial.solution.attraction;
+            let (s, g) = (&mut trial.solution.attraction, &trial.gap);
+            let (weight, aims_uphill) = own.extrapolation(self.state, s, g);
             // where a stable state has just vanished, plain passes would creep
-            reversed = own.has_changes && own.extrapolate(self.state, greatest, next);
-            plain = !own.has_changes || wait > 0 && !reversed;
+            reversed = aims_uphill;
+            plain = !own.has_last || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
-            if plain {
-                next.copy_from_slice(&own.last[1]);
-            }
+            own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
         }
         let (time, passes) = (step.interval.time, own.report.passes);
         Err(AdhesionError::NotConverged { time, passes, change, tolerance: limit }.into())

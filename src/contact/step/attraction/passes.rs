@@ -17,11 +17,8 @@ pub(in crate::contact) struct Passes {
     pub(super) far: Vec<f64>,
     /// s of the last pass that was kept, and s at the gap that it led to.
     pub(super) last: [Vec<f64>; 2],
-    has_last: bool,
-    /// By how much both differ from the pass before, over the greatest traction. They are directions: single precision is as good.
-    changes: [Vec<f32>; 2],
-    pub(super) has_changes: bool,
-    /// The change of s in the first pass, over the greatest traction.
+    pub(super) has_last: bool,
+    /// The change of s in the first pass, over the greatest traction: in single precision, since it is a direction.
     pub(super) first: Vec<f32>,
     pub(in crate::contact) report: PassReport,
 }
@@ -54,7 +51,7 @@ impl PassReport {
 
 impl Passes {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5 + 4 * 3;
+    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5 + 4;
 
     pub(super) fn new(cells: usize) -> Passes {
         let field = || vec![0.0; cells];
@@ -63,25 +60,8 @@ impl Passes {
             far: field(),
             last: [field(), field()],
             has_last: false,
-            changes: [vec![0.0; cells], vec![0.0; cells]],
-            has_changes: false,
             first: vec![0.0; cells],
             report: PassReport::default(),
-        }
-    }
-
-    /// Forgets all passes.
-    pub(super) fn forget(&mut self) {
-        (self.has_last, self.has_changes) = (false, false);
-    }
-
-    /// Keeps a pass from `s` to `g`.
-    pub(super) fn keep(&mut self, s: &[f64], g: &[f64], greatest: f64) {
-        self.has_changes = std::mem::replace(&mut self.has_last, true);
-        for ((change, last), now) in self.changes.iter_mut().zip(&mut self.last).zip([s, g]) {
-            let values = change.iter_mut().zip(now.iter().zip(&*last));
-            values.for_each(|(change, (now, last))| *change = ((now - last) / greatest) as f32);
-            last.copy_from_slice(now);
         }
     }
 
@@ -100,24 +80,33 @@ impl Passes {
         }
     }
 
-    /// Writes the next s: from the last pass, which led from s to g, g − γ Δg, where γ makes f = g − s less γ Δf as small as it can, Δ being the
-    /// change from the pass before. Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and the
-    /// sign of γ is reversed (saddle-free Newton method, Dauphin et al., NIPS 27, 2014). Returns whether it was.
-    pub(super) fn extrapolate(&self, state: &State, greatest: f64, next: &mut [f64]) -> bool {
-        let Passes { last: [s, g], changes: [of_s, of_g], .. } = self;
+    /// Of a pass from s to g the γ that makes f = g − s less γ Δf as small as it can, Δ being the change from the last pass: the next s is g − γ Δg.
+    /// Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and the sign of γ is reversed (saddle-free
+    /// Newton method, Dauphin et al., NIPS 27, 2014). Returns γ, and whether it is reversed; zero without a last pass.
+    pub(super) fn extrapolation(&self, state: &State, s: &[f64], g: &[f64]) -> (f64, bool) {
+        if !self.has_last {
+            return (0.0, false);
+        }
+        let [last_s, last_g] = &self.last;
         let [overlap, square, along, remaining] = state.region.rows().sum_terms(|k| {
-            let (f, of_g) = (g[k] - s[k], greatest * f64::from(of_g[k]));
-            let of_f = of_g - greatest * f64::from(of_s[k]);
+            let (f, of_g) = (g[k] - s[k], g[k] - last_g[k]);
+            let of_f = of_g - (s[k] - last_s[k]);
             Some([of_f * f, of_f * of_f, of_g * f, f * f])
         });
         let weight = if square > 0.0 { overlap / square } else { 0.0 };
         let reversed = weight * along > remaining;
-        let moved = if reversed { -weight } else { weight } * greatest;
-        for_each_band([next], |first, [next]| {
-            for (next, k) in next.iter_mut().zip(first..) {
-                *next = (g[k] - moved * f64::from(of_g[k])).clamp(0.0, greatest);
+        (if reversed { -weight } else { weight }, reversed)
+    }
+
+    /// Keeps the pass from s to g, and writes the next s, g − γ Δg between 0 and the greatest.
+    pub(super) fn go_on(&mut self, weight: f64, greatest: f64, s: &mut [f64], g: &[f64]) {
+        self.has_last = true;
+        let [last_s, last_g] = &mut self.last;
+        for_each_band([s, last_s, last_g], |first, [s, last_s, last_g]| {
+            for (((s, last_s), last_g), g) in s.iter_mut().zip(last_s).zip(last_g).zip(&g[first..]) {
+                let next = if weight == 0.0 { *g } else { (g - weight * (g - *last_g)).clamp(0.0, greatest) };
+                (*last_s, *last_g, *s) = (*s, *g, next);
             }
         });
-        reversed
     }
 }
