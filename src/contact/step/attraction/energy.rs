@@ -14,6 +14,8 @@ pub(super) struct Found {
     pub(super) scale: f64,
     /// The greatest change of s over the greatest traction.
     pub(super) change: f64,
+    /// The root mean square of c K z in contact.
+    pub(super) displaced: f64,
 }
 
 impl AttractedStep<'_> {
@@ -31,7 +33,10 @@ impl AttractedStep<'_> {
             [z - s[k], solution.potential[k] - image[k], open, wall]
         };
         let [energy, parts] = self.energy(modes.physical(motion), cell);
-        let pressed = rows.sum_of_pairs(&solution.pressure, &solution.potential, |z, v| c * z * v);
+        let [pressed, square, touching] = rows.sum_terms(|k| {
+            let (z, u) = (solution.pressure[k], c * solution.potential[k]);
+            (z > 0.0).then_some([z * u, u * u, 1.0])
+        });
         for_each_band([&mut *gap], |first, [gap]| {
             for (gap, k) in gap.iter_mut().zip(first..) {
                 let h = if solution.pressure[k] > 0.0 { 0.0 } else { height(*gap, k).max(0.0) };
@@ -40,7 +45,8 @@ impl AttractedStep<'_> {
         });
         let changes = s.iter().zip(&*gap).map(|(s, g)| (g - s).abs());
         let change = changes.fold(0.0, f64::max) / law.traction(0.0);
-        Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change }
+        let displaced = (square / touching.max(1.0)).sqrt();
+        Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change, displaced }
     }
 
     /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from z − s, K (z − s), the gap and the

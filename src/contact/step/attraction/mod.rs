@@ -40,6 +40,9 @@ const CHANGE: f64 = 100.0;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;
 const LOOSEST: f64 = 1e-3;
+/// Where the wall displaces the surfaces by more than these ranges of the attraction, passes are solved more exactly, as far as to this part.
+const EXACT: f64 = 10.0;
+const LEAST_EXACT: f64 = 1e-3;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
@@ -117,7 +120,7 @@ impl AttractedStep<'_> {
         own.has_last = false;
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
-        let (mut change, mut exactness) = (f64::INFINITY, 0.0);
+        let (mut change, mut exactness, mut exact) = (f64::INFINITY, 0.0, 1.0);
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1_usize);
         for _ in 0..MAX_PASSES {
@@ -138,7 +141,7 @@ impl AttractedStep<'_> {
                 let force = wanted.total * self.area();
                 return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
             }
-            let tolerance = inner.max(stop.tolerance);
+            let tolerance = inner.max(exact * stop.tolerance);
             let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
             add(counts, trial.solution.counts);
             if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
@@ -167,7 +170,8 @@ impl AttractedStep<'_> {
                 (wait, penalty) = (penalty, penalty.saturating_mul(2));
             }
             (least, change) = (found.energy, found.change);
-            inner = (INNER * change).min(LOOSEST);
+            exact = (EXACT * self.law.range() / found.displaced).clamp(LEAST_EXACT, 1.0);
+            inner = (INNER * exact * change).min(LOOSEST);
             if change <= limit && trial.solution.residual <= stop.tolerance {
                 return Ok(counts.convolutions > before);
             }
