@@ -34,7 +34,7 @@ use crate::parallel::for_each_band;
 use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop};
 
 /// Greatest number of passes of a round.
-const MAX_PASSES: usize = 500;
+const MAX_PASSES: usize = 2000;
 /// Change of s in a pass, over the greatest traction, that ends a step, in tolerances of the solver.
 const CHANGE: f64 = 100.0;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
