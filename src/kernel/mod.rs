@@ -315,8 +315,8 @@ impl LocalKernel {
         (inverse, work)
     }
 
-    /// The near field, [`InfluenceKernel::near`], and its work space, which has no tiles of its own: those of
-    /// [`LocalKernel::workspace`] suffice. `None` of periodic bodies and of single rows.
+    /// The near field, [`InfluenceKernel::near`], and its work space without tiles: those of [`LocalKernel::workspace`]
+    /// suffice. `None` of periodic bodies and of single rows.
     pub(crate) fn near(&self) -> Option<(LocalKernel, Workspace)> {
         let (layout, symbol) = self.whole.near(self.rows.cells(), self.folded)?;
         let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);

@@ -181,9 +181,9 @@ impl AttractedStep<'_> {
                 continue;
             }
             let (s, g) = (&mut trial.solution.attraction, &trial.gap);
-            let (weight, aims_uphill) = own.extrapolation(self.state, s, g);
+            let weight;
+            (weight, reversed) = own.extrapolation(self.state, s, g);
             // where a stable state has just vanished, plain passes would creep
-            reversed = aims_uphill;
             plain = !own.has_last || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
@@ -211,14 +211,16 @@ impl AttractedStep<'_> {
             reach = 0.0;
         }
         trial.reach = reach;
-        let guess = |now: f64, before: f64| now + reach * (now - before);
         let solution = &mut trial.solution;
         for (guesses, now, before) in [
             (&mut solution.pressure, &now.pressure, &before.pressure),
             (&mut solution.attraction, &now.attraction, &before.attraction),
             (&mut solution.potential, &now.potential, &before.potential),
         ] {
-            guesses.iter_mut().zip(now.iter().zip(before)).for_each(|(g, (&now, &before))| *g = guess(now, before));
+            for_each_band([guesses], |first, [guesses]| {
+                let states = now[first..].iter().zip(&before[first..]);
+                guesses.iter_mut().zip(states).for_each(|(guess, (now, before))| *guess = now + reach * (now - before));
+            });
         }
     }
 
