@@ -86,11 +86,9 @@ impl<C: RunContact> Run<'_, C> {
             };
             // times of two rules that agree but for rounding are one
             time = next + same;
-            Some(self.sample_within_step(next).map(|(contact, report)| Sample {
-                contact: Cow::Owned(contact),
-                report,
-                at_end: false,
-                is_asked_for: true,
+            Some(self.sample_within_step(next).map(|(contact, report)| {
+                let report = StepReport { time_error: whole.time_error, ..report };
+                Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true }
             }))
         })
     }
