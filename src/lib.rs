@@ -232,7 +232,7 @@ pub mod prelude {
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
         RoughSpec, Roughness, Shifted, Sphere, SurfaceStatistics, Wavy,
     };
-    pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+    pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
     pub use crate::output::CsvHistory;
     pub use crate::output::{Field, FrameSeries, Metadata};

@@ -279,6 +279,11 @@ impl StatesContact {
         self.states.area(self.levels.level)
     }
 
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    pub fn is_separated(&self) -> bool {
+        self.levels.level == 0.0
+    }
+
     /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
     pub fn stiffness_over_modulus(&self) -> f64 {
         self.states.stiffness(self.levels.level)
@@ -326,6 +331,10 @@ impl Contact for StatesContact {
 
     fn contact_area(&self) -> f64 {
         StatesContact::contact_area(self)
+    }
+
+    fn is_separated(&self) -> bool {
+        StatesContact::is_separated(self)
     }
 
     fn in_space(&self) -> Option<&ViscoelasticContact> {
