@@ -1,5 +1,5 @@
 /// A law of a trait that an implementation violates, with the value found and the value required.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Violation {
     /// The law.
@@ -15,6 +15,17 @@ pub struct Violation {
 }
 
 impl std::error::Error for Violation {}
+
+/// The message: a `main` that returns a [`Verdict`] prints it so. `{:#?}` prints the fields.
+impl std::fmt::Debug for Violation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Violation { law, quantity, at, found, expected } = self;
+        match f.alternate() {
+            true => f.debug_tuple("Violation").field(&(law, quantity, at, found, expected)).finish(),
+            false => write!(f, "{self}"),
+        }
+    }
+}
 
 impl std::fmt::Display for Violation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -67,7 +67,8 @@ pub enum Load {
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
     },
-    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without tension.
+    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without tension unless
+    /// surfaces attract each other.
     Spring {
         /// Stiffness k of the spring, > 0 \[N/m\].
         stiffness: f64,
