@@ -62,6 +62,7 @@ pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
+pub(crate) use stepper::impl_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 
 use builder::memory::Footprint;

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::ViscoelasticContact;
-use crate::contact::{Contact, Estimated, StepReport, Warnings};
+use crate::contact::{Estimated, StepReport, Warnings, impl_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -279,7 +278,7 @@ impl StatesContact {
         self.states.area(self.levels.level)
     }
 
-    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    /// Whether the bodies are apart.
     pub fn is_separated(&self) -> bool {
         self.levels.level == 0.0
     }
@@ -308,39 +307,7 @@ impl StatesContact {
     }
 }
 
-impl Contact for StatesContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        StatesContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn force(&self) -> f64 {
-        StatesContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        StatesContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        StatesContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        StatesContact::contact_area(self)
-    }
-
-    fn is_separated(&self) -> bool {
-        StatesContact::is_separated(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        None
-    }
-}
+impl_contact!(StatesContact, |_| None);
 
 impl fmt::Debug for StatesContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
