@@ -1,12 +1,12 @@
 //! The loads of a scene, as loads of an elastic body of unit compliance.
 
 use crate::ascending::Times;
-use crate::contact::Stepping;
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::plan::domain::Side;
 use crate::plan::levels::Curve;
 use crate::plan::trial_runs::TrialScene;
+use crate::run::Stepping;
 
 /// Number of even parts of the run at whose ends the load is sampled, and most corners of the load sampled.
 const PARTS: u32 = 64;
