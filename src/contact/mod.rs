@@ -48,7 +48,7 @@ mod window;
 pub use crate::ascending::Times;
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
-pub use crate::error::StepError;
+pub use crate::error::{StepError, Unsteady};
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
