@@ -21,7 +21,7 @@ mod builder;
 
 pub(crate) mod step;
 
-mod moving;
+pub(crate) mod moving;
 
 mod read;
 
@@ -44,7 +44,7 @@ pub(crate) mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
-pub use crate::error::StepError;
+pub use crate::error::{StepError, Unsteady};
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
