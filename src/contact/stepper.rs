@@ -117,6 +117,9 @@ pub trait Contact: Clone {
     /// Contact area \[m²\].
     fn contact_area(&self) -> f64;
 
+    /// Whether the bodies are apart.
+    fn is_separated(&self) -> bool;
+
     /// Force over contact area \[Pa\]; 0 without contact.
     fn mean_pressure(&self) -> f64 {
         let area = self.contact_area();
@@ -150,6 +153,10 @@ impl Contact for ViscoelasticContact {
 
     fn contact_area(&self) -> f64 {
         ViscoelasticContact::contact_area(self)
+    }
+
+    fn is_separated(&self) -> bool {
+        ViscoelasticContact::is_separated(self)
     }
 
     fn in_space(&self) -> Option<&ViscoelasticContact> {

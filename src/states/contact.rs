@@ -17,8 +17,8 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
-/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every
-/// step adds a group at most; groups merge where the difference of their pasts counts for nothing. A step allocates
+/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each group of one. Every
+/// step adds a group at most; groups merge where the difference of their pasts counts for nothing, so that N stays below about 30 τ/Δt. A step allocates
 /// nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
@@ -279,6 +279,11 @@ impl StatesContact {
         self.states.area(self.levels.level)
     }
 
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    pub fn is_separated(&self) -> bool {
+        self.levels.level == 0.0
+    }
+
     /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
     pub fn stiffness_over_modulus(&self) -> f64 {
         self.states.stiffness(self.levels.level)
@@ -326,6 +331,10 @@ impl Contact for StatesContact {
 
     fn contact_area(&self) -> f64 {
         StatesContact::contact_area(self)
+    }
+
+    fn is_separated(&self) -> bool {
+        StatesContact::is_separated(self)
     }
 
     fn in_space(&self) -> Option<&ViscoelasticContact> {

@@ -2,6 +2,7 @@
 
 mod attractions;
 mod laws;
+mod periodic;
 #[cfg(feature = "laws")]
 mod metamorphic;
 #[cfg(feature = "laws")]
