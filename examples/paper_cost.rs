@@ -281,7 +281,8 @@ fn causes(args: &Args) -> Result<(), Box<dyn Error>> {
         "\n{cells}² cells, {steps} steps\n| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|"
     );
     let (mut first, mut last) = (None, None);
-    let mut table = "| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|\n".to_owned();
+    let mut table =
+        "| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|\n".to_owned();
     let mut rows = Vec::new();
     for (name, settings) in chain {
         let Cost { convolutions, seconds, bytes, .. } = cost(cells, steps, settings, args.repeat)?;

@@ -25,7 +25,8 @@ pub fn row(name: &str, key: &str, rest: &str) -> Outcome {
 pub fn lines(name: &str, page: &str, key: &str) -> Outcome {
     update(name, page, true, |old| {
         let mut fresh = page.lines().filter(|line| line.starts_with(key));
-        let merged = old.lines().map(|line| if line.starts_with(key) { fresh.next().unwrap_or_default() } else { line });
+        let merged =
+            old.lines().map(|line| if line.starts_with(key) { fresh.next().unwrap_or_default() } else { line });
         merged.collect::<Vec<_>>().join("\n")
     })
 }

@@ -87,13 +87,11 @@ impl SteadySliding {
             let mut pressure = vec![0.0; m * n];
             active.iter().zip(&solution).for_each(|(&k, &p)| pressure[k] = p);
             let held: HashSet<usize> = active.iter().copied().collect();
-            let depth = |k: usize| {
-                approach - self.gap[k] - active.iter().map(|&l| influence(k, l) * pressure[l]).sum::<f64>()
-            };
+            let depth =
+                |k: usize| approach - self.gap[k] - active.iter().map(|&l| influence(k, l) * pressure[l]).sum::<f64>();
             let mut leave: Vec<(usize, f64)> = active.iter().map(|&k| (k, -pressure[k])).collect();
             leave.retain(|(_, pull)| *pull > 1e-11 * greatest);
-            let mut join: Vec<(usize, f64)> =
-                (0..m * n).filter(|k| !held.contains(k)).map(|k| (k, depth(k))).collect();
+            let mut join: Vec<(usize, f64)> = (0..m * n).filter(|k| !held.contains(k)).map(|k| (k, depth(k))).collect();
             join.retain(|(_, depth)| *depth > 1e-10 * range);
             if leave.is_empty() && join.is_empty() {
                 let lateral: f64 = pressure.iter().zip(&self.rise).map(|(p, rise)| p * rise).sum();
@@ -145,10 +143,7 @@ impl SteadySliding {
                     }
                 };
                 let square = down * down + down_i * down_i;
-                [
-                    real + c * (up * down + up_i * down_i) / square,
-                    imaginary + c * (up_i * down - up * down_i) / square,
-                ]
+                [real + c * (up * down + up_i * down_i) / square, imaginary + c * (up_i * down - up * down_i) / square]
             })
         };
         let symbols: Vec<Vec<[f64; 2]>> = (0..m)

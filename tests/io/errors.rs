@@ -199,7 +199,10 @@ fn load_tables_are_checked() {
         assert_eq!(found, expected);
     }
     let fallen = Sinusoid::new(Load::approach(3.0e-6), Load::approach(2.0e-6), 1.0);
-    assert!(matches!(fallen, Err(Error::Load(LoadError::LowAboveHigh { field: "approach", low: 3.0e-6, high: 2.0e-6 }))));
+    assert!(matches!(
+        fallen,
+        Err(Error::Load(LoadError::LowAboveHigh { field: "approach", low: 3.0e-6, high: 2.0e-6 }))
+    ));
 }
 
 #[test]

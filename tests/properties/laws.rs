@@ -265,7 +265,10 @@ fn every_history_obeys_every_law() {
         ("square", Box::new(Periodic::square(Load::force(1.0), Load::force(0.0), 0.29, 0.3).unwrap())),
         ("triangle", Box::new(Periodic::triangle(Load::force(1.0), Load::force(0.0), 0.29).unwrap())),
         ("sawtooth", Box::new(Periodic::sawtooth(Load::force(1.0), Load::force(0.0), 0.29).unwrap())),
-        ("table, repeated", Box::new(Periodic::new(&table(&[(0.1, 1.0), (0.4, 2.0), (0.4, 3.0), (0.5, 0.0)])).unwrap())),
+        (
+            "table, repeated",
+            Box::new(Periodic::new(&table(&[(0.1, 1.0), (0.4, 2.0), (0.4, 3.0), (0.5, 0.0)])).unwrap()),
+        ),
         ("Sinusoid", Box::new(Sinusoid::new(Load::approach(-1e-6), Load::approach(1e-6), 7.0).unwrap())),
         ("FnHistory", Box::new(FnHistory::new(|t: f64| Load::force((1.0 + t).ln_1p())))),
         (
@@ -322,7 +325,10 @@ fn every_law_of_histories_can_be_broken() {
     let nan = broken((one, |t| if t == 0.5 { f64::NAN } else { 1.0 }, none));
     assert_eq!((nan.law, time(&nan)), ("every load is one that a step accepts", 0.5));
     let standing = broken((one, one, |after| (after == 0.25).then_some(0.25)));
-    assert_eq!(standing.to_string(), "breakpoints increase: breakpoint at t = 2.5e-1 s is 2.5e-1, expected more than 2.5e-1");
+    assert_eq!(
+        standing.to_string(),
+        "breakpoints increase: breakpoint at t = 2.5e-1 s is 2.5e-1, expected more than 2.5e-1"
+    );
     assert_eq!(broken((one, one, Some)).law, "breakpoints increase");
     assert_eq!(broken((one, one, |_| Some(f64::INFINITY))).law, "breakpoints increase");
     let fleeing = broken((one, one, |after| Some(after + 1.0)));

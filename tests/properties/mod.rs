@@ -2,10 +2,10 @@
 
 mod attractions;
 mod laws;
-mod periodic;
 #[cfg(feature = "laws")]
 mod metamorphic;
 #[cfg(feature = "laws")]
 mod metamorphic_time;
+mod periodic;
 #[cfg(feature = "npy")]
 mod ranks;

@@ -59,7 +59,8 @@ fn bodies_without_attraction_are_apart_at_once() {
             contact.is_separated()
         })
     }
-    let (sphere, body) = (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()));
+    let (sphere, body) =
+        (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()));
     let builder = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap()).geometry(&sphere);
     assert_eq!(parted(builder.material(body.clone()).build().unwrap()), [false, true, false]);
     let states = ElasticStates::sphere(10.0e-3).unwrap();

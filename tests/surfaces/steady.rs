@@ -55,7 +55,13 @@ impl Scene {
         let terms: Vec<(f64, f64)> = compliances
             .iter()
             .map(|&c| {
-                let l = if easy { draws.scale(0.02 * longest, longest) } else if draws.chance(0.4) { draws.scale(2.0, length) } else { draws.scale(length, longest) };
+                let l = if easy {
+                    draws.scale(0.02 * longest, longest)
+                } else if draws.chance(0.4) {
+                    draws.scale(2.0, length)
+                } else {
+                    draws.scale(length, longest)
+                };
                 reach = f64::max(reach, l);
                 (c, l)
             })
@@ -125,7 +131,10 @@ impl Scene {
         };
         let terms: Vec<(f64, f64)> = self.terms.iter().map(|&(c, l)| (4.0 * GLASSY * c, l)).collect();
         let body = GeneralizedKelvin::new(4.0 * GLASSY, self.fluidity, &terms).unwrap();
-        let settings = Settings::default().with_frame(Frame::Indenter).with_tolerance(1e-3 * self.tolerance).with_edge(viscocontact::contact::Edge::Allow);
+        let settings = Settings::default()
+            .with_frame(Frame::Indenter)
+            .with_tolerance(1e-3 * self.tolerance)
+            .with_edge(viscocontact::contact::Edge::Allow);
         let mut contact = ViscoelasticContact::builder(self.grid.clone())
             .geometry(&*self.shape)
             .material(Material::incompressible(body))
@@ -199,7 +208,10 @@ fn random_motions_that_arrive_are_steady() {
             [error, mesh]
         };
         let [of_friction, of_approach] = [error(friction, |s| s.friction), error(contact.approach(), |s| s.approach)];
-        println!("{k}: {took:.2} s {ended:?} friction {friction:.3e} off {:.1e} {:.1e} approach {:.1e} {:.1e} | {}", of_friction[0], of_friction[1], of_approach[0], of_approach[1], scene.about);
+        println!(
+            "{k}: {took:.2} s {ended:?} friction {friction:.3e} off {:.1e} {:.1e} approach {:.1e} {:.1e} | {}",
+            of_friction[0], of_friction[1], of_approach[0], of_approach[1], scene.about
+        );
         arrived += usize::from(ended.is_ok());
     }
     println!("{arrived} of {scenes} arrived");
@@ -225,7 +237,10 @@ fn random_easy_motions_arrive() {
             [value, of(&linear)].map(|value| (value / of(&exact) - 1.0).abs())
         };
         let [of_friction, of_approach] = [error(friction, |s| s.friction), error(contact.approach(), |s| s.approach)];
-        println!("{k}: {took:.2} s {ended:?} friction {friction:.3e} off {:.1e} {:.1e} approach {:.1e} {:.1e} | {}", of_friction[0], of_friction[1], of_approach[0], of_approach[1], scene.about);
+        println!(
+            "{k}: {took:.2} s {ended:?} friction {friction:.3e} off {:.1e} {:.1e} approach {:.1e} {:.1e} | {}",
+            of_friction[0], of_friction[1], of_approach[0], of_approach[1], scene.about
+        );
         arrived += usize::from(ended.is_ok());
     }
     println!("{arrived} of {scenes} arrived");

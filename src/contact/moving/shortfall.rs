@@ -123,8 +123,11 @@ impl Approaching {
         for (k, &p) in current.solution.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             let m = k / unit % count;
             let at = |other: usize| displacement[k + other * unit - m * unit];
-            let [before, after] =
-                if periodic { [m + count - 1, m + 1].map(|m| m % count) } else { [m.max(1) - 1, (m + 1).min(count - 1)] };
+            let [before, after] = if periodic {
+                [m + count - 1, m + 1].map(|m| m % count)
+            } else {
+                [m.max(1) - 1, (m + 1).min(count - 1)]
+            };
             change.lift += p * measure(displacement[k]);
             change.slope += p * measure((at(after) - at(before)) / twice);
         }
