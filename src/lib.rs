@@ -111,7 +111,7 @@
 //!
 //! # Features
 //!
-//! `checkpoint`: saves the state to a file and resumes from it ([`contact::Run`]`::autosave_to`,
+//! `checkpoint`: saves the state to a file and resumes from it ([`run::Run`]`::autosave_to`,
 //! `ViscoelasticContact::save` and `resume`).
 //!
 //! `laws`: `proptest` strategies for testing your own rheologies, geometries and load histories (`laws`).
@@ -123,7 +123,7 @@
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
 //! `serde`: `Serialize` and `Deserialize` for the description of a run, [`load::Load`], [`contact::Settings`],
-//! [`contact::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
+//! [`run::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
 //! statistics. Part of `checkpoint`.
 //!
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
@@ -199,6 +199,7 @@ pub mod plot;
 mod quadrature;
 pub mod rheology;
 mod rounded;
+pub mod run;
 mod solver;
 pub mod states;
 mod sum;
@@ -224,8 +225,8 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Contact, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepError, StepReport,
-        Stepping, TimeRule, Times, ViscoelasticContact, Warnings,
+        BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, Solver, StepError, StepReport, TimeRule,
+        ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
@@ -240,6 +241,7 @@ pub mod prelude {
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Zener,
     };
+    pub use crate::run::{Run, SteadyMotion, Stepping, Times};
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }

@@ -21,7 +21,7 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
-    scene: Arc<Scene>,
+    pub(super) scene: Arc<Scene>,
     pub(super) states: Arc<ElasticStates>,
     pub(super) levels: Levels,
     pub(super) time: f64,
@@ -30,12 +30,14 @@ pub struct StatesContact {
 
 /// What steps do not change.
 #[derive(Clone)]
-struct Scene {
+pub(super) struct Scene {
+    /// The states of the sweep, without those added in steps.
+    pub(super) swept: Arc<ElasticStates>,
     /// Solves the state of each step.
     elastic: Option<Arc<Mutex<ElasticContact>>>,
-    temperature: Option<TemperatureHistory>,
+    pub(super) temperature: Option<TemperatureHistory>,
     known_until: f64,
-    interpolant: Interpolant,
+    pub(super) interpolant: Interpolant,
 }
 
 impl StatesContact {
@@ -50,8 +52,9 @@ impl StatesContact {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
-        let (states, known_until) = (Arc::clone(states), material.known_until());
-        let scene = Scene { elastic: None, temperature: None, known_until, interpolant: Interpolant::CorrectedLinear };
+        let (states, known_until, interpolant) =
+            (Arc::clone(states), material.known_until(), Interpolant::CorrectedLinear);
+        let scene = Scene { swept: Arc::clone(&states), elastic: None, temperature: None, known_until, interpolant };
         let levels = Levels::new(ExponentialRule::new(&creep));
         Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
     }
@@ -85,7 +88,7 @@ impl StatesContact {
     /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
     /// [`Builder::build`](crate::contact::Builder::build).
     pub fn with_exact_states(mut self) -> Result<StatesContact> {
-        let elastic = self.states.elastic_contact()?;
+        let elastic = self.scene.swept.elastic_contact()?;
         Arc::make_mut(&mut self.scene).elastic = Some(Arc::new(Mutex::new(elastic)));
         Ok(self)
     }
