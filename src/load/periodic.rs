@@ -56,7 +56,7 @@ impl Periodic {
     /// # Errors
     /// As [`Periodic::square`].
     pub fn triangle(from: Load, to: Load, period: f64) -> Result<Periodic> {
-        Periodic::new(&[(0.0, from), (0.5 * period, to), (period, from)])
+        Periodic::new(&[(0.0, from), (0.5 * positive("period", period)?, to), (period, from)])
     }
 
     /// From t = 0 on linearly `from` one load `to` another in each `period` \[s\], and back at once.
@@ -64,8 +64,9 @@ impl Periodic {
     /// # Errors
     /// As [`Periodic::square`].
     pub fn sawtooth(from: Load, to: Load, period: f64) -> Result<Periodic> {
-        Periodic::new(&[(0.0, from), (period, to)])
+        Periodic::new(&[(0.0, from), (positive("period", period)?, to)])
     }
+
     /// The time `phase` of the period number `n`. The sum is rounded after it is taken, so that times never decrease from entry to entry.
     fn time(&self, n: f64, phase: f64) -> f64 {
         n.mul_add(self.length, phase) + self.start

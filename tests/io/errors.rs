@@ -193,6 +193,8 @@ fn load_tables_are_checked() {
         (field(Periodic::new(&[at(1.0, 1.0), at(1.0, 2.0)])), "period"),
         (field(Periodic::square(load, load, 1.0, 1.0)), "duty cycle"),
         (field(Periodic::square(load, load, f64::NAN, 0.5)), "period"),
+        (field(Periodic::triangle(load, load, -1.0)), "period"),
+        (field(Periodic::sawtooth(load, load, f64::INFINITY)), "period"),
         (field(StepLoad::new(Load::force(f64::NAN))), "normal force"),
         (field(FnHistory::new(|_| Load::force(1.0)).with_breakpoints(&[f64::NAN])), "breakpoint"),
     ] {
