@@ -21,7 +21,7 @@ mod builder;
 
 pub(crate) mod step;
 
-mod moving;
+pub(crate) mod moving;
 
 mod read;
 
@@ -44,7 +44,7 @@ pub(crate) mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
-pub use crate::error::StepError;
+pub use crate::error::{StepError, Unsteady};
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
@@ -54,6 +54,7 @@ pub use read::stress::StressHistory;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
+pub(crate) use stepper::impl_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 
 use builder::memory::Footprint;

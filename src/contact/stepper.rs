@@ -117,6 +117,9 @@ pub trait Contact: Clone {
     /// Contact area \[m²\].
     fn contact_area(&self) -> f64;
 
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    fn is_separated(&self) -> bool;
+
     /// Force over contact area \[Pa\]; 0 without contact.
     fn mean_pressure(&self) -> f64 {
         let area = self.contact_area();
@@ -127,32 +130,26 @@ pub trait Contact: Clone {
     fn in_space(&self) -> Option<&ViscoelasticContact>;
 }
 
-impl Contact for ViscoelasticContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        ViscoelasticContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        ViscoelasticContact::time(self)
-    }
-
-    fn force(&self) -> f64 {
-        ViscoelasticContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        ViscoelasticContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        ViscoelasticContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        ViscoelasticContact::contact_area(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        Some(self)
-    }
+/// Implements [`Contact`] by methods of the type of the same names.
+macro_rules! impl_contact {
+    ($contact:ty, $in_space:expr) => {
+        impl_contact!($contact, $in_space; time -> f64, force -> f64, approach -> f64, tilt -> [f64; 2], contact_area -> f64,
+            is_separated -> bool);
+    };
+    ($contact:ty, $in_space:expr; $($read:ident -> $value:ty),*) => {
+        impl $crate::contact::Contact for $contact {
+            fn step(&mut self, dt: f64, load: $crate::load::Load) -> $crate::Result<$crate::contact::StepReport> {
+                <$contact>::step(self, dt, load)
+            }
+            $(fn $read(&self) -> $value {
+                <$contact>::$read(self)
+            })*
+            fn in_space(&self) -> Option<&$crate::ViscoelasticContact> {
+                ($in_space)(self)
+            }
+        }
+    };
 }
+pub(crate) use impl_contact;
+
+impl_contact!(ViscoelasticContact, Some);

@@ -17,6 +17,7 @@ mod states;
 mod step;
 mod table;
 mod text;
+mod unsteady;
 mod violation;
 
 pub use adhesion::AdhesionError;
@@ -37,6 +38,7 @@ pub use states::StatesError;
 pub use step::StepError;
 pub use table::{Place, TableError};
 pub use text::TextError;
+pub use unsteady::Unsteady;
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};

@@ -181,13 +181,6 @@ impl TrialScene<'_> {
         corners.into_iter().flatten().fold(f64::INFINITY, f64::min)
     }
 
-    /// The compliance at the end of the run, at its start where it is infinite then.
-    pub(super) fn softest_compliance(&self) -> Result<f64> {
-        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
-        let softest = self.material.contact_compliance(creeping.min(self.material.known_until()));
-        Ok(if softest.is_finite() { softest } else { self.material.contact_compliance(0.0) })
-    }
-
     /// The kernel on a grid, made once.
     fn kernel(&self, grid: &Grid) -> Result<Arc<InfluenceKernel>> {
         if let Some(made) = self.kernels.borrow().iter().find(|kernel| kernel.grid() == grid) {

@@ -19,6 +19,7 @@ use crate::geometry::Gap;
 use crate::parallel::Rows;
 use fields::{FieldWriter, read_state};
 use format::{Input, Output};
+pub(crate) use saved::check_clocks;
 use saved::{Saved, check_fields, malformed, moved_indenter};
 use scene_fingerprint::{Built, difference};
 
