@@ -49,7 +49,7 @@ pub use wavy::Wavy;
 
 use std::fmt::Debug;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, UserError};
 use crate::{Grid, memory};
 
 /// The gap between the undeformed bodies at zero approach.
@@ -101,6 +101,11 @@ pub trait Geometry: Debug + Send + Sync {
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         fill_by_points(self, grid, by, gap);
     }
+
+    /// Why a value was none, of a gap that can fail ([`FnGeometry::fallible`]): such a value is NaN.
+    fn failure(&self) -> Option<UserError> {
+        None
+    }
 }
 
 /// Writes the gap of the shifted shape at the cell centres, one by one.
@@ -129,6 +134,10 @@ macro_rules! forward_geometry {
 
             fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
                 (**self).fill_gap_at(grid, by, gap);
+            }
+
+            fn failure(&self) -> Option<UserError> {
+                (**self).failure()
             }
         }
     )*};
@@ -161,7 +170,7 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     if !gap.is_empty() {
         geometry.fill_gap(grid, &mut gap);
     }
-    Ok(gap)
+    geometry.failure().map_or(Ok(gap), |failure| Err(failure.into()))
 }
 
 /// Refuses NaN and −∞.

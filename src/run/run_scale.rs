@@ -67,8 +67,8 @@ impl RunScale {
         times.sort_by(f64::total_cmp);
         let mut last = None;
         for time in times {
-            for load in [LoadHistory::before, LoadHistory::at] {
-                let load = load(history, time).validated_at(time, scene.attraction.is_some())?;
+            for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
+                let load = load(history, time, scene.attraction.is_some())?;
                 scale.include(&load);
                 let is_force = |load: &Load| matches!(load, Load::Force { .. });
                 let before = last.replace(load);
@@ -237,8 +237,8 @@ impl Rises {
     fn new(scene: &Scene, history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Rises> {
         let (mut rises, mut again, mut last) = (Rises::default(), false, None);
         for &time in times {
-            for load in [LoadHistory::before, LoadHistory::at] {
-                let approach = match load(history, time).validated_at(time, scene.attraction.is_some())? {
+            for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
+                let approach = match load(history, time, scene.attraction.is_some())? {
                     Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth,
                     Load::Force { .. } => {
                         // a force may have receded, too

@@ -93,7 +93,7 @@ pub(crate) fn sampled(history: &dyn LoadHistory, until: f64, parts: u32) -> Resu
     let mut all = Vec::new();
     for k in 0..=parts {
         let time = until * f64::from(k) / f64::from(parts);
-        all.push(history.at(time).validated_at(time, false)?);
+        all.push(history.checked_at(time, false)?);
     }
     let mut corner = 0.0;
     for _ in 0..MAX_CORNERS {
@@ -101,10 +101,7 @@ pub(crate) fn sampled(history: &dyn LoadHistory, until: f64, parts: u32) -> Resu
             Some(next) if next > corner && next <= until => corner = next,
             _ => break,
         }
-        all.extend([
-            history.before(corner).validated_at(corner, false)?,
-            history.at(corner).validated_at(corner, false)?,
-        ]);
+        all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
     }
     Ok(all)
 }
