@@ -54,3 +54,11 @@ pub use series::{Format, FrameSeries};
 #[cfg(feature = "npy")]
 pub use states::{read_states, write_states};
 pub use stress::write_stress;
+
+/// What becomes of the files of an earlier run.
+#[derive(Clone, Copy, PartialEq)]
+enum Earlier {
+    Refused,
+    Replaced,
+    Continued,
+}

@@ -1,9 +1,10 @@
 //! Archives in the NPZ format of NumPy.
 
-use std::io::{self, BufWriter, Seek, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, Write};
 
-use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 use crate::file::{npy, write_numbers};
 use crate::output::Metadata;
@@ -30,6 +31,14 @@ pub(super) fn write_frame(
     archive.add("tilt", &[2], &contact.tilt())?;
     archive.add("contact_area", &[], &[area])?;
     archive.finish(&metadata.json(contact))
+}
+
+/// The time of a frame.
+pub(super) fn time_of(frame: File) -> io::Result<f64> {
+    let mut bytes = Vec::new();
+    ZipArchive::new(frame)?.by_name("time.npy")?.read_to_end(&mut bytes)?;
+    let number = bytes.last_chunk().ok_or(io::ErrorKind::InvalidData)?;
+    Ok(f64::from_le_bytes(*number))
 }
 
 /// An NPZ archive being written.

@@ -12,7 +12,8 @@ use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 use crate::common::histories::{self, Scene};
 use crate::common::runs::scenes;
-use crate::common::{Draws, RandomScene, Ratios, builder_on, elastic, from_environment};
+use crate::common::scene::Scene as RandomScene;
+use crate::common::{Draws, Features, Ratios, builder_on, elastic, from_environment};
 
 /// A history that is one until a time, and another from then on.
 #[derive(Debug)]
@@ -328,7 +329,7 @@ struct Inside {
 impl Inside {
     fn new(seed: u64, number: u64) -> Inside {
         let mut draws = Draws::new(seed.wrapping_mul(7_777_777).wrapping_add(number));
-        let scene = RandomScene::new(seed, number);
+        let scene = RandomScene::draw(seed, number, Features::Any);
         let (mut kernel, mut temperature, mut what) = (None, None, "");
         match draws.below(5) {
             0 => {

@@ -6,7 +6,7 @@
 //! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes.
 
 use crate::common::watched_runs::watch;
-use crate::common::{RandomScene, Ratios, Truth, from_environment};
+use crate::common::{Features, Ratios, Scene, Truth, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -31,7 +31,7 @@ fn errors_are_honest_on_random_returns() {
     let [mut of_budget, mut of_pressure] = [Ratios::default(), Ratios::default()];
     let (mut problems, mut unjudged) = (0, 0);
     for number in first..first + scenes {
-        let scene = RandomScene::returning(seed, number);
+        let scene = Scene::draw(seed, number, Features::Returning);
         let mut truth = Truth::of(&scene, 0.1 * tolerances[tolerances.len() - 1], most_steps).unwrap();
         for (&tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
             let mut contact = scene.contact(Settings::default().tolerance());
@@ -79,13 +79,13 @@ fn step_loads_and_short_ramps_are_honest() {
     let [wanted, seed] =
         [("STEPS_SCENES", 6), ("STEPS_SEED", 2)].map(|(name, default)| from_environment(name, default));
     let mut ratios: [Ratios; 4] = Default::default();
-    let is_step = |scene: &RandomScene| {
+    let is_step = |scene: &Scene| {
         let creep = scene.body.material.contact_spectrum().unwrap().unwrap();
         scene.history.name.starts_with("step") && creep.terms().len() == 1
     };
-    let is_ramp = |scene: &RandomScene| scene.history.name.starts_with("ramp, hold");
+    let is_ramp = |scene: &Scene| scene.history.name.starts_with("ramp, hold");
     let (mut steps, mut ramps) = (0, 0);
-    for scene in (0..).map(|number| RandomScene::returning(seed, number)) {
+    for scene in (0..).map(|number| Scene::draw(seed, number, Features::Returning)) {
         let (step, ramp) = (is_step(&scene) && steps < wanted, is_ramp(&scene) && ramps < wanted);
         (steps, ramps) = (steps + u64::from(step), ramps + u64::from(ramp));
         for tolerance in [1e-2, 1e-3, 1e-4].into_iter().filter(|&tolerance| ramp || step && tolerance == 1e-4) {

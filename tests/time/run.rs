@@ -1,15 +1,17 @@
 //! Does every contact keep the same promises along a run? Each behaviour goes through a contact in space and one on elastic states.
 
 use std::error::Error as _;
+use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use viscocontact::Error;
 use viscocontact::load::LoadError;
+use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::run::RunContact;
 
-use crate::common::draws::Draws;
+use crate::common::{Draws, Temporary};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -191,7 +193,7 @@ behaviours! {
             while let Some(report) = run.next_step().unwrap() {
                 if run.events()[0].is_met() {
                     parted += 1;
-                    assert!(report.force == 0.0 && before > 0.0);
+                    assert!(report.force <= 1e-4 * before && before > 0.0, "{:e} {before}", report.force);
                     let just_before = run.within_step(last + (1.0 - 1e-4) * (report.time - last)).unwrap();
                     assert!(just_before.force() > 0.0, "{:e}", just_before.force());
                 }
@@ -219,11 +221,10 @@ behaviours! {
                     while run.next_step().unwrap().is_some() {}
                     let angle = ((level - mean) / amplitude).asin() / std::f64::consts::TAU;
                     let phase = if let Crossing::Up(_) = crossing { angle } else { 0.5 - angle };
-                    let expected: Vec<f64> =
-                        (-1..10).map(|k| f64::from(k) + phase).filter(|t| *t > 1e-9 && *t <= until + 1e-9).collect();
-                    let found = run.events()[0].times();
-                    // the sine may begin at the value itself
-                    let found: Vec<f64> = found.iter().copied().filter(|time| *time > 1e-9).collect();
+                    // the sine may begin and end at the value itself
+                    let inside = |time: &f64| *time > 1e-5 && *time < until - 1e-5;
+                    let expected: Vec<f64> = (-1..10).map(|k| f64::from(k) + phase).filter(inside).collect();
+                    let found: Vec<f64> = run.events()[0].times().iter().copied().filter(inside).collect();
                     assert_eq!(found.len(), expected.len(), "{dt} {crossing:?}: {found:?} {expected:?}");
                     for (found, expected) in found.iter().zip(&expected) {
                         assert!((found - expected).abs() <= 2e-6 * dt, "{dt} {crossing:?}: {found} {expected}");
@@ -249,7 +250,9 @@ behaviours! {
                     at = run.contact().approach();
                 }
             }
-            assert!((at - value).abs() <= 1e-6 * value, "{at} {value}");
+            // an adaptive step to the event is another step than the one in which it was found
+            let allowed = if let Stepping::Adaptive { tolerance } = stepping { tolerance } else { 1e-6 };
+            assert!((at - value).abs() <= allowed * value, "{at} {value}");
             let counts: Vec<usize> = run.events().iter().map(|event| event.times().len()).collect();
             assert_eq!(counts, [1, 0, 0, 0]);
             assert!(run.events()[3].is_beyond() && !run.events()[2].is_beyond());
@@ -297,5 +300,72 @@ fn errors_of_gaps_and_creep_come_out_as_themselves() {
         let error = build(gap, creep).unwrap_err();
         assert!(matches!(error, Error::User(_)), "{error}");
         assert!(error.source().unwrap().is::<std::num::ParseFloatError>());
+    }
+}
+
+/// A run that is interrupted at any step and resumed writes the files of one that is not: rows and frames after the save are cut off.
+#[test]
+fn a_resumed_run_continues_its_files() {
+    let load = PiecewiseLinear::new(&[
+        (0.0, Load::force(0.2)),
+        (0.5, Load::force(0.6)),
+        (0.5, Load::force(0.3)),
+        (1.0, Load::force(0.3)),
+    ])
+    .unwrap();
+    let (metadata, fields) = (Metadata::new("Ball on rubber"), [Field::Pressure]);
+    for format in [Format::Vtk, Format::Npz] {
+        for stepping in STEPPINGS {
+            let folder = Temporary::folder("resumed-run");
+            // runs to the end, or saves before the step `interrupted` and takes some more
+            let go_on = |name: &str, interrupted: Option<usize>| {
+                let (saved, table, frames) =
+                    (folder.join(format!("{name}.state")), folder.join(format!("{name}.csv")), folder.join(name));
+                let mut contact = in_space();
+                if saved.exists() {
+                    contact.resume(&saved).unwrap();
+                }
+                let mut table = CsvHistory::create_or_continue(table, &metadata, &contact, &[]).unwrap();
+                let mut series =
+                    FrameSeries::create_or_continue(frames, format, &metadata, &fields, contact.time()).unwrap();
+                let mut run = contact.follow(&load, stepping, 1.0);
+                let mut steps = run.progress().steps as usize;
+                loop {
+                    if Some(steps) == interrupted {
+                        run.save(&saved).unwrap();
+                    }
+                    let Some(report) = run.next_step().unwrap() else { break };
+                    steps += 1;
+                    table.record(run.contact(), &report, &[]).unwrap();
+                    series.record(run.contact()).unwrap();
+                    if interrupted.is_some_and(|step| steps == step + 3) {
+                        break;
+                    }
+                }
+                assert_eq!(run.progress().steps as usize, steps);
+                run.progress()
+            };
+            let whole = go_on("whole", None);
+            assert!(whole.steps > 8);
+            for step in 1..whole.steps as usize {
+                let name = format!("resumed-{step}");
+                go_on(&name, Some(step));
+                assert_eq!(go_on(&name, None), whole);
+                let read = |path: String| fs::read(folder.join(path)).unwrap();
+                assert_eq!(read(format!("{name}.csv")), read("whole.csv".into()), "after {step} steps");
+                let frames = |name: &str| {
+                    let mut paths: Vec<_> =
+                        fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+                    paths.sort();
+                    paths
+                };
+                assert_eq!(frames(&name), frames("whole"));
+                for frame in frames(&name) {
+                    let of = |name: &str| fs::read(folder.join(name).join(&frame)).unwrap();
+                    // times at which the load jumps have two frames: the one after the jump is written again
+                    assert_eq!(of(&name).len(), of("whole").len(), "{frame:?} after {step} steps");
+                }
+            }
+        }
     }
 }
