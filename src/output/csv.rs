@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::contact::{Contact, StepReport};
 use crate::error::{Result, exact_length};
 use crate::file::{Appending, check_regular, failed};
-use crate::output::{Earlier, Metadata};
+use crate::output::{Earlier, Kept, Metadata};
 
 /// The names of the columns of every history.
 const COLUMNS: [&str; 17] = [
@@ -200,20 +200,14 @@ impl CsvHistory {
 fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<Appending<File>> {
     let file = File::options().read(true).write(true).open(path)?;
     let mut lines = io::BufReader::new(&file);
-    // rows of the time of the contact may come before a jump and after it
-    let (mut number, mut end, mut earlier, mut same, mut line) = (0, 0, 0, None, String::new());
+    let (mut number, mut end, mut kept, mut line) = (0, 0, Kept::default(), String::new());
     while lines.read_line(&mut line)? > 0 && line.ends_with('\n') {
         end += line.len() as u64;
         let numbers: Vec<f64> = line.split(',').take(4).filter_map(|cell| cell.parse().ok()).collect();
         match (number, &numbers[..]) {
-            (0, _) if line.starts_with("# ") => earlier = end,
-            (1, _) if line.trim_end() == names => earlier = end,
-            (2.., [time, ..]) if *time < contact.time() => earlier = end,
-            (2.., [time, _, force, approach]) if *time == contact.time() => {
-                if [*force, *approach] == [contact.force(), contact.approach()] {
-                    same = Some(end);
-                }
-            }
+            (0, _) if line.starts_with("# ") => kept.earlier = end,
+            (1, _) if line.trim_end() == names => kept.earlier = end,
+            (2.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], contact) => {}
             _ => break,
         }
         number += 1;
@@ -223,7 +217,7 @@ fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<App
         let reason = "it is no history with these columns: CsvHistory::create_or_replace replaces it";
         return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
     }
-    Appending::after(file, same.unwrap_or(earlier))
+    Appending::after(file, kept.end())
 }
 
 /// The error of a file that exists names the way to replace it.

@@ -33,12 +33,15 @@ pub(super) fn write_frame(
     archive.finish(&metadata.json(contact))
 }
 
-/// The time of a frame.
-pub(super) fn time_of(frame: File) -> io::Result<f64> {
-    let mut bytes = Vec::new();
-    ZipArchive::new(frame)?.by_name("time.npy")?.read_to_end(&mut bytes)?;
-    let number = bytes.last_chunk().ok_or(io::ErrorKind::InvalidData)?;
-    Ok(f64::from_le_bytes(*number))
+/// Time, force and approach of a frame.
+pub(super) fn state_of(frame: File) -> io::Result<[f64; 3]> {
+    let (mut archive, mut state) = (ZipArchive::new(frame)?, [0.0; 3]);
+    for (number, name) in state.iter_mut().zip(["time.npy", "force.npy", "approach.npy"]) {
+        let mut bytes = Vec::new();
+        archive.by_name(name)?.read_to_end(&mut bytes)?;
+        *number = f64::from_le_bytes(*bytes.last_chunk().ok_or(io::ErrorKind::InvalidData)?);
+    }
+    Ok(state)
 }
 
 /// An NPZ archive being written.

@@ -11,7 +11,7 @@ use crate::output::field_values::write_fields;
 #[cfg(feature = "npy")]
 use crate::output::npz;
 use crate::output::vtk;
-use crate::output::{Earlier, Field, Metadata};
+use crate::output::{Earlier, Field, Kept, Metadata};
 
 /// Name of the file that lists the frames of VTK.
 const COLLECTION: &str = "series.pvd";
@@ -125,7 +125,7 @@ impl FrameSeries {
         metadata: &Metadata,
         fields: &[Field],
     ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Refused, 0.0)
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Refused, None)
     }
 
     /// [`FrameSeries::create`] in the place of an earlier series, whose frames are removed first.
@@ -138,11 +138,11 @@ impl FrameSeries {
         metadata: &Metadata,
         fields: &[Field],
     ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Replaced, 0.0)
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Replaced, None)
     }
 
-    /// [`FrameSeries::create`], or an earlier series in `folder` continued: frames of states later than the time `until` \[s\] are
-    /// removed. Give the time of a contact that has been resumed from a checkpoint.
+    /// [`FrameSeries::create`], or an earlier series in `folder` continued after the state of `contact`: frames of later states are
+    /// removed. So a run that is resumed from a checkpoint, or begins, writes one series.
     ///
     /// # Errors
     /// As [`FrameSeries::create_or_replace`], or if a frame cannot be read.
@@ -151,9 +151,9 @@ impl FrameSeries {
         format: Format,
         metadata: &Metadata,
         fields: &[Field],
-        until: f64,
+        contact: &ViscoelasticContact,
     ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Continued, until)
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Continued, Some(contact))
     }
 
     fn begin(
@@ -161,7 +161,7 @@ impl FrameSeries {
         format: Format,
         (metadata, fields): (&Metadata, &[Field]),
         earlier: Earlier,
-        until: f64,
+        contact: Option<&ViscoelasticContact>,
     ) -> Result<FrameSeries> {
         let unusable = |error: io::Error| failed(folder, error);
         let refused = |kind, reason: String| Err(unusable(io::Error::new(kind, reason)));
@@ -171,8 +171,8 @@ impl FrameSeries {
         }
         fs::create_dir_all(folder).map_err(unusable)?;
         let (mut written, mut entries) = (0, String::new());
-        if earlier == Earlier::Continued {
-            (written, entries) = kept(folder, format, until).map_err(unusable)?;
+        if let Some(contact) = contact {
+            (written, entries) = kept(folder, format, contact).map_err(unusable)?;
         }
         let kept: Vec<String> = (0..written).map(|number| format.frame(number)).collect();
         for entry in fs::read_dir(folder).map_err(unusable)? {
@@ -215,9 +215,7 @@ impl FrameSeries {
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
         if format.has_collection() {
-            let time = contact.time();
-            let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
-            let entries = format!("{}{entry}", self.entries);
+            let entries = format!("{}{}", self.entries, entry(contact.time(), &name));
             contact.by_one_rank(|| {
                 replace(&folder.join(COLLECTION), |out| {
                     write!(
@@ -239,25 +237,25 @@ impl FrameSeries {
     }
 }
 
-/// The number of the frames of an earlier series up to the time `until`, and their entries in the collection.
-fn kept(folder: &Path, format: Format, until: f64) -> io::Result<(usize, String)> {
-    if format.has_collection() {
-        let list = match fs::read_to_string(folder.join(COLLECTION)) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
-            list => list?,
+/// The number of the frames of an earlier series up to the state of a contact, and their entries in the collection.
+fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> io::Result<(usize, String)> {
+    let (mut kept, mut entries) = (Kept::default(), Vec::new());
+    while let Ok(frame) = fs::File::open(folder.join(format.frame(entries.len()))) {
+        let state = match format {
+            #[cfg(feature = "npy")]
+            Format::Npz => npz::state_of(frame)?,
+            Format::Vtk => vtk::state_of(frame)?,
         };
-        let time = |entry: &&str| entry.split('"').nth(1).and_then(|time| time.parse::<f64>().ok());
-        let entries = list.split_inclusive('\n').filter(|line| line.contains("<DataSet "));
-        let entries: Vec<&str> = entries.take_while(|entry| time(entry).is_some_and(|time| time <= until)).collect();
-        return Ok((entries.len(), entries.concat()));
-    }
-    let mut count = 0;
-    #[cfg(feature = "npy")]
-    while let Ok(frame) = fs::File::open(folder.join(format.frame(count))) {
-        if npz::time_of(frame)? > until {
+        entries.push(entry(state[0], &format.frame(entries.len())));
+        if !kept.includes(entries.len() as u64, state, contact) {
             break;
         }
-        count += 1;
     }
-    Ok((count, String::new()))
+    entries.truncate(kept.end() as usize);
+    Ok((entries.len(), entries.concat()))
+}
+
+/// The entry of a frame in the collection.
+fn entry(time: f64, name: &str) -> String {
+    format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n")
 }
