@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
+use crate::contact::{Builder, StepReport, ViscoelasticContact, Warnings};
 use crate::error::{Error, Result, StepError};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory, Tilt};
@@ -11,6 +11,7 @@ use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
 use crate::plan::loads::Loads;
 use crate::rheology::{Elastic, Material, TemperatureHistory};
+use crate::run::Stepping;
 use crate::states::Pressed;
 use crate::{Grid, InfluenceKernel};
 

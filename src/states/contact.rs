@@ -3,8 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::ViscoelasticContact;
-use crate::contact::{Contact, Estimated, StepReport, Warnings};
+use crate::contact::{Estimated, StepReport, Warnings, impl_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -17,8 +16,8 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
-/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every
-/// step adds a group at most; groups merge where the difference of their pasts counts for nothing. A step allocates
+/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each group of one. Every
+/// step adds a group at most; groups merge where the difference of their pasts counts for nothing, so that N stays below about 30 τ/Δt. A step allocates
 /// nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
@@ -283,6 +282,11 @@ impl StatesContact {
         self.states.area(self.levels.level)
     }
 
+    /// Whether the bodies are apart.
+    pub fn is_separated(&self) -> bool {
+        self.levels.level == 0.0
+    }
+
     /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
     pub fn stiffness_over_modulus(&self) -> f64 {
         self.states.stiffness(self.levels.level)
@@ -307,35 +311,7 @@ impl StatesContact {
     }
 }
 
-impl Contact for StatesContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        StatesContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn force(&self) -> f64 {
-        StatesContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        StatesContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        StatesContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        StatesContact::contact_area(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        None
-    }
-}
+impl_contact!(StatesContact, |_| None);
 
 impl fmt::Debug for StatesContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

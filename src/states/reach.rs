@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::ascending::Times;
-use crate::contact::Stepping;
 use crate::error::{Result, positive};
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::rheology::{Material, TemperatureHistory};
+use crate::run::Stepping;
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::scene_fingerprint::Fingerprint;
 use crate::contact::builder::build::windowed;
-use crate::contact::{Clock, Equilibrium, Progress, Region, Scene, State, ViscoelasticContact};
+use crate::contact::checkpoint::SavedRun;
+use crate::contact::{Clock, Equilibrium, Region, Scene, State, ViscoelasticContact};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
@@ -15,17 +16,18 @@ use crate::rounded::texts_without_noise;
 
 /// A state on no cells, and the fingerprint of its scene.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Saved<'a> {
+#[serde(bound(deserialize = "P: SavedRun"))]
+pub(super) struct Saved<'a, P: SavedRun> {
     pub(super) scene: Fingerprint,
     /// On the region of all ranks, without values.
     pub(super) state: State,
     /// Axes along which the gap is even: the file has one half of it.
     pub(super) gap_folded: [bool; 2],
-    pub(super) progress: Option<Cow<'a, Progress>>,
+    pub(super) progress: Option<Cow<'a, P>>,
 }
 
-impl<'a> Saved<'a> {
-    pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
+impl<'a, P: SavedRun> Saved<'a, P> {
+    pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a P>) -> Saved<'a, P> {
         let (state, grid) = (&contact.computation.state, &contact.scene.grid);
         let folded = state.region.folded();
         let all = if state.region.is_shared() { Region::whole(grid, folded) } else { state.region.clone() };
@@ -103,7 +105,7 @@ pub(crate) fn check_clocks(
 }
 
 /// Rejects a reduced time that the temperature of the scene does not lead to, and a run that cannot be continued.
-pub(super) fn check_run(clock: &Clock, run: Option<&Progress>, scene: &Scene) -> Result<(), CheckpointError> {
+pub(super) fn check_run(clock: &Clock, run: Option<&impl SavedRun>, scene: &Scene) -> Result<(), CheckpointError> {
     check_clocks(clock.time, clock.reduced_time, scene.temperature.as_ref())?;
     if run.is_some_and(|progress| !progress.fits()) {
         return malformed("a run that no contact can continue");
