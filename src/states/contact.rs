@@ -93,7 +93,8 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but
+    /// to its present load and a release. A body that tilts freely under no force rests in the limit of small forces.
     ///
     /// # Errors
     /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
