@@ -42,11 +42,14 @@ impl Approaching {
         self.relative(contact, self.change(contact, &change, f64::abs))
     }
 
-    /// The least term of which most is left after some distance: its time \[s\], and the distance in which it falls by the factor e.
+    /// The term of creep that is farthest from its limit after some distance: its time \[s\], and the distance \[m\] in which what is
+    /// left falls by the factor e. Where the bodies do not come round, nothing is left of it after one length of the grid.
     pub(super) fn slowest(&self, contact: &ViscoelasticContact, distance: f64) -> (f64, f64) {
+        let axis = self.axis();
+        let most = if contact.kernel().periodic_axes()[axis] { f64::INFINITY } else { contact.grid().lengths()[axis] };
         let left = |&(compliance, time): &(f64, f64)| compliance * (-distance / self.reach(contact, time)).exp();
         let slowest = self.creep.terms().iter().max_by(|a, b| left(a).total_cmp(&left(b)));
-        slowest.map_or((0.0, 0.0), |&(_, time)| (time, self.reach(contact, time)))
+        slowest.map_or((0.0, 0.0), |&(_, time)| (time, self.reach(contact, time).min(most)))
     }
 
     /// The distance \[m\] travelled in a time of the material.
@@ -82,7 +85,7 @@ impl Approaching {
             slope.abs() * (cells as f64 * side).powi(if line { 1 } else { 2 })
         };
         let strength = strength(near).max(strength(count.saturating_sub(2).max(1)));
-        let (lifted, from) = (influence(near).abs(), (behind as f64 + 0.5) * side);
+        let (lifted, from) = (influence(near), (behind as f64 + 0.5) * side);
         let pressure: f64 = contact.computation.state.current.solution.pressure.iter().sum();
         let missing = |distance: f64| {
             let mut change = Change { lift: 0.0, slope: 0.0 };
@@ -92,7 +95,8 @@ impl Approaching {
                 let (decay, e1) = ((-z).exp(), (-z).exp() * (1.0 / z).ln_1p());
                 let weight = compliance * contact.force() * pressure;
                 let source = weight * strength / l;
-                change.lift += if line { weight * lifted * decay + weight * strength * e1 } else { source * e1 };
+                let in_line = (lifted * decay - strength * e1).abs() + 0.58 * strength * decay;
+                change.lift += if line { weight * in_line } else { source * e1 };
                 change.slope += source * if line { e1 } else { decay / (1.0 + z) / distance };
             }
             self.relative(contact, change)
