@@ -1,10 +1,11 @@
 //! A contact: the object that users drive.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
-use crate::contact::{Computation, Progress, Scene, StepReport};
+use crate::contact::{Computation, Scene, StepReport};
 use crate::error::Result;
 use crate::load::Load;
 
@@ -44,26 +45,26 @@ use crate::load::Load;
 #[derive(Clone)]
 pub struct ViscoelasticContact {
     /// Grid, kernel, material and settings, which never change.
-    pub(super) scene: Arc<Scene>,
+    pub(crate) scene: Arc<Scene>,
     /// The state, and the window and the trial that compute steps.
-    pub(super) computation: Computation,
+    pub(crate) computation: Computation,
     /// Fields on the whole grid, for users to read.
-    pub(super) view: View,
-    /// Progress of a run that was saved and resumed, for the next run to continue.
-    pub(super) progress: Option<Box<Progress>>,
+    pub(crate) view: View,
+    /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which use contacts.
+    pub(crate) saved_run: Option<Arc<dyn Any + Send + Sync>>,
     /// Buffers for the indenter of the next step along a path.
-    pub(super) indenter_buffer: IndenterBuffer,
+    pub(crate) indenter_buffer: IndenterBuffer,
 }
 
 impl ViscoelasticContact {
-    pub(super) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
+    pub(crate) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state);
         ViscoelasticContact {
             scene: Arc::new(scene),
             computation,
             view,
-            progress: None,
+            saved_run: None,
             indenter_buffer: IndenterBuffer::default(),
         }
     }
@@ -116,6 +117,9 @@ pub trait Contact: Clone {
     /// Contact area \[m²\].
     fn contact_area(&self) -> f64;
 
+    /// Whether the bodies are apart.
+    fn is_separated(&self) -> bool;
+
     /// Force over contact area \[Pa\]; 0 without contact.
     fn mean_pressure(&self) -> f64 {
         let area = self.contact_area();
@@ -149,6 +153,10 @@ impl Contact for ViscoelasticContact {
 
     fn contact_area(&self) -> f64 {
         ViscoelasticContact::contact_area(self)
+    }
+
+    fn is_separated(&self) -> bool {
+        ViscoelasticContact::is_separated(self)
     }
 
     fn in_space(&self) -> Option<&ViscoelasticContact> {

@@ -233,7 +233,7 @@ pub enum Error {
     },
 
     /// The caller ended the call: by its report of progress, or the flag of
-    /// [`Run::cancelled_by`](crate::contact::Run::cancelled_by).
+    /// [`Run::cancelled_by`](crate::run::Run::cancelled_by).
     #[error("{what} was cancelled by its caller")]
     Cancelled {
         /// The call.

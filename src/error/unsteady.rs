@@ -5,7 +5,9 @@ use crate::rounded::{TIME, rounded};
 #[non_exhaustive]
 pub enum Unsteady {
     /// The pressure still changes, as contact does that comes and goes on a rough track.
-    #[error("the pressure changes by {change:.1e} over a contact length; contact that comes and goes has no steady state")]
+    #[error(
+        "the pressure changes by {change:.1e} over a contact length; contact that comes and goes has no steady state"
+    )]
     Changing {
         /// Change of the pressure over a contact length, Σ |Δp| over Σ p.
         change: f64,
@@ -35,12 +37,5 @@ pub enum Unsteady {
         behind: f64,
         /// Distance that is enough \[m\].
         needed: f64,
-    },
-
-    /// The bodies flow under any load (a free dashpot, as of a Maxwell body).
-    #[error("the bodies flow (fluidity {fluidity:e} 1/(Pa s)): approach or slope grow without end; follow them with step_over for a given time")]
-    Flows {
-        /// Fluidity of the contact compliance \[1/(Pa·s)\].
-        fluidity: f64,
     },
 }

@@ -88,13 +88,11 @@ impl SteadySliding {
             let mut pressure = vec![0.0; m * n];
             active.iter().zip(&solution).for_each(|(&k, &p)| pressure[k] = p);
             let held: HashSet<usize> = active.iter().copied().collect();
-            let depth = |k: usize| {
-                approach - self.gap[k] - active.iter().map(|&l| influence(k, l) * pressure[l]).sum::<f64>()
-            };
+            let depth =
+                |k: usize| approach - self.gap[k] - active.iter().map(|&l| influence(k, l) * pressure[l]).sum::<f64>();
             let mut leave: Vec<(usize, f64)> = active.iter().map(|&k| (k, -pressure[k])).collect();
             leave.retain(|(_, pull)| *pull > 1e-11 * greatest);
-            let mut join: Vec<(usize, f64)> =
-                (0..m * n).filter(|k| !held.contains(k)).map(|k| (k, depth(k))).collect();
+            let mut join: Vec<(usize, f64)> = (0..m * n).filter(|k| !held.contains(k)).map(|k| (k, depth(k))).collect();
             join.retain(|(_, depth)| *depth > 1e-10 * range);
             if leave.is_empty() && join.is_empty() {
                 let lateral: f64 = pressure.iter().zip(&self.rise).map(|(p, rise)| p * rise).sum();
@@ -132,9 +130,8 @@ impl SteadySliding {
             (e * past * l / self.spacing[0], past)
         };
         let branches: Vec<(f64, f64)> = relaxation.terms().iter().rev().map(branch).collect();
-        let stiffness = |y: f64| {
-            relaxation.equilibrium() + branches.iter().map(|(e, past)| -e * y / (past - y)).sum::<f64>()
-        };
+        let stiffness =
+            |y: f64| relaxation.equilibrium() + branches.iter().map(|(e, past)| -e * y / (past - y)).sum::<f64>();
         let pole = |k: usize| {
             // D falls from E∞ at y = 0, or +∞, to −∞ at the pole
             let (mut low, mut high) = (if k == 0 { 1e-9 * branches[0].1 } else { branches[k - 1].1 }, branches[k].1);
@@ -210,7 +207,8 @@ impl SteadySliding {
             let tail = |l: f64, start: f64| {
                 let (mut sum, mut from, mut width) = (0.0, start, (0.5 * far).min(l));
                 while from < 45.0 * l {
-                    sum += points(from, from + width, 1).map(|(s, w)| w * (-s / l).exp() * kernel(far + s)).sum::<f64>();
+                    sum +=
+                        points(from, from + width, 1).map(|(s, w)| w * (-s / l).exp() * kernel(far + s)).sum::<f64>();
                     (from, width) = (from + width, (2.0 * width).min(2.0 * l));
                 }
                 sum

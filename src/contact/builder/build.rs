@@ -152,7 +152,7 @@ impl Builder {
     /// ```
     ///
     /// # Errors
-    /// As [`Builder::build`], except for invalid gaps and for memory.
+    /// As [`Builder::build`], except for invalid gaps, memory, and more than 2³² − 1 cells.
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
