@@ -317,6 +317,40 @@ fn random_motions_that_do_as_told_arrive() {
     assert!(told > 0 && 10 * arrived >= 9 * told, "{arrived} of {told}");
 }
 
+/// A body without elastic response has a dashpot beside its springs: its limit counts it, too.
+#[test]
+fn a_body_without_elastic_response_arrives() {
+    let grid = Grid::new([256, 1], [8.0e-3, 1.0]).unwrap();
+    let (radius, at, force) = (10.0e-3, 2.0e-3, 100.0);
+    let cylinder = Shifted::new(Cylinder::new(radius).unwrap(), [at, 0.0]).unwrap();
+    let terms = [(1.0e-6, 1.0e-3), (2.0e-6, 3.0e-3)];
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&cylinder)
+        .material(Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &terms).unwrap()))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+        .settings(Settings::default().with_frame(Frame::Indenter))
+        .build()
+        .unwrap();
+    let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(force));
+    contact.toward_steady(motion).unwrap().run().unwrap();
+    let (side, x) = (grid.spacing()[0], |k: usize| (k as f64 + 0.5 - 64.0) * grid.spacing()[0]);
+    let sliding = SteadySliding {
+        below: Below::Line(1.0),
+        cells: [128, 1],
+        spacing: grid.spacing(),
+        glassy: 0.0,
+        terms: terms.iter().map(|&(compliance, time)| (0.25 * compliance, 0.1 * time)).collect(),
+        gap: (0..128).map(|k| 0.5 * x(k).powi(2) / radius).collect(),
+        rise: (0..128).map(|k| x(k) * side / radius).collect(),
+        force,
+    };
+    let exact = sliding.solve(Time::Exact).unwrap();
+    let friction = contact.lateral_force(&cylinder)[0] / contact.force();
+    let errors = [friction / exact.friction - 1.0, contact.approach() / exact.approach - 1.0];
+    println!("{errors:?}");
+    assert!(errors[0].abs() < 0.02 && errors[1].abs() < 2e-3, "{errors:?}");
+}
+
 /// The reference itself, against the closed form of a rolling cylinder.
 #[test]
 fn the_reference_is_hunters() {
