@@ -4,7 +4,7 @@ use crate::rounded::{TIME, rounded};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unsteady {
-    /// The pressure still changes, as contact does that comes and goes on a rough track.
+    /// The pressure still changes: the track was too short, or contact comes and goes, as on a rough track.
     #[error(
         "the pressure changes by {change:.1e} over a contact length; contact that comes and goes has no steady state"
     )]

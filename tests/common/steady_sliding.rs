@@ -28,6 +28,9 @@ pub enum Time {
     Exact,
     /// As by steps over one cell in which u is linear in time (`TimeRule::ExponentialLinear`).
     Steps,
+    /// As by steps in which u is linear, and on all steps but the last quadratic, through the node after it too
+    /// (`TimeRule::Exponential`); of periodic bodies only.
+    Corrected,
 }
 
 /// The indenter moves along the first axis, towards greater indices.
@@ -155,6 +158,7 @@ impl SteadySliding {
             TAU * k / (count as f64 * self.spacing[axis])
         };
         let (at_once, decaying) = self.steps();
+        let relaxation = CreepSpectrum::new(self.glassy, 0.0, &self.terms).unwrap().relaxation();
         // the indenter comes from the side of small indices: what is behind it was under it before
         let creep = |q: f64| match time {
             Time::Exact => self.terms.iter().fold(Complex([self.glassy, 0.0]), |sum, &(c, l)| {
@@ -165,6 +169,24 @@ impl SteadySliding {
                 let Complex([cos, sin]) = Complex::from_angle(-q * self.spacing[0]);
                 sum.plus(next, Complex([1.0, 0.0]).over(Complex([cos - 1.0 + y, sin])))
             }),
+            // v = E∞ u + Σ E_i [w_i (1 − ζ) + a_i k_i (1 − ζ)²]/(1 − a_i ζ) u, ζ the shift by a cell ahead
+            Time::Corrected => {
+                let ahead = Complex::from_angle(q * self.spacing[0]);
+                let one = Complex([1.0, 0.0]);
+                let change = one.plus(-1.0, ahead);
+                let stiffness = |sum: Complex, &(e, l): &(f64, f64)| {
+                    let z = self.spacing[0] / l;
+                    let (a, w) = ((-z).exp(), -(-z).exp_m1() / z);
+                    // ∫ e^(−σ/τ) (Δ − 2 σ) dσ/2Δ², in series where it cancels
+                    let series = z / 12.0 - z * z / 24.0 + z.powi(3) / 80.0;
+                    let k = if z < 1e-2 { series } else { 0.5 * w - (1.0 - a * (1.0 + z)) / (z * z) };
+                    let Complex([real, imaginary]) = change;
+                    let bend = Complex([real * real - imaginary * imaginary, 2.0 * real * imaginary]);
+                    let both = Complex([0.0; 2]).plus(w, change).plus(a * k, bend);
+                    sum.plus(e, both.over(one.plus(-a, ahead)))
+                };
+                one.over(relaxation.terms().iter().fold(Complex([relaxation.equilibrium(), 0.0]), stiffness))
+            }
         };
         let symbols: Vec<Vec<[f64; 2]>> = (0..m)
             .map(|k| {
@@ -232,6 +254,7 @@ impl SteadySliding {
                         add(c, tail(l, 0.0) / l, (-d / l).exp(), &own);
                     }
                 }
+                Time::Corrected => panic!("of periodic bodies only"),
                 Time::Steps => {
                     let (at_once, decaying) = self.steps();
                     add(at_once, 0.0, 0.0, &at);
