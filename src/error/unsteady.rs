@@ -5,7 +5,9 @@ use crate::rounded::{TIME, rounded};
 #[non_exhaustive]
 pub enum Unsteady {
     /// The pressure still changes: the track was too short, or contact comes and goes, as on a rough track.
-    #[error("the pressure still changes by {change:.1e} over a contact length: travel farther (SteadyMotion::with_max_distance); contact that comes and goes has no steady state")]
+    #[error(
+        "the pressure still changes by {change:.1e} over a contact length: travel farther (SteadyMotion::with_max_distance); contact that comes and goes has no steady state"
+    )]
     Changing {
         /// Change of the pressure over a contact length, Σ |Δp| over Σ p.
         change: f64,

@@ -119,29 +119,33 @@ impl MovingFrame {
         let (axis, weights, n2) = (usize::from(stride[0] == 0), &rule.committed, self.cells[1]);
         let (periodic, count) = (self.periodic[axis], self.cells[axis]);
         let mut change = vec![0.0; if rule.has_memory() { pressure.len() } else { 0 }];
-        // γ_k of all branches and the dashpot, whose own are the rest
+        // γ_k of all branches and the dashpot, which has the rest
         let gains = [0, 1, 2].map(|k| (weights.past[k] - weights.past.get(k + 1).unwrap_or(&0.0)) / weights.c);
-        let dashpot = [0, 1, 2].map(|k| gains[k] - weights.branches.iter().map(|branch| branch[k + 1]).sum::<f64>());
+        let rest = |k: usize| gains[k - 1] - weights.branches.iter().map(|branch| branch[k]).sum::<f64>();
+        let dashpot = [0.0, rest(1), rest(2), rest(3)];
         for line in 0..change.len() / count {
             // in the order in which a point of the bodies passes the cells
             let place = |m: usize| if stride[axis] > 0 { count - 1 - m } else { m };
             let cell = |m: usize| if axis == 0 { line + n2 * place(m) } else { line * n2 + place(m) };
-            let u: Vec<f64> = (0..count).map(|m| self.source.now[cell(m)]).collect();
-            let first = differences(&u, periodic);
-            let second = differences(&first, periodic);
-            let steps = [&first, &second, &differences(&second, periodic)];
-            let mut excess: Vec<f64> = (0..count).map(|m| pressure[cell(m)] - rule.equilibrium() * u[m]).collect();
-            for (gains, decay) in
-                weights.branches.iter().map(|branch| (&branch[1..], branch[0])).chain([(&dashpot[..], 0.0)])
-            {
-                let gain = |m: usize| gains.iter().zip(steps).map(|(gain, step)| gain * step[m]).sum();
+            // U so many cells before
+            let before = |m: usize, cells: usize| match m.checked_sub(cells) {
+                Some(m) => self.source.now[cell(m)],
+                None if periodic => self.source.now[cell((m + 3 * count - cells) % count)],
+                None => 0.0,
+            };
+            let mut excess: Vec<f64> =
+                (0..count).map(|m| pressure[cell(m)] - rule.equilibrium() * before(m, 0)).collect();
+            for &[decay, first, second, third] in weights.branches.iter().chain([&dashpot]) {
+                // of the differences of U
+                let of = [first + second + third, -first - 2.0 * second - 3.0 * third, second + 3.0 * third, -third];
+                let gain = |m: usize| (0..4).map(|cells| of[cells] * before(m, cells)).sum::<f64>();
                 let carried = carried((0..count).map(gain), decay, periodic);
                 excess.iter_mut().zip(carried).for_each(|(excess, carried)| *excess -= carried);
             }
-            let terms =
-                creep.terms().iter().map(|&(c, time)| (-c * (-weights.dt / time).exp_m1(), (-weights.dt / time).exp()));
-            for (weight, decay) in terms.chain([(creep.glassy(), 0.0)]) {
-                let carried = carried(excess.iter().map(|excess| weight * excess), decay, periodic);
+            let decays = creep.terms().iter().map(|&(compliance, time)| (compliance, -weights.dt / time));
+            for (compliance, exponent) in decays.chain([(creep.glassy(), f64::NEG_INFINITY)]) {
+                let gains = excess.iter().map(|excess| -compliance * exponent.exp_m1() * excess);
+                let carried = carried(gains, exponent.exp(), periodic);
                 (0..count).for_each(|m| change[cell(m)] += carried[m]);
             }
         }
@@ -151,12 +155,6 @@ impl MovingFrame {
     pub(super) fn fields_mut(&mut self) -> [&mut RememberedField; 2] {
         [&mut self.source, &mut self.remainder]
     }
-}
-
-/// What each value has above the one before it.
-fn differences(line: &[f64], periodic: bool) -> Vec<f64> {
-    let before = if periodic { line[line.len() - 1] } else { 0.0 };
-    [before].iter().chain(line).zip(line).map(|(before, value)| value - before).collect()
 }
 
 /// The sum of all gains so far, each multiplied by `decay` in every step since; along a periodic line they come round for ever.

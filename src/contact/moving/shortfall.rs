@@ -82,23 +82,23 @@ impl Shortfall<'_> {
             slope.abs() * (cells as f64 * side).powi(if line { 1 } else { 2 })
         };
         let cells = if self.cell[axis] > 0 { extent.low[axis] } else { count - 1 - extent.high[axis] };
-        let (near, far) = (cells.min(count.saturating_sub(2)).max(1), count.saturating_sub(2).max(1));
+        let far = count.saturating_sub(2).max(1);
+        let near = cells.clamp(1, far);
         let (strength, lift) = (strength(near).max(strength(far)), influence(near));
-        let pressure: f64 = contact.computation.state.current.solution.pressure.iter().sum();
         let missing = |distance: f64| {
             let mut change = Change::default();
             for &(compliance, time) in self.creep.terms() {
-                let (l, weight) = (self.reach(time), compliance * contact.force() * pressure);
+                let (l, weight) =
+                    (self.reach(time), compliance * contact.force() * contact.computation.state.current.sum);
                 let decay = (-distance / l).exp();
                 let e1 = decay * (l / distance).ln_1p();
-                let tilt = weight * strength / l * if line { e1 } else { decay / (distance + distance * distance / l) };
-                change.slope += tilt;
-                change.lift += weight
-                    * if line {
-                        (lift * decay - strength * e1).abs() + 0.58 * strength * decay
-                    } else {
-                        strength / l * e1
-                    };
+                let (lifted, tilted) = if line {
+                    ((lift * decay - strength * e1).abs() + 0.58 * strength * decay, strength / l * e1)
+                } else {
+                    (strength / l * e1, strength * decay / (distance * (l + distance)))
+                };
+                change.lift += weight * lifted;
+                change.slope += weight * tilted;
             }
             self.relative(change)
         };
@@ -114,9 +114,8 @@ impl Shortfall<'_> {
     fn relative(&self, by: Change) -> f64 {
         let State { history, current, .. } = &self.contact.computation.state;
         let whole = self.change_by(history.displacement(), |value| value).slope.abs();
-        let lift = self.contact.approach().abs() * current.solution.pressure.iter().sum::<f64>();
         let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
-        share(by.lift, lift).max(share(by.slope, whole))
+        share(by.lift, current.sum * self.contact.approach().abs()).max(share(by.slope, whole))
     }
 
     /// What a change of the displacement does, by a measure of its values and slopes.
