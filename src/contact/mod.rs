@@ -54,14 +54,17 @@ pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, SteadyRun};
 pub use read::energies::{Energies, EnergyBalance};
-pub use read::report::{BodyState, Estimated, StepReport, Warnings};
+pub(crate) use read::limits::{DEEP, Limits, STEEP};
+pub use read::report::{BodyState, Estimated, Figures, StepReport};
 pub use read::stress::StressHistory;
+pub use read::warnings::Warnings;
 pub use run::follow::Run;
 pub use run::progress::{ErrorBudget, RunProgress, Stepping};
 pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
+pub(crate) use stepper::forward_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 
 use builder::memory::Footprint;

@@ -6,6 +6,7 @@ use crate::Grid;
 use crate::adhesion::Attraction;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
+use crate::contact::read::limits::Limits;
 use crate::contact::{Clock, Settings};
 use crate::error::Result;
 use crate::hereditary::HistoryInputs;
@@ -18,6 +19,7 @@ pub(crate) struct Scene {
     pub(super) grid: Grid,
     pub(super) kernel: Arc<InfluenceKernel>,
     pub(super) material: Material,
+    pub(super) limits: Limits,
     pub(super) settings: Settings,
     pub(super) temperature: Option<TemperatureHistory>,
     /// The attraction between the surfaces.

@@ -6,6 +6,7 @@ use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
 use crate::contact::{Computation, Progress, Scene, StepReport};
 use crate::error::Result;
+use crate::geometry::Missed;
 use crate::load::Load;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
@@ -47,6 +48,8 @@ pub struct ViscoelasticContact {
     pub(super) scene: Arc<Scene>,
     /// The state, and the window and the trial that compute steps.
     pub(super) computation: Computation,
+    /// What the grid misses of the waves of the shapes.
+    pub(super) missed: Missed,
     /// Fields on the whole grid, for users to read.
     pub(super) view: View,
     /// Progress of a run that was saved and resumed, for the next run to continue.
@@ -56,12 +59,13 @@ pub struct ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    pub(super) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
+    pub(super) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state);
         ViscoelasticContact {
             scene: Arc::new(scene),
             computation,
+            missed,
             view,
             progress: None,
             indenter_buffer: IndenterBuffer::default(),
@@ -126,32 +130,40 @@ pub trait Contact: Clone {
     fn in_space(&self) -> Option<&ViscoelasticContact>;
 }
 
-impl Contact for ViscoelasticContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        ViscoelasticContact::step(self, dt, load)
-    }
+/// Implements [`Contact`] by the methods of a type.
+macro_rules! forward_contact {
+    ($self:ident: $contact:ty => $in_space:expr) => {
+        impl $crate::contact::Contact for $contact {
+            fn step(&mut $self, dt: f64, load: $crate::load::Load) -> $crate::Result<$crate::contact::StepReport> {
+                <$contact>::step($self, dt, load)
+            }
 
-    fn time(&self) -> f64 {
-        ViscoelasticContact::time(self)
-    }
+            fn time(&$self) -> f64 {
+                <$contact>::time($self)
+            }
 
-    fn force(&self) -> f64 {
-        ViscoelasticContact::force(self)
-    }
+            fn force(&$self) -> f64 {
+                <$contact>::force($self)
+            }
 
-    fn approach(&self) -> f64 {
-        ViscoelasticContact::approach(self)
-    }
+            fn approach(&$self) -> f64 {
+                <$contact>::approach($self)
+            }
 
-    fn tilt(&self) -> [f64; 2] {
-        ViscoelasticContact::tilt(self)
-    }
+            fn tilt(&$self) -> [f64; 2] {
+                <$contact>::tilt($self)
+            }
 
-    fn contact_area(&self) -> f64 {
-        ViscoelasticContact::contact_area(self)
-    }
+            fn contact_area(&$self) -> f64 {
+                <$contact>::contact_area($self)
+            }
 
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        Some(self)
-    }
+            fn in_space(&$self) -> Option<&$crate::ViscoelasticContact> {
+                $in_space
+            }
+        }
+    };
 }
+pub(crate) use forward_contact;
+
+forward_contact!(self: ViscoelasticContact => Some(self));

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Waves};
 
 /// Another shape repeated periodically, for periodic domains: its part within half a period of the origin is repeated.
 ///
@@ -43,6 +43,16 @@ impl Repeated {
 impl Geometry for Repeated {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         self.shape.initial_gap(self.wrapped(0, x1), self.wrapped(1, x2))
+    }
+
+    fn waves(&self) -> Vec<Waves> {
+        let mut waves = self.shape.waves();
+        waves.push(Waves { period: [f64::INFINITY; 2], shortest: [f64::INFINITY; 2] });
+        for axis in (0..2).filter(|&axis| self.period[axis].is_finite()) {
+            // whatever period the shape itself has
+            waves.iter_mut().for_each(|part| part.period[axis] = self.period[axis]);
+        }
+        waves
     }
 }
 

@@ -51,13 +51,10 @@ impl Curve {
         let state = |(k, &[level, depth, area]): (usize, &[f64; 3])| ElasticState {
             level,
             approach: rest + depth,
-            tilt: [0.0; 2],
             stiffness: stiffness(k, level, depth),
             load_stiffness: stiffness(k, level, depth),
-            tilt_rate: [0.0; 2],
             area,
-            cells: 0,
-            patches: 0,
+            ..ElasticState::default()
         };
         let states = points.iter().enumerate().map(state).collect();
         let states = ElasticStates::new(states, Rest { approach: rest, tilt: [0.0; 2] }, tilt).validated()?;

@@ -34,6 +34,8 @@ pub struct Material {
 pub(super) struct Body {
     pub(super) rheology: Arc<dyn Rheology>,
     pub(super) volume: Volume,
+    /// Whether the rheology is the creep of a rod in tension.
+    in_tension: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -99,7 +101,8 @@ impl Material {
     /// If `nu` is outside (−1, ½].
     pub fn from_tension(tensile: impl Rheology + 'static, nu: f64) -> Result<Material> {
         let poisson = poisson_ratio(nu)?;
-        Ok(Material::with_volume(tensile, Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson }))
+        let volume = Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson };
+        Ok(Material::with_volume(tensile, volume).in_tension())
     }
 
     /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers approximately
@@ -150,7 +153,7 @@ impl Material {
         within("bulk modulus", bulk_modulus, glassy > of_bulk, allowed)?;
         let terms: Vec<_> = tension.terms().iter().map(|&(compliance, time)| (3.0 * compliance, time)).collect();
         let shear = CreepSpectrum::new(glassy - of_bulk, 3.0 * tension.fluidity(), &terms)?;
-        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus)
+        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus).map(Material::in_tension)
     }
 
     fn of_shear_and_bulk(
@@ -169,7 +172,12 @@ impl Material {
     }
 
     fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
-        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume }] }
+        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume, in_tension: false }] }
+    }
+
+    fn in_tension(mut self) -> Material {
+        self.bodies.iter_mut().for_each(|body| body.in_tension = true);
+        self
     }
 
     /// This body pressed against `other`: both deform, C = C₁ + C₂.
@@ -260,7 +268,7 @@ impl Material {
                 return Ok(body.clone());
             }
             let series = body.rheology.series(times.clone(), tolerance)?;
-            Ok(Body { rheology: Arc::new(series), volume: body.volume.clone() })
+            Ok(Body { rheology: Arc::new(series), ..body.clone() })
         };
         Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
     }
@@ -270,8 +278,12 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
-    /// Accepts rheologies whose times are not NaN.
+    /// Accepts rheologies whose times are not NaN, and series of tension in materials of tension.
     pub(crate) fn validate(&self) -> Result<()> {
+        let is_rod = |body: &Body| body.rheology.fit_report().is_some_and(|report| report.in_tension);
+        if self.bodies.iter().any(|body| is_rod(body) && !body.in_tension) {
+            return Err(MaterialError::TakenForShear.into());
+        }
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
             let refused = |field, value, allowed| Err(Error::OutOfRange { field, value, allowed });
             let (until, measured) = (rheology.known_until(), rheology.measured());

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::error::{Result, positive, within};
 use crate::load::Tilt;
 use crate::states::curve::{ElasticState, ElasticStates, Rest};
+use crate::states::outside::depth_of_power;
 
 /// Contact radii \[m\] between which closed forms are tabulated; below, they are continued by the same power.
 const RADII: [f64; 2] = [1e-6, 1e3];
@@ -63,7 +64,7 @@ impl ElasticStates {
     pub fn power(coefficient: f64, exponent: f64) -> Result<Arc<ElasticStates>> {
         positive("coefficient of the shape c r^n", coefficient)?;
         let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;
-        let factor = PI.sqrt() * libm::tgamma(0.5 * n + 1.0) / libm::tgamma(0.5 * n + 0.5);
+        let factor = depth_of_power(n);
         ElasticStates::from_table(&RADII.map(|radius| {
             let depth = factor * coefficient * radius.powf(n);
             (2.0 * n / (n + 1.0) * depth * radius, depth, 2.0 * radius, PI * radius * radius)
@@ -106,13 +107,10 @@ impl ElasticStates {
         let states = table.iter().map(|&(level, approach, stiffness, area)| ElasticState {
             level,
             approach,
-            tilt: [0.0; 2],
             stiffness,
             load_stiffness: stiffness,
-            tilt_rate: [0.0; 2],
             area,
-            cells: 0,
-            patches: 0,
+            ..ElasticState::default()
         });
         let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
         ElasticStates::new(states.collect(), rest, [Tilt::Fixed(0.0); 2]).validated().map(Arc::new)

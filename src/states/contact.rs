@@ -3,8 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::ViscoelasticContact;
-use crate::contact::{Contact, Estimated, StepReport, Warnings};
+use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings, forward_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -35,7 +34,7 @@ struct Scene {
     /// Solves the state of each step.
     elastic: Option<Arc<Mutex<ElasticContact>>>,
     temperature: Option<TemperatureHistory>,
-    known_until: f64,
+    limits: Limits,
     interpolant: Interpolant,
 }
 
@@ -51,8 +50,8 @@ impl StatesContact {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
-        let (states, known_until) = (Arc::clone(states), material.known_until());
-        let scene = Scene { elastic: None, temperature: None, known_until, interpolant: Interpolant::CorrectedLinear };
+        let (states, limits) = (Arc::clone(states), Limits::of(material));
+        let scene = Scene { elastic: None, temperature: None, limits, interpolant: Interpolant::CorrectedLinear };
         let levels = Levels::new(ExponentialRule::new(&creep));
         Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
     }
@@ -110,12 +109,9 @@ impl StatesContact {
             None => dt,
         };
         let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
-        if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::Step(StepError::BeyondMaterial {
-                time,
-                age: reduced,
-                known_until: self.scene.known_until,
-            }));
+        let known_until = self.scene.limits.known_until;
+        if !is_known(reduced, known_until) {
+            return Err(Error::Step(StepError::BeyondMaterial { time, age: reduced, known_until }));
         }
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
@@ -136,18 +132,25 @@ impl StatesContact {
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted.level);
+        let reduced_length = reduced - self.reduced_time;
         (self.time, self.reduced_time) = (time, reduced);
+        let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
+        if self.groups() > 0 {
+            warnings |= self.scene.limits.warnings(reduced, reduced_length);
+        }
+        let figures = Figures { modulus: self.scene.limits.modulus, ..figures };
+        warnings.set(Warnings::MODULUS, figures.modulus.is_some());
         Ok(StepReport {
             time,
             force: self.force(),
             approach: self.approach(),
-            contact_cells: self.states.cells(self.level()),
+            contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
             tilt: self.tilt(),
             dt,
             time_error: (dt == 0.0).then_some(0.0),
             estimated: Estimated::under(&[load]),
-            warnings: Warnings::empty(),
-            max_slope: None,
+            warnings,
+            figures,
             iterations: 0,
             fallback_iterations: 0,
             convolutions: 0,
@@ -303,35 +306,7 @@ impl StatesContact {
     }
 }
 
-impl Contact for StatesContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        StatesContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn force(&self) -> f64 {
-        StatesContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        StatesContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        StatesContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        StatesContact::contact_area(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        None
-    }
-}
+forward_contact!(self: StatesContact => None);
 
 impl fmt::Debug for StatesContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -179,8 +179,11 @@ impl<'a> StatesRun<'a> {
     /// a step fails ([`StatesContact::step`]).
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         self.stepped = false;
-        let report = self.take_step()?;
-        if let Some(report) = report {
+        let mut report = self.take_step()?;
+        if let Some(report) = &mut report {
+            if report.time >= self.until && self.contact.groups() == 0 {
+                report.warn_of_no_contact(self.contact.states().approach(0.0));
+            }
             (self.stepped, self.taken) = (true, self.taken + 1);
             self.first_step = if self.first_step > 0.0 { self.first_step } else { report.dt };
         }

@@ -180,7 +180,11 @@ impl<'a> Run<'a> {
     fn take_next(&mut self) -> Result<Option<StepReport>> {
         self.last = None;
         let start = self.contact.time();
-        let report = self.take_step()?;
+        let mut report = self.take_step()?;
+        let state = &self.contact.computation.state;
+        if let Some(report) = report.as_mut().filter(|report| report.time >= self.until && state.is_undisturbed()) {
+            report.warn_of_no_contact(state.indenter.gap().datum);
+        }
         self.last = report.map(|report| (start, report));
         if let Some(report) = report {
             self.taken += 1;

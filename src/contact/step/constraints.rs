@@ -129,7 +129,7 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
     }
 }
 
-/// Rejects results that overflow, and contact at the edge of the grid. Returns Σ p.
+/// Rejects results that overflow, contact at the edge of the grid, and bodies pressed through a layer on a rigid base. Returns Σ p.
 pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
     let (Solution { pressure, motions, .. }, rows) = (&trial.solution, state.region.rows());
     let sum_of_pressure = net_sum(&rows, &trial.solution);
@@ -154,6 +154,16 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
             let (lengths, needed) = (scene.grid.lengths(), needed_lengths(scene, state, trial, step));
             return Err(Error::Step(StepError::ContactAtEdge { time, cells, lengths, needed }));
         }
+    }
+    let motion = |body: usize| {
+        step.prescribed(body) + state.region.modes(trial.free[body]).physical(trial.solution.motions[body])
+    };
+    if let Some(layer) = scene.kernel.layer_of().filter(|layer| layer.is_on_rigid())
+        && let Some(compression) = scene.compression(&step.indenter, &state.region, pressure, motion)
+        && compression >= 1.0
+    {
+        let thickness = layer.thickness();
+        return Err(Error::Step(StepError::ThroughLayer { time, depth: compression * thickness, thickness }));
     }
     Ok(sum_of_pressure)
 }

@@ -1,0 +1,34 @@
+//! What is outside the model in a contact on elastic states.
+
+use std::f64::consts::PI;
+
+use crate::contact::{DEEP, Figures, STEEP, Warnings};
+use crate::states::curve::ElasticStates;
+
+/// Bodies of the shape c rⁿ with so great an exponent are flat, with an edge.
+const LEAST_FLAT: f64 = 101.0;
+
+impl ElasticStates {
+    /// What is outside the model in a contact of this level and `depth`: as at [`ElasticStates::state_at`], where a body without cells has the
+    /// slope of the shape c rⁿ at the edge of its contact, n δ/(κ a).
+    pub(super) fn outside(&self, level: f64, depth: f64) -> (Warnings, Figures) {
+        let Some(state) = self.state_at(level) else { return Default::default() };
+        let (mut warnings, mut figures) = (state.warnings, state.figures);
+        if self.grid.is_none() {
+            let (depth, radius) = (self.depth(level), 0.5 * self.stiffness(level));
+            let exponent = 1.0 / (2.0 * radius * depth / level - 1.0);
+            let slope = exponent * depth / (depth_of_power(exponent) * radius);
+            let is_steep = exponent > 0.0 && exponent < LEAST_FLAT && slope > STEEP;
+            figures.max_slope = is_steep.then_some(slope);
+            warnings.set(Warnings::STEEP, is_steep);
+        }
+        figures.compression = figures.compression.map(|compression| compression * depth / self.depth_of(state));
+        warnings.set(Warnings::DEEP, figures.compression > Some(DEEP));
+        (warnings, figures)
+    }
+}
+
+/// κ of the shape c rⁿ, which touches within a at the depth κ c aⁿ (Galin; Sneddon 1965).
+pub(super) fn depth_of_power(exponent: f64) -> f64 {
+    PI.sqrt() * libm::tgamma(0.5 * exponent + 1.0) / libm::tgamma(0.5 * exponent + 0.5)
+}
