@@ -64,6 +64,7 @@ pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
+pub(crate) use step::constraints::depth_of_power;
 pub(crate) use stepper::forward_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 

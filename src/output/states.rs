@@ -28,16 +28,16 @@ const COLUMNS: [Column; 12] = [
     ("area", |state| state.area, |state, x| state.area = x),
     ("cells", |state| state.cells as f64, |state, x| state.cells = x as usize),
     ("patches", |state| state.patches as f64, |state, x| state.patches = x as usize),
-    ("warnings", |state| state.warnings.bits().into(), |state, x| state.warnings = warnings_of(x)),
+    (
+        "warnings",
+        |state| state.warnings.bits().into(),
+        |state, x| state.warnings = Warnings::from_bits_truncate(x as u32),
+    ),
     ("max_slope", |state| number(state.figures.max_slope), |state, x| state.figures.max_slope = figure(x)),
     ("compression", |state| number(state.figures.compression), |state, x| state.figures.compression = figure(x)),
     ("cells_in_wave", |state| number(state.figures.cells_in_wave), |state, x| state.figures.cells_in_wave = figure(x)),
     ("periods", |state| number(state.figures.periods), |state, x| state.figures.periods = figure(x)),
 ];
-
-fn warnings_of(bits: f64) -> Warnings {
-    Warnings::from_bits_truncate(bits as u32)
-}
 
 /// A figure of a state as a number: NaN where there is none.
 fn number(figure: Option<f64>) -> f64 {

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::contact::depth_of_power;
 use crate::error::{Result, positive, within};
 use crate::load::Tilt;
 use crate::states::curve::{ElasticState, ElasticStates, Rest};
-use crate::states::outside::depth_of_power;
 
 /// Contact radii \[m\] between which closed forms are tabulated; below, they are continued by the same power.
 const RADII: [f64; 2] = [1e-6, 1e3];

@@ -1,8 +1,6 @@
 //! What is outside the model in a contact on elastic states.
 
-use std::f64::consts::PI;
-
-use crate::contact::{DEEP, Figures, STEEP, Warnings};
+use crate::contact::{DEEP, Figures, STEEP, Warnings, depth_of_power};
 use crate::states::curve::ElasticStates;
 
 /// Bodies of the shape c rⁿ with so great an exponent are flat, with an edge.
@@ -26,9 +24,4 @@ impl ElasticStates {
         warnings.set(Warnings::DEEP, figures.compression > Some(DEEP));
         (warnings, figures)
     }
-}
-
-/// κ of the shape c rⁿ, which touches within a at the depth κ c aⁿ (Galin; Sneddon 1965).
-pub(super) fn depth_of_power(exponent: f64) -> f64 {
-    PI.sqrt() * libm::tgamma(0.5 * exponent + 1.0) / libm::tgamma(0.5 * exponent + 0.5)
 }

@@ -107,17 +107,19 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
+        self.beyond_one_body().map_or(Ok(()), |(what, _)| Err(RanksError::NotShared { what }.into()))
+    }
+
+    /// What neither ranks nor attraction cover, and its cure: the first that the scene has.
+    fn beyond_one_body(&self) -> Option<(&'static str, &'static str)> {
         let Settings { solver, time_rule, frame, .. } = self.settings;
         let refused = [
-            (self.gaps.len() > 1, "a contact of several rigid bodies"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer"),
-            (!time_rule.needs_series(), "a direct sum"),
-            (frame != Frame::Bodies, "Frame::Indenter"),
+            (self.gaps.len() > 1, ("a contact of several rigid bodies", "compute one body")),
+            (solver != Solver::ActiveSet, ("Solver::PolonskyKeer", "take Solver::ActiveSet")),
+            (!time_rule.needs_series(), ("a direct sum", "take TimeRule::Exponential")),
+            (frame != Frame::Bodies, ("Frame::Indenter", "take Frame::Bodies")),
         ];
-        match refused.into_iter().find(|(refused, _)| *refused) {
-            Some((_, what)) => Err(RanksError::NotShared { what }.into()),
-            None => Ok(()),
-        }
+        refused.into_iter().find(|(refused, _)| *refused).map(|(_, what)| what)
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -184,21 +186,12 @@ impl Builder {
 
     /// Rejects scenes that are not covered where surfaces attract each other.
     fn attraction_is_covered(&self) -> Result<()> {
-        let Settings { solver, time_rule, frame, .. } = self.settings;
-        let refused = [
-            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
-            (
-                self.planned,
-                "a grid that was planned without attraction",
-                "build the contact by ViscoelasticContact::builder, on a grid that ends where nothing acts and whose cells resolve the zone",
-            ),
-            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
-            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
-            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
-        ];
-        match refused.into_iter().find(|(refused, ..)| *refused) {
-            Some((_, what, cure)) => Err(AdhesionError::NotCovered { what, cure }.into()),
+        let cure =
+            "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
+        let planned = self.planned.then_some(("a grid that was planned without attraction", cure));
+        let shared = self.ranks.is_some().then_some(("a contact that ranks share out", "compute it in one process"));
+        match self.beyond_one_body().or(shared).or(planned) {
+            Some((what, cure)) => Err(AdhesionError::NotCovered { what, cure }.into()),
             None => Ok(()),
         }
     }

@@ -202,7 +202,7 @@ fn needed_lengths(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) 
             if !rise.is_finite() || !EXPONENTS.contains(&exponent) {
                 return None;
             }
-            let over = depth / (factor(exponent) * height(end));
+            let over = depth / (depth_of_power(exponent) * height(end));
             let wider = match step.loads[0] {
                 Load::Approach { .. } => over.powf(1.0 / exponent),
                 _ => (((exponent + 1.0) * over - 1.0) / exponent).powf(1.0 / (exponent + 1.0)),
@@ -215,8 +215,8 @@ fn needed_lengths(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) 
     (needed != grid.lengths() && needed.iter().all(|length| length.is_finite())).then_some(needed)
 }
 
-/// κ = n √π/2 Γ(n/2) / Γ((n + 1)/2), to 1 %: π/2 for a cone, 2 for a paraboloid.
-fn factor(exponent: f64) -> f64 {
-    let half = 0.5 * exponent;
-    half * PI.sqrt() * (half + 0.5) / half / (half + 0.75).sqrt()
+/// κ of the shape A rⁿ, which touches within a at the depth κ A aⁿ (Galin; Sneddon 1965): √π Γ(n/2 + 1) / Γ((n + 1)/2), π/2 for a cone, 2
+/// for a paraboloid.
+pub(crate) fn depth_of_power(exponent: f64) -> f64 {
+    PI.sqrt() * libm::tgamma(0.5 * exponent + 1.0) / libm::tgamma(0.5 * exponent + 0.5)
 }

@@ -16,7 +16,7 @@
 
 mod accept;
 pub(in crate::contact) mod attraction;
-mod constraints;
+pub(in crate::contact) mod constraints;
 pub(in crate::contact) mod error_in_time;
 mod gap;
 mod initial_guess;

@@ -80,7 +80,7 @@ fn limits_are_told_where_they_are() {
             FnGeometry::new(|_, _| 0.0),
         );
         let report =
-            Pressed::new(shape, grid, -0.5e-3 * length / periods).on(InfluenceKernel::periodic).in_space().unwrap();
+            Pressed::new(shape, grid, 0.5e-3 * length / periods).on(InfluenceKernel::periodic).in_space().unwrap();
         assert_eq!(report.warnings.contains(Warnings::OTHER_PERIOD), spoilt, "{number}: {report} {periods}");
         assert!(report.figures.periods.is_none_or(|found| (found / periods - 1.0).abs() < 1e-12), "{number}: {report}");
         let is_fine = (cells as f64) < 4.0 * periods * (1.0 - 1e-6);

@@ -168,7 +168,7 @@ fn everything_else_outside_the_model_is_warned_of_or_refused() {
                 let sticky = plan.builder.attraction(ExponentialAttraction::new(0.05, 1.0e-6)?);
                 sticky.build()?.step(0.1, Load::force(1.0e-3))
             }),
-            Refused("build the contact by ViscoelasticContact::builder"),
+            Refused("build it by ViscoelasticContact::builder"),
         ),
         ("a file of a profilometer", extension("scan.sur"), export),
         ("a file of a microscope", extension("scan.ibw"), export),
