@@ -46,13 +46,11 @@ impl Geometry for Repeated {
     }
 
     fn waves(&self) -> Vec<Waves> {
-        let mut waves = self.shape.waves();
-        waves.push(Waves { period: [f64::INFINITY; 2], shortest: [f64::INFINITY; 2] });
-        for axis in (0..2).filter(|&axis| self.period[axis].is_finite()) {
-            // whatever period the shape itself has
-            waves.iter_mut().for_each(|part| part.period[axis] = self.period[axis]);
-        }
-        waves
+        let period = |own: [f64; 2]| {
+            [0, 1].map(|axis| if self.period[axis].is_finite() { self.period[axis] } else { own[axis] })
+        };
+        let none = Waves { period: [f64::INFINITY; 2], shortest: [f64::INFINITY; 2] };
+        self.shape.waves().into_iter().chain([none]).map(|own| Waves { period: period(own.period), ..own }).collect()
     }
 }
 
