@@ -107,17 +107,17 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
-        self.beyond_one_body().map_or(Ok(()), |(what, _)| Err(RanksError::NotShared { what }.into()))
+        self.special().map_or(Ok(()), |[what, _]| Err(RanksError::NotShared { what }.into()))
     }
 
-    /// What neither ranks nor attraction cover, and its cure: the first that the scene has.
-    fn beyond_one_body(&self) -> Option<(&'static str, &'static str)> {
+    /// What neither ranks nor surfaces that attract each other cover, and what to do.
+    fn special(&self) -> Option<[&'static str; 2]> {
         let Settings { solver, time_rule, frame, .. } = self.settings;
         let refused = [
-            (self.gaps.len() > 1, ("a contact of several rigid bodies", "compute one body")),
-            (solver != Solver::ActiveSet, ("Solver::PolonskyKeer", "take Solver::ActiveSet")),
-            (!time_rule.needs_series(), ("a direct sum", "take TimeRule::Exponential")),
-            (frame != Frame::Bodies, ("Frame::Indenter", "take Frame::Bodies")),
+            (self.gaps.len() > 1, ["a contact of several rigid bodies", "compute one body"]),
+            (solver != Solver::ActiveSet, ["Solver::PolonskyKeer", "take Solver::ActiveSet"]),
+            (!time_rule.needs_series(), ["a direct sum", "take TimeRule::Exponential"]),
+            (frame != Frame::Bodies, ["Frame::Indenter", "take Frame::Bodies"]),
         ];
         refused.into_iter().find(|(refused, _)| *refused).map(|(_, what)| what)
     }
@@ -157,7 +157,7 @@ impl Builder {
     /// ```
     ///
     /// # Errors
-    /// As [`Builder::build`], except for invalid gaps and for memory.
+    /// As [`Builder::build`], except for invalid gaps, memory, and more than 2³² − 1 cells.
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
@@ -188,12 +188,10 @@ impl Builder {
     fn attraction_is_covered(&self) -> Result<()> {
         let cure =
             "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
-        let planned = self.planned.then_some(("a grid that was planned without attraction", cure));
-        let shared = self.ranks.is_some().then_some(("a contact that ranks share out", "compute it in one process"));
-        match self.beyond_one_body().or(shared).or(planned) {
-            Some((what, cure)) => Err(AdhesionError::NotCovered { what, cure }.into()),
-            None => Ok(()),
-        }
+        let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
+        let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
+        let refused = self.special().or(shared).or(planned);
+        refused.map_or(Ok(()), |[what, cure]| Err(AdhesionError::NotCovered { what, cure }.into()))
     }
 
     /// Material, kernel and history.
