@@ -92,7 +92,8 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but
+    /// to its present load and a release. A body that tilts freely under no force rests in the limit of small forces.
     ///
     /// # Errors
     /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
@@ -134,16 +135,21 @@ impl StatesContact {
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted.level);
-        let reduced_length = reduced - self.reduced_time;
         (self.time, self.reduced_time) = (time, reduced);
+        Ok(self.report(dt, load))
+    }
+
+    /// The report of a step of length `dt` to this state.
+    pub(super) fn report(&self, dt: f64, load: Load) -> StepReport {
+        let limits = &self.scene.limits;
         let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
         if self.groups() > 0 {
-            warnings |= self.scene.limits.warnings(reduced, reduced_length);
+            let reduced = self.temperature().and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
+            warnings |= limits.warnings(self.reduced_time, reduced.unwrap_or(dt));
         }
-        let figures = Figures { modulus: self.scene.limits.modulus, ..figures };
-        warnings.set(Warnings::MODULUS, figures.modulus.is_some());
-        Ok(StepReport {
-            time,
+        warnings.set(Warnings::MODULUS, limits.modulus.is_some());
+        StepReport {
+            time: self.time,
             force: self.force(),
             approach: self.approach(),
             contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
@@ -152,13 +158,13 @@ impl StatesContact {
             time_error: (dt == 0.0).then_some(0.0),
             estimated: Estimated::under(&[load]),
             warnings,
-            figures,
+            figures: Figures { modulus: limits.modulus, ..figures },
             iterations: 0,
             fallback_iterations: 0,
             convolutions: 0,
             preconditioner_applications: 0,
             residual: 0.0,
-        })
+        }
     }
 
     /// Adds the elastic state at a level to the states of this contact.
@@ -219,9 +225,8 @@ impl StatesContact {
         self.levels.reset_differences();
     }
 
-    /// The first corner of the temperature after a time; infinite where there is none.
-    pub(crate) fn next_temperature_corner(&self, after: f64) -> f64 {
-        self.scene.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
+    pub(super) fn temperature(&self) -> Option<&TemperatureHistory> {
+        self.scene.temperature.as_ref()
     }
 
     /// Depth of the load point \[m\].

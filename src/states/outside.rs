@@ -1,5 +1,7 @@
 //! What is outside the model in a contact on elastic states.
 
+use std::f64::consts::PI;
+
 use crate::contact::{DEEP, Figures, STEEP, Warnings, depth_of_power};
 use crate::states::curve::ElasticStates;
 
@@ -14,11 +16,12 @@ impl ElasticStates {
         let (mut warnings, mut figures) = (state.warnings, state.figures);
         if self.grid.is_none() {
             let (depth, radius) = (self.depth(level), 0.5 * self.stiffness(level));
-            let exponent = 1.0 / (2.0 * radius * depth / level - 1.0);
-            let slope = exponent * depth / (depth_of_power(exponent) * radius);
-            let is_steep = exponent > 0.0 && exponent < LEAST_FLAT && slope > STEEP;
-            figures.max_slope = is_steep.then_some(slope);
-            warnings.set(Warnings::STEEP, is_steep);
+            let (exponent, ratio) = (1.0 / (2.0 * radius * depth / level - 1.0), depth / radius);
+            // κ is no less than √(πn/2): most contacts need no more
+            let may_be = exponent > 0.0 && exponent < LEAST_FLAT && 2.0 * exponent * ratio * ratio > PI * STEEP * STEEP;
+            let slope = may_be.then(|| exponent * ratio / depth_of_power(exponent));
+            figures.max_slope = slope.filter(|slope| *slope > STEEP);
+            warnings.set(Warnings::STEEP, figures.max_slope.is_some());
         }
         figures.compression = figures.compression.map(|compression| compression * depth / self.depth_of(state));
         warnings.set(Warnings::DEEP, figures.compression > Some(DEEP));
