@@ -67,6 +67,11 @@ impl Driven for ViscoelasticContact {
         self.scene.temperature.as_ref()
     }
 
+    fn untouched(&self) -> Option<f64> {
+        let state = &self.computation.state;
+        state.is_undisturbed().then(|| state.indenter.gap().datum)
+    }
+
     fn advance(&mut self, control: &mut SpaceControl, course: &Course<'_>) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
         rows.together(|| {
