@@ -47,4 +47,4 @@ pub(crate) use group_history::GroupHistory;
 pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
 pub(crate) use lasting_error::LastingError;
-pub(crate) use time_error::{ErrorMeasure, TimeError};
+pub(crate) use time_error::{ErrorMeasure, Meeting, TimeError};

@@ -9,6 +9,21 @@ use crate::hereditary::kink::Kinks;
 use crate::parallel::Rows;
 use crate::sum::{add, greatest, named_sums};
 
+/// How bodies may meet again, on a surface that recovers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Meeting {
+    /// The depth below first touch to which they may come back; 0 if they do not.
+    pub(crate) depth: f64,
+    /// The response of v to an error of u soon after they meet, if the approach is given.
+    pub(crate) stiffness: f64,
+    /// The compliance in series with the bodies: 0 where the approach is given, infinite where the force is.
+    pub(crate) give: f64,
+}
+
+impl Meeting {
+    pub(crate) const NONE: Meeting = Meeting { depth: 0.0, stiffness: 0.0, give: 0.0 };
+}
+
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
 pub(crate) struct ErrorMeasure<'a> {
@@ -18,9 +33,9 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) pressure: [&'a [f64]; 3],
     /// v = K p at the end of the step tried.
     pub(crate) potential: &'a [f64],
-    /// Which errors matter: the error of the displacement where a force is given, the error of v where a motion is, which leaves the
-    /// displacement in contact no error.
-    pub(crate) matters: [bool; 2],
+    /// By what share the error of the displacement counts, which is 1 where a force is given, and the error of v, which is 1 where a motion is:
+    /// that leaves the displacement in contact no error.
+    pub(crate) matters: [f64; 2],
     /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
     pub(crate) greatest: [f64; 2],
     pub(crate) least: [f64; 2],
@@ -28,10 +43,7 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) gap: &'a [f64],
     /// Whether a free body was pressed by nothing before the step.
     pub(crate) from_rest: bool,
-    /// The depth below first touch to which bodies may come back, to a surface that recovers; 0 if they do not.
-    pub(crate) coming_back: f64,
-    /// The response of v to a unit of u soon after bodies meet.
-    pub(crate) stiffness: f64,
+    pub(crate) meeting: Meeting,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(crate) lasting: [f64; 2],
     pub(crate) tolerance: f64,
@@ -144,13 +156,13 @@ impl History {
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
-        let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
+        let matters = if pressed { measure.matters } else { [1.0, 0.0] };
         let whole = [
             scales[0].max(LASTING_PART * measure.greatest[0]),
             scales[1].max(measure.greatest[1]).max(measure.greatest_on_switch),
         ];
         let [in_contact, outside] = measure.lasting;
-        let lasting = match (measure.matters[0], pressed) {
+        let lasting = match (measure.matters[0] > 0.0, pressed) {
             (true, true) => relative(in_contact, whole[0]),
             (true, false) => relative(outside, whole[0]),
             (false, _) => 0.0,
@@ -159,29 +171,33 @@ impl History {
             * (1.0 + LASTING_WEIGHT * (lasting / measure.tolerance - TOLERATED).max(0.0));
         let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
         let of_v = (EDGE * kinks).max(smooth);
-        let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };
-        let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
-        // without an elastic response the force is unbounded at short times
-        let stiffness = match (measure.matters[1], rule.has_dashpot()) {
-            (false, _) => measure.on_switch / rule.compliance(),
-            (true, false) => measure.stiffness,
-            (true, true) => measure.stiffness.min(1.0 / rule.compliance()),
+        let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
+        let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
+        // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives way by their approach
+        let Meeting { stiffness, give, .. } = measure.meeting;
+        let [of_force, of_approach] = if give.is_finite() {
+            // without an elastic response the force is unbounded at short times
+            let glassy = if rule.has_dashpot() { stiffness.min(1.0 / rule.compliance()) } else { stiffness };
+            let series = glassy / (1.0 + give * glassy);
+            [series, give * series]
+        } else {
+            [measure.on_switch / rule.compliance(), 0.0]
         };
-        let on_return = relative(stiffness * outside, whole[1]);
+        let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
+        let on_return = on_meeting(outside);
         let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
-        let error_on_return =
-            RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
+        let error_on_return = RECOVERING * on_meeting(rule.compliance() * of_surface) * (1.0 + SURFACE_WEIGHT * left);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
-        let on_meeting = relative(peak, of_surface) * (on_return + error_on_return);
+        let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
         let on_jump = relative(measure.on_jump * (outside + rule.compliance() * peak), scales[1]);
-        let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
+        let error_on_switch = if matters[0] > 0.0 { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
                 && error > error_on_switch
                 && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
-            greatest: relative(greatest, scales[1]).max(on_meeting).max(on_jump),
+            greatest: relative(greatest, scales[1]).max(of_cells).max(on_jump),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,
@@ -204,7 +220,7 @@ impl History {
                 let pressure = [tried[k], now[k], before[k]];
                 let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
                 let leaves = !touches && (touched || had_touched);
-                let depth = (measure.coming_back - measure.gap[k]).max(0.0);
+                let depth = (measure.meeting.depth - measure.gap[k]).max(0.0);
                 sums.depth += depth;
                 if w == 0.0 && !touches && !leaves && depth == 0.0 {
                     continue;

@@ -7,7 +7,7 @@ use crate::contact::state::State;
 use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{ExponentialRule, LastingError, TimeError};
+use crate::hereditary::{ExponentialRule, LastingError, Meeting, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
 use crate::solver::Freedom;
@@ -215,11 +215,10 @@ impl StepControl {
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
         let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
-        let [depth, stiffness] =
-            self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now]));
+        let meeting = self.scale.as_ref().map_or(Meeting::NONE, |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: [depth, stiffness.max(soon)],
+            meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
             lasting: self
                 .lasting
                 .as_ref()

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::contact::step::spring::has_stiff_spring;
+use crate::contact::step::spring::share_of_force;
 use crate::contact::window::placement::motion_tried;
 use crate::contact::{Computation, Scene, Step};
-use crate::hereditary::{ErrorMeasure, TimeError};
+use crate::hereditary::{ErrorMeasure, Meeting, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
 use crate::sum;
@@ -61,9 +61,8 @@ pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
 pub(in crate::contact) struct StepContext {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(in crate::contact) expected: [f64; 2],
-    /// The depth below first touch to which the bodies may come back, or 0 if they do not, and the response of v to an error
-    /// of u when they meet.
-    pub(in crate::contact) coming_back: [f64; 2],
+    /// How the bodies may meet again.
+    pub(in crate::contact) meeting: Meeting,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(in crate::contact) lasting: [f64; 2],
     pub(in crate::contact) tolerance: f64,
@@ -92,7 +91,7 @@ impl Default for StepContext {
     fn default() -> StepContext {
         StepContext {
             expected: [0.0; 2],
-            coming_back: [0.0; 2],
+            meeting: Meeting::NONE,
             lasting: [0.0; 2],
             tolerance: 1.0,
             on_switch: [0.0; 2],
@@ -120,7 +119,7 @@ pub(in crate::contact) fn error_in_time(
     step: &Step<'_>,
     outlook: StepContext,
 ) -> TimeError {
-    let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
+    let StepContext { expected, meeting, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
     let StepContext { greatest_on_switch, on_jump, is_last, steps, resolution, beginning, length_is_given, .. } =
         outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
@@ -156,8 +155,12 @@ pub(in crate::contact) fn error_in_time(
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     // an attraction pulls at a surface whose displacement is free
     let attracted = scene.attraction.is_some();
-    let matters =
-        [forces > 0 || attracted, forces < trial.free.len() || attracted || has_stiff_spring(scene, state, step)];
+    let is_given = forces < trial.free.len() || attracted;
+    let matters = [
+        if forces > 0 || attracted { 1.0 } else { 0.0 },
+        if is_given { 1.0 } else { share_of_force(scene, state, step) },
+    ];
+    let meeting = if is_given { Meeting { give: 0.0, ..meeting } } else { meeting };
     let gap = &tried.window.gap(&step.indenter).above;
     let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
     let rests_at = from_rest.then(|| first_touch(tried, gap));
@@ -174,8 +177,7 @@ pub(in crate::contact) fn error_in_time(
         least,
         gap,
         from_rest,
-        coming_back: coming_back[0],
-        stiffness: coming_back[1],
+        meeting,
         lasting,
         tolerance,
         advance,
