@@ -29,18 +29,31 @@ impl Computation {
     }
 
     /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
-    /// the datum of the gap; NaN if that is not known.
+    /// the datum of the gap; NaN if that is not known. One that a spring lowers onto the surface advances at the rate that it has from then on.
     fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
         let Computation { state, window, trial } = self;
         let body = window.gap(&step.indenter).owner(k);
         let end = motion_tried(&state.region, trial, step, body);
         if self.was_at_rest(body) {
-            return rests_at.map_or(f64::NAN, |start| end.at(state.region.center(k)) - start);
+            let since = rests_at.map_or(1.0, |start| self.since_touch(step, body, start));
+            return rests_at.map_or(f64::NAN, |start| (end.at(state.region.center(k)) - start) / since);
         }
         let start = state.current.motions[body];
         let approach = step.indenter.gap().datum + end.approach - start.approach;
         let tilt = [0, 1].map(|axis| end.tilt[axis] - start.tilt[axis]);
         RigidMotion { approach, tilt }.at(state.region.center(k))
+    }
+
+    /// The part of the step tried in which a body touches a surface at this approach, from the datum of the gap: all of it where it lies on the
+    /// surface. A body apart is where the far end of its spring is.
+    fn since_touch(&self, step: &Step<'_>, body: usize, surface: f64) -> f64 {
+        let (start, datum) = (self.state.current.motions[body].approach, step.indenter.gap().datum);
+        match step.loads[body] {
+            Load::Spring { drive, .. } if drive > datum + surface && datum + surface > start => {
+                (drive - datum - surface) / (drive - start)
+            }
+            _ => 1.0,
+        }
     }
 }
 
@@ -162,8 +175,9 @@ pub(in crate::contact) fn error_in_time(
     ];
     let meeting = if is_given { Meeting { give: 0.0, ..meeting } } else { meeting };
     let gap = &tried.window.gap(&step.indenter).above;
-    let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
-    let rests_at = from_rest.then(|| first_touch(tried, gap));
+    let was_at_rest = trial.free.len() == 1 && tried.was_at_rest(0);
+    let rests_at = was_at_rest.then(|| first_touch(tried, gap));
+    let from_rest = rests_at.is_some_and(|start| tried.since_touch(step, 0, start) == 1.0);
     let advance = |k: usize| tried.advance(step, rests_at, k);
     let potential = &trial.solution.potential;
     let advance = &advance;
