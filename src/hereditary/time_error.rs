@@ -95,6 +95,8 @@ const CORRECTED_OF_DASHPOT: f64 = 1.2;
 const NOT_CORRECTED: f64 = 0.25;
 /// Rounding of a difference of displacements, relative to these.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Cells that leave do so in this part of the step at least.
+const SOON_LEFT: f64 = 0.05;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
 /// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body presses hardest
@@ -151,7 +153,7 @@ impl History {
         }
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
-        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
+        let Defect { signed, smooth, kinks, of_leaving, greatest, surface: [surface, of_surface], peak } =
             sums.defect(rule, measure.resolution, measure.is_last);
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
@@ -169,7 +171,8 @@ impl History {
         };
         let growth = (1.0 + measure.agreement * (measure.amplification - 1.0))
             * (1.0 + LASTING_WEIGHT * (lasting / measure.tolerance - TOLERATED).max(0.0));
-        let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
+        let kinks_of_u = (edge * kinks).max(of_leaving);
+        let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
@@ -196,7 +199,7 @@ impl History {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
                 && error > error_on_switch
-                && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
+                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { EDGE * kinks > smooth },
             greatest: relative(greatest, scales[1]).max(of_cells).max(on_jump),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
@@ -256,6 +259,7 @@ impl History {
                 if touches {
                     sums.steepest = sums.steepest.max(size);
                 } else if leaves {
+                    (sums.released, sums.fallen) = (sums.released + now[k], sums.fallen + before[k] - now[k]);
                     sums.left = sums.left.max(size);
                 }
             }
@@ -287,6 +291,9 @@ named_sums! {
         steepest: max,
         /// The greatest |d| of cells that left the contact.
         left: max,
+        /// Pressure of the cells that leave in this step, at its start, and by how much it fell in the step before.
+        released: +,
+        fallen: +,
         /// Number of cells in contact.
         touching: +,
         /// Number of cells in contact before the step.
@@ -317,6 +324,8 @@ struct Defect {
     smooth: f64,
     /// By cells that joined.
     kinks: f64,
+    /// By the kink of u where cells leave.
+    of_leaving: f64,
     /// The greatest of a cell.
     greatest: f64,
     /// Of a surface that bodies may come back to, and of its absolute value.
@@ -326,6 +335,19 @@ struct Defect {
 }
 
 impl Sums {
+    /// The error of v by the kink that u has where cells leave: those that stay answer a force with a greater compliance, those that leave
+    /// follow the body no longer. The pressure of the cells that leave falls as in the step before, which tells when they do. A dashpot
+    /// has no kink in u as long as v has no jump.
+    fn of_leaving(&self, rule: &ExponentialRule) -> f64 {
+        if self.released == 0.0 || rule.has_dashpot() || rule.missing().is_none() {
+            return 0.0;
+        }
+        let fallen = rule.tried.ratios[0] * self.fallen;
+        let since = if fallen > 0.0 { 1.0 - self.released / fallen } else { 0.0 };
+        let bend = self.signed / self.weight;
+        greatest(&Kinks::of(rule).at_end(bend / since.max(SOON_LEFT), bend))
+    }
+
     fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
@@ -345,6 +367,7 @@ impl Sums {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1.0),
+            of_leaving: self.of_leaving(rule),
             greatest: (EDGE * self.sharpest).max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
