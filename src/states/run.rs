@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::ascending::{Schedule, Times};
-use crate::contact::{RunProgress, StepReport, Stepping};
+use crate::contact::StepReport;
 use crate::error::{Error, LoadError, Result, StepError, within};
 use crate::load::{Load, LoadHistory};
+use crate::run::{RunProgress, Stepping};
 use crate::states::contact::StatesContact;
 
 /// Two times closer than this fraction of a step are the same time.
@@ -101,10 +102,10 @@ impl StatesContact {
 }
 
 impl<'a> StatesRun<'a> {
-    /// Makes steps end exactly at these [`Times`] too, as [`Run::stop_at`](crate::contact::Run::stop_at).
+    /// Makes steps end exactly at these [`Times`] too, as [`Run::stop_at`](crate::run::Run::stop_at).
     ///
     /// # Errors
-    /// As [`Run::stop_at`](crate::contact::Run::stop_at).
+    /// As [`Run::stop_at`](crate::run::Run::stop_at).
     pub fn stop_at(mut self, times: impl Into<Times>) -> Result<StatesRun<'a>> {
         self.stops.add(times.into(), self.start)?;
         Ok(self)
@@ -120,7 +121,7 @@ impl<'a> StatesRun<'a> {
     }
 
     /// Lets another thread end the run: while it sets `flag`, a step fails with [`Error::Cancelled`] and leaves the contact as it was,
-    /// as [`Run::cancelled_by`](crate::contact::Run::cancelled_by).
+    /// as [`Run::cancelled_by`](crate::run::Run::cancelled_by).
     pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> StatesRun<'a> {
         self.cancelled = Some(flag);
         self
@@ -133,7 +134,7 @@ impl<'a> StatesRun<'a> {
     }
 
     /// The states of the last step, in the order of time: at each time to sample within it, and at its end, as
-    /// [`Run::samples`](crate::contact::Run::samples). The steps stay as they are.
+    /// [`Run::samples`](crate::run::Run::samples). The steps stay as they are.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -118,7 +118,7 @@ fn steps_end_where_they_are_stopped() {
         times.iter().all(|time| ends.iter().any(|end| (end - time).abs() <= 1e-12 * time))
     };
     for stepping in [Stepping::adaptive(1e-3), Stepping::fixed(0.3)] {
-        let ends = |stop: &dyn Fn(viscocontact::contact::Run<'static>) -> viscocontact::contact::Run<'static>| {
+        let ends = |stop: &dyn Fn(viscocontact::run::Run<'static>) -> viscocontact::run::Run<'static>| {
             let mut run = stop(contact().into_follow(load, stepping, 10.0));
             let mut ends = Vec::new();
             while let Some(report) = run.next_step().unwrap() {

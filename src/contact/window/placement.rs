@@ -78,7 +78,7 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
 
 /// What holds a body that is pressed into another.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::contact) enum Held {
+pub(crate) enum Held {
     /// The product of a force and a contact compliance \[m²\].
     By(f64),
     /// A spring, by the depth of its far end below first touch and the product of its stiffness and a contact compliance \[m\].
@@ -87,21 +87,21 @@ pub(in crate::contact) enum Held {
 
 /// Where a body about comes to rest: the lowest gap above the datum, how far above it the level lies at which the gap has risen by a²/2R,
 /// and the diameter 2a of the contact.
-pub(in crate::contact) struct Level {
+pub(crate) struct Level {
     lowest: f64,
-    pub(in crate::contact) rest: f64,
-    pub(in crate::contact) width: f64,
+    pub(crate) rest: f64,
+    pub(crate) width: f64,
 }
 
 impl Level {
     /// The product of force and contact compliance of a circular contact.
-    pub(in crate::contact) fn force_times_compliance(&self) -> f64 {
+    pub(crate) fn force_times_compliance(&self) -> f64 {
         4.0 / 3.0 * self.width * self.rest
     }
 }
 
 /// The level of the first body.
-pub(in crate::contact) fn resting_level(scene: &Scene, state: &State, held: Held) -> Level {
+pub(crate) fn resting_level(scene: &Scene, state: &State, held: Held) -> Level {
     level(scene, &state.region.of_gap(), &state.indenter, 0, held)
 }
 

@@ -5,29 +5,38 @@
 //! length of the next one, `run_scale` the greatest loads and displacements of the run, and `progress` the state of a run.
 
 mod adaptive_step;
-pub(in crate::contact) mod follow;
-pub(in crate::contact) mod progress;
+mod follow;
+mod progress;
 mod run_scale;
-pub(in crate::contact) mod samples;
+mod samples;
+#[cfg(feature = "checkpoint")]
+mod saving;
+mod steady;
 mod step_control;
+
+pub use crate::ascending::Times;
+pub use follow::Run;
+pub use progress::{ErrorBudget, RunProgress, Stepping};
+pub use samples::Sample;
+pub use steady::{SteadyMotion, SteadyRun};
 
 use std::ops::{Deref, DerefMut};
 
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::ViscoelasticContact;
 use crate::load::LoadHistory;
 
 /// A value that a run borrows as `B` or owns as `O`.
 #[derive(Debug)]
-pub(in crate::contact) enum OwnedOrBorrowed<B, O> {
+pub(super) enum OwnedOrBorrowed<B, O> {
     Borrowed(B),
     Owned(O),
 }
 
 /// The contact of a run.
-pub(in crate::contact) type RunContact<'a> = OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>;
+pub(super) type RunContact<'a> = OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>;
 /// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
 /// the run is dropped.
-pub(in crate::contact) type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
+pub(super) type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
 
 impl Deref for RunContact<'_> {
     type Target = ViscoelasticContact;

@@ -2,18 +2,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::computation::Computation;
-use crate::contact::read::report::StepReport;
-use crate::contact::run::progress::StepErrors;
-use crate::contact::run::step_control::{NODES, StepControl};
-use crate::contact::scene::Scene;
-use crate::contact::settings::Settings;
-use crate::contact::state::State;
 use crate::contact::step::error_in_time::{StepContext, error_in_time};
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Computation, Scene, Settings, State, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
+use crate::run::progress::StepErrors;
+use crate::run::step_control::{NODES, StepControl};
 
 /// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;

@@ -1,14 +1,12 @@
 //! How a run chooses its steps, how far it has come, the error so far, and when it is saved.
 
 use std::fmt;
-#[cfg(feature = "checkpoint")]
-use std::time::{Duration, Instant};
 
-use crate::contact::run::run_scale::RunScale;
-use crate::contact::run::step_control::StepControl;
 use crate::error::{Result, finite, positive, within};
 use crate::observe::MeshError;
 use crate::rounded::rounded;
+use crate::run::run_scale::RunScale;
+use crate::run::step_control::StepControl;
 
 /// The rule for the length of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +35,7 @@ impl Stepping {
     /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under a
     /// given force, the error of the force under a given approach. It is relative to the displacement or force; for
     /// small values it is relative to a fraction of the greatest of the run. Errors of the pressure at a point may be
-    /// larger, see [`ErrorBudget::pressure`](crate::contact::ErrorBudget::pressure). The tolerance of the solver is
+    /// larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The tolerance of the solver is
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`, whichever is greater.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }
@@ -98,6 +96,18 @@ pub(crate) struct Progress {
     mesh: Option<MeshError>,
 }
 
+#[cfg(feature = "checkpoint")]
+impl crate::contact::checkpoint::SavedRun for Progress {
+    fn fits(&self) -> bool {
+        let scale_fits = self.scale.as_ref().is_none_or(RunScale::fits);
+        scale_fits
+            && match &self.control {
+                Some(control) => control.fits(),
+                None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
+            }
+    }
+}
+
 impl Progress {
     pub(super) fn begin(now: f64, stepping: Stepping) -> Progress {
         let (control, dt) = match stepping {
@@ -116,17 +126,6 @@ impl Progress {
     /// The end of the next fixed step.
     pub(super) fn end_of_step(&self, dt: f64) -> f64 {
         self.start + (self.steps + 1) as f64 * dt
-    }
-
-    /// Whether a run can continue from these values; a damaged file may hold any.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self) -> bool {
-        let scale_fits = self.scale.as_ref().is_none_or(RunScale::fits);
-        scale_fits
-            && match &self.control {
-                Some(control) => control.fits(),
-                None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
-            }
     }
 
     /// Includes the errors of a step, and the errors of the mesh at its end.
@@ -150,7 +149,7 @@ impl Progress {
     }
 }
 
-/// How far a run has come, from [`Run::progress`](crate::contact::Run::progress). No share of the run is a share of its steps, which
+/// How far a run has come, from [`Run::progress`](crate::run::Run::progress). No share of the run is a share of its steps, which
 /// nobody knows before: take the one along which the steps are spread.
 ///
 /// ```
@@ -215,7 +214,7 @@ impl fmt::Display for RunProgress {
     }
 }
 
-/// Where the error of a run comes from, made by [`Run::error_budget`](crate::contact::Run::error_budget). All
+/// Where the error of a run comes from, made by [`Run::error_budget`](crate::run::Run::error_budget). All
 /// errors are relative; `None` where nothing was estimated.
 ///
 /// ```
@@ -281,29 +280,5 @@ impl fmt::Display for ErrorBudget {
             write!(f, " (greatest of the run: {greatest})")?;
         }
         write!(f, "; solver {:.1e}", self.solver)
-    }
-}
-
-/// Where and how often a run is saved, and the time of the last save.
-#[cfg(feature = "checkpoint")]
-#[derive(Debug)]
-pub(in crate::contact) struct Autosave {
-    pub(in crate::contact) path: std::path::PathBuf,
-    every: Duration,
-    last: Instant,
-}
-
-#[cfg(feature = "checkpoint")]
-impl Autosave {
-    pub(in crate::contact) fn new(path: std::path::PathBuf, every: Duration) -> Autosave {
-        Autosave { path, every, last: Instant::now() }
-    }
-
-    pub(in crate::contact) fn is_due(&self) -> bool {
-        self.last.elapsed() >= self.every
-    }
-
-    pub(in crate::contact) fn done(&mut self) {
-        self.last = Instant::now();
     }
 }

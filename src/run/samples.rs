@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use crate::ascending::Times;
-use crate::contact::read::report::StepReport;
-use crate::contact::run::follow::{Run, SAME_TIME};
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::extent::Extent;
+use crate::run::follow::{Run, SAME_TIME};
 
 /// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
 #[derive(Debug)]
@@ -113,5 +113,40 @@ impl<'a> Run<'a> {
                 Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true }
             }))
         })
+    }
+
+    /// The contact at a time within the last step of the run, its ends included, under the load of the history at that time:
+    /// as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0)?))
+    ///     .build()?;
+    /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0)?;
+    /// let mut run = contact.follow(&ramp, Stepping::adaptive(1.0e-3), 100.0);
+    /// let mut forces = Vec::new(); // at 25 times a decade, however long the steps are
+    /// let mut times = (-50..=50).map(|k| 10f64.powf(0.04 * f64::from(k))).peekable();
+    /// while let Some(report) = run.next_step()? {
+    ///     while let Some(time) = times.next_if(|&time| time <= report.time) {
+    ///         forces.push((time, run.within_step(time)?.force()));
+    ///     }
+    /// }
+    /// assert_eq!(forces.len(), 101);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
+    pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
+        Ok(self.reached_within_step(time)?.0)
+    }
+
+    /// [`Run::within_step`], and the rectangle of the pressed cells.
+    fn reached_within_step(&self, time: f64) -> Result<(ViscoelasticContact, Option<Extent>)> {
+        let load = || Ok(vec![self.history.at(time).validated_at(time, self.contact.scene.attraction.is_some())?]);
+        self.contact.advanced_within_step(time, self.solver_tolerance(), |_| load())
     }
 }

@@ -4,18 +4,16 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::ascending::Schedule;
-use crate::contact::read::report::StepReport;
-use crate::contact::run::adaptive_step::{Course, adaptive_step};
-#[cfg(feature = "checkpoint")]
-use crate::contact::run::progress::Autosave;
-use crate::contact::run::progress::{ErrorBudget, Progress, RunProgress, StepErrors, Stepping};
-use crate::contact::run::run_scale::RunScale;
-use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::StepContext;
-use crate::contact::step::request::Step;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, LoadError, Result};
 use crate::load::{Load, LoadHistory};
+use crate::run::adaptive_step::{Course, adaptive_step};
+use crate::run::progress::{ErrorBudget, Progress, RunProgress, StepErrors, Stepping};
+use crate::run::run_scale::RunScale;
+#[cfg(feature = "checkpoint")]
+use crate::run::saving::Autosave;
+use crate::run::{OwnedOrBorrowed, RunContact, RunHistory};
 
 /// Two times closer than this fraction of a step are the same time.
 pub(super) const SAME_TIME: f64 = 1e-6;
@@ -65,11 +63,11 @@ pub(super) const SAME_TIME: f64 = 1e-6;
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Run<'a> {
-    pub(in crate::contact) contact: RunContact<'a>,
-    pub(in crate::contact) history: RunHistory<'a>,
+    pub(super) contact: RunContact<'a>,
+    pub(super) history: RunHistory<'a>,
     stepping: Stepping,
     pub(super) until: f64,
-    pub(in crate::contact) progress: Progress,
+    pub(super) progress: Progress,
     /// Times at which steps end, and at which states within steps are sampled.
     pub(super) stops: Schedule,
     pub(super) sampled: Schedule,
@@ -81,7 +79,7 @@ pub struct Run<'a> {
     /// Length of the first step of this run that took time.
     first_step: f64,
     #[cfg(feature = "checkpoint")]
-    pub(in crate::contact) autosave: Option<Autosave>,
+    pub(super) autosave: Option<Autosave>,
     /// Report of a step after which the file could not be written.
     #[cfg(feature = "checkpoint")]
     unreported: Option<Option<StepReport>>,
@@ -123,13 +121,14 @@ impl<'a> Run<'a> {
     fn new(mut contact: RunContact<'a>, history: RunHistory<'a>, stepping: Stepping, until: f64) -> Run<'a> {
         let begun = Progress::begin(contact.time(), stepping);
         // continues a saved run that began like this one
-        let saved = contact.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
+        let saved = contact.saved_run.take().and_then(|saved| saved.downcast::<Progress>().ok());
+        let saved = saved.filter(|saved| until >= begun.now && saved.continues(&begun));
         Run {
             contact,
             history,
             stepping,
             until,
-            progress: saved.map_or(begun, |saved| *saved),
+            progress: saved.map_or(begun, Arc::unwrap_or_clone),
             stops: Schedule::default(),
             sampled: Schedule::default(),
             cancelled: None,
@@ -257,7 +256,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    pub(in crate::contact) fn solver_tolerance(&self) -> f64 {
+    pub(super) fn solver_tolerance(&self) -> f64 {
         let scene = &self.contact.scene;
         self.progress.control.as_ref().map_or(scene.settings.tolerance, |control| control.solver_tolerance(scene))
     }

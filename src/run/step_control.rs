@@ -1,15 +1,13 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::computation::Computation;
-use crate::contact::run::run_scale::RunScale;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
 use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
+use crate::contact::{Computation, Scene, State};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::hereditary::{ExponentialRule, LastingError, Meeting, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
+use crate::run::run_scale::RunScale;
 use crate::solver::Freedom;
 
 /// Chooses steps whose error stays below the tolerance. Two errors count: the error of the displacement within the step

@@ -1,10 +1,9 @@
 //! The size of the loads and displacements of a run.
 
-use crate::contact::scene::Scene;
-use crate::hereditary::Meeting;
-use crate::contact::state::State;
 use crate::contact::window::placement::{Held, resting_level};
+use crate::contact::{Scene, State};
 use crate::error::{Error, Result, within};
+use crate::hereditary::Meeting;
 use crate::load::{Load, LoadHistory};
 
 /// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
