@@ -6,23 +6,9 @@ use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::hereditary::kink::Kinks;
+use crate::hereditary::step_context::{Meeting, StepContext};
 use crate::parallel::Rows;
 use crate::sum::{add, greatest, named_sums};
-
-/// How bodies may meet again, on a surface that recovers.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting {
-    /// The depth below first touch to which they may come back; 0 if they do not.
-    pub(crate) depth: f64,
-    /// The response of v to an error of u soon after they meet, if the approach is given.
-    pub(crate) stiffness: f64,
-    /// The compliance in series with the bodies: 0 where the approach is given, infinite where the force is.
-    pub(crate) give: f64,
-}
-
-impl Meeting {
-    pub(crate) const NONE: Meeting = Meeting { depth: 0.0, stiffness: 0.0, give: 0.0 };
-}
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
@@ -43,10 +29,6 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) gap: &'a [f64],
     /// Whether a free body was pressed by nothing before the step.
     pub(crate) from_rest: bool,
-    pub(crate) meeting: Meeting,
-    /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
-    pub(crate) lasting: [f64; 2],
-    pub(crate) tolerance: f64,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
     /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect of v
@@ -55,19 +37,8 @@ pub(crate) struct ErrorMeasure<'a> {
     /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
     /// moment, to which bodies respond as glass. 0 where no such switch is to come.
     pub(crate) on_switch: f64,
-    /// The mean v of the greatest loads, to which that error is relative; 0 where no such switch is to come.
-    pub(crate) greatest_on_switch: f64,
-    /// The response of v to a unit of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
-    pub(crate) on_jump: f64,
-    /// Whether no step puts this one right: the load has a corner or jumps at its end.
-    pub(crate) is_last: bool,
-    /// How far the defects so far agree in sign, 0 … 1.
-    pub(crate) agreement: f64,
-    /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
-    /// in steps longer than this.
-    pub(crate) resolution: f64,
-    /// In steps shorter than this, a body with an immediate dashpot hardly moves.
-    pub(crate) beginning: f64,
+    /// The run that the step belongs to.
+    pub(crate) context: &'a StepContext,
 }
 
 /// What is known of the error in time of a step.
@@ -133,8 +104,8 @@ impl History {
     /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.has_memory()) else { return TimeError::default() };
-        let dt = rule.tried.dt;
-        if rule.has_dashpot() && dt <= measure.beginning {
+        let (dt, context) = (rule.tried.dt, measure.context);
+        if rule.has_dashpot() && dt <= context.beginning {
             return TimeError::default();
         }
         let weight = Weight::new(measure.rows, measure.pressure, rule.has_dashpot());
@@ -142,8 +113,8 @@ impl History {
         // the contact opened in a step without an error estimate: shorten the step until the opening is resolved
         if weight == Weight::PressureBefore
             && rule.missing().is_none()
-            && measure.resolution > 0.0
-            && dt > measure.resolution
+            && context.resolution > 0.0
+            && dt > context.resolution
         {
             return TimeError { relative: f64::INFINITY, ..TimeError::default() };
         }
@@ -154,30 +125,30 @@ impl History {
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, of_leaving, greatest, surface: [surface, of_surface], peak } =
-            sums.defect(rule, measure.resolution, measure.is_last);
+            sums.defect(rule, context.resolution, context.is_last);
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let matters = if pressed { measure.matters } else { [1.0, 0.0] };
         let whole = [
             scales[0].max(LASTING_PART * measure.greatest[0]),
-            scales[1].max(measure.greatest[1]).max(measure.greatest_on_switch),
+            scales[1].max(measure.greatest[1]).max(context.greatest_on_switch),
         ];
-        let [in_contact, outside] = measure.lasting;
+        let [in_contact, outside] = context.lasting;
         let lasting = match (measure.matters[0] > 0.0, pressed) {
             (true, true) => relative(in_contact, whole[0]),
             (true, false) => relative(outside, whole[0]),
             (false, _) => 0.0,
         };
-        let growth = (1.0 + measure.agreement * (measure.amplification - 1.0))
-            * (1.0 + LASTING_WEIGHT * (lasting / measure.tolerance - TOLERATED).max(0.0));
+        let growth = (1.0 + context.agreement * (measure.amplification - 1.0))
+            * (1.0 + LASTING_WEIGHT * (lasting / context.tolerance - TOLERATED).max(0.0));
         let kinks_of_u = (edge * kinks).max(of_leaving);
         let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
         // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives way by their approach
-        let Meeting { stiffness, give, .. } = measure.meeting;
+        let Meeting { stiffness, give, .. } = context.meeting;
         let [of_force, of_approach] = if give.is_finite() {
             // without an elastic response the force is unbounded at short times
             let glassy = if rule.has_dashpot() { stiffness.min(1.0 / rule.compliance()) } else { stiffness };
@@ -188,11 +159,11 @@ impl History {
         };
         let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
         let on_return = on_meeting(outside);
-        let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
+        let left = (on_return / context.tolerance).min(MOST_OF_SURFACE);
         let error_on_return = RECOVERING * on_meeting(rule.compliance() * of_surface) * (1.0 + SURFACE_WEIGHT * left);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
         let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
-        let on_jump = relative(measure.on_jump * (outside + rule.compliance() * peak), scales[1]);
+        let on_jump = relative(context.on_jump * (outside + rule.compliance() * peak), scales[1]);
         let error_on_switch = if matters[0] > 0.0 { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
@@ -223,7 +194,7 @@ impl History {
                 let pressure = [tried[k], now[k], before[k]];
                 let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
                 let leaves = !touches && (touched || had_touched);
-                let depth = (measure.meeting.depth - measure.gap[k]).max(0.0);
+                let depth = (measure.context.meeting.depth - measure.gap[k]).max(0.0);
                 sums.depth += depth;
                 if w == 0.0 && !touches && !leaves && depth == 0.0 {
                     continue;

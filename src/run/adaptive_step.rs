@@ -2,10 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::step::error_in_time::{StepContext, error_in_time};
+use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Computation, Scene, Settings, State, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
+use crate::hereditary::StepContext;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::run::progress::StepErrors;
 use crate::run::step_control::{NODES, StepControl};

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::ascending::Schedule;
-use crate::contact::step::error_in_time::StepContext;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, LoadError, Result};
+use crate::hereditary::StepContext;
 use crate::load::{Load, LoadHistory};
 use crate::run::adaptive_step::{Course, adaptive_step};
 use crate::run::progress::{ErrorBudget, Progress, RunProgress, StepErrors, Stepping};

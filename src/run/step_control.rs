@@ -1,10 +1,10 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
+use crate::contact::step::error_in_time::SHORTEST_TOUCH;
 use crate::contact::{Computation, Scene, State};
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{ExponentialRule, LastingError, Meeting, TimeError};
+use crate::hereditary::{ExponentialRule, LastingError, Meeting, StepContext, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
 use crate::run::run_scale::RunScale;
