@@ -1,7 +1,7 @@
 //! What the error in time of a step depends on, besides the step.
 
 /// How bodies may meet again, on a surface that recovers.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Meeting {
     /// The depth below first touch to which they may come back; 0 if they do not.
     pub(crate) depth: f64,
@@ -9,10 +9,6 @@ pub(crate) struct Meeting {
     pub(crate) stiffness: f64,
     /// The compliance in series with the bodies: 0 where the approach is given, infinite where the force is.
     pub(crate) give: f64,
-}
-
-impl Meeting {
-    pub(crate) const NONE: Meeting = Meeting { depth: 0.0, stiffness: 0.0, give: 0.0 };
 }
 
 /// Data of a run besides the step.
@@ -51,7 +47,7 @@ impl Default for StepContext {
     fn default() -> StepContext {
         StepContext {
             expected: [0.0; 2],
-            meeting: Meeting::NONE,
+            meeting: Meeting::default(),
             lasting: [0.0; 2],
             tolerance: 1.0,
             on_switch: [0.0; 2],

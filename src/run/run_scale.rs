@@ -1,6 +1,6 @@
 //! The size of the loads and displacements of a run.
 
-use crate::contact::window::placement::{Held, resting_level};
+use crate::contact::window::placement::resting_depth;
 use crate::contact::{Scene, State};
 use crate::error::{Error, Result, within};
 use crate::hereditary::Meeting;
@@ -95,8 +95,7 @@ impl RunScale {
         within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
         within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
         if scale.force > 0.0 && compliance > 0.0 {
-            scale.depth_over_compliance =
-                resting_level(scene, state, Held::By(scale.force * compliance)).rest / compliance;
+            scale.depth_over_compliance = resting_depth(scene, state, scale.force * compliance) / compliance;
         }
         Ok(scale)
     }
@@ -117,17 +116,21 @@ impl RunScale {
         }
     }
 
-    /// Includes the force of the spring that is driven deepest, in bodies of this `compliance`.
+    /// Includes the force of the spring that is driven deepest, in bodies of this `compliance`: if k z, without the bodies' yielding, pressed them
+    /// down by h, the springs in series do by h z/(z + h), about. The force of a paraboloid grows with the power 3/2 of its depth, its width
+    /// with the root.
     fn include_spring(&mut self, scene: &Scene, state: &State, compliance: f64, loads: &[(f64, Load)]) {
         let springs = loads.iter().filter_map(|(_, load)| match load {
-            Load::Spring { stiffness, .. } => Some((self.magnitude(load), stiffness * compliance)),
+            Load::Spring { stiffness, .. } => Some((self.magnitude(load), stiffness)),
             _ => None,
         });
         let deepest = springs.max_by(|(one, _), (other, _)| one.total_cmp(other));
         if let Some((drive, stiffness)) = deepest.filter(|&(drive, _)| drive > 0.0) {
-            let level = resting_level(scene, state, Held::OnSpring { drive, stiffness });
-            self.width = level.width;
-            self.force = self.force.max(level.force_times_compliance() / compliance);
+            let force = stiffness * drive;
+            let depth = 2.0 * resting_depth(scene, state, force * compliance);
+            let part = drive / (drive + depth);
+            self.width = force * compliance / (SECANT * depth) * part.sqrt();
+            self.force = self.force.max(force * part.powf(1.5));
         }
     }
 
@@ -196,16 +199,12 @@ impl RunScale {
 
     /// How bodies that have been loaded for the time `age` may meet again after `now`; to the depth 0 if they do not.
     pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> Meeting {
-        let give = self.give(load);
-        let meeting = self.rises.after(now, self.width, |rise| rise.again);
-        match load {
-            Load::Force { .. } => Meeting { depth: self.expected(scene, load, age)[0], stiffness: 0.0, give },
-            Load::Approach { .. } => Meeting { give: meeting.give.min(give), ..meeting },
-            Load::Spring { .. } => {
-                let depth = meeting.depth * self.share(scene, load, age);
-                Meeting { depth, give: meeting.give.min(give), ..meeting }
-            }
+        let own = self.give(load);
+        if let Load::Force { .. } = load {
+            return Meeting { depth: self.expected(scene, load, age)[0], stiffness: 0.0, give: own };
         }
+        let Meeting { depth, stiffness, give } = self.rises.after(now, self.width, |rise| rise.again);
+        Meeting { depth: depth * self.share(scene, load, age), stiffness, give: give.min(own) }
     }
 
     /// The response of v to an error of u when the bodies meet more cells after `now`; 0 if no approach is given then.

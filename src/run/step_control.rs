@@ -213,7 +213,8 @@ impl StepControl {
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
         let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
-        let meeting = self.scale.as_ref().map_or(Meeting::NONE, |scale| scale.coming_back(scene, load, [age, now]));
+        let meeting =
+            self.scale.as_ref().map_or(Meeting::default(), |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },

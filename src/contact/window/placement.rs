@@ -54,7 +54,7 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
         // twice the depth of the level at which the gap has risen by a²/2R, see the cold start of the solver
         let sunk = |normal: f64| {
             let force = scene.material.contact_compliance(step.interval.dt) * normal;
-            let Level { lowest, rest, .. } = level(scene, &region.of_gap(), &step.indenter, body, Held::By(force));
+            let [lowest, rest] = level(scene, &region.of_gap(), &step.indenter, body, force);
             lowest + 2.0 * rest
         };
         let motion = match *load {
@@ -76,58 +76,31 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
     touched.map(|touched| region_holding(&scene.grid, region.folded(), lowest.with(touched)))
 }
 
-/// What holds a body that is pressed into another.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Held {
-    /// The product of a force and a contact compliance \[m²\].
-    By(f64),
-    /// A spring, by the depth of its far end below first touch and the product of its stiffness and a contact compliance \[m\].
-    OnSpring { drive: f64, stiffness: f64 },
+/// The depth below first touch at which the first body about comes to rest, under the product of a force and a contact
+/// compliance.
+pub(crate) fn resting_depth(scene: &Scene, state: &State, force_times_compliance: f64) -> f64 {
+    level(scene, &state.region.of_gap(), &state.indenter, 0, force_times_compliance)[1]
 }
 
-/// Where a body about comes to rest: the lowest gap above the datum, how far above it the level lies at which the gap has risen by a²/2R,
-/// and the diameter 2a of the contact.
-pub(crate) struct Level {
-    lowest: f64,
-    pub(crate) rest: f64,
-    pub(crate) width: f64,
-}
-
-impl Level {
-    /// The product of force and contact compliance of a circular contact.
-    pub(crate) fn force_times_compliance(&self) -> f64 {
-        4.0 / 3.0 * self.width * self.rest
-    }
-}
-
-/// The level of the first body.
-pub(crate) fn resting_level(scene: &Scene, state: &State, held: Held) -> Level {
-    level(scene, &state.region.of_gap(), &state.indenter, 0, held)
-}
-
-/// The level of a body; `all` is the region that the gap is on.
-fn level(scene: &Scene, all: &Region, indenter: &Indenter, body: usize, held: Held) -> Level {
+/// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by a²/2R; `all`
+/// is the region that the gap is on.
+fn level(scene: &Scene, all: &Region, indenter: &Indenter, body: usize, force_times_compliance: f64) -> [f64; 2] {
     let (gap, rows, images) = (indenter.gap(), all.rows(), all.images());
     let heights =
         || gap.above.iter().enumerate().filter(|(k, h)| h.is_finite() && gap.owner(*k) == body).map(|(_, h)| *h);
     let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
     let (mut low, mut high) = (lowest, rows.greatest(heights().fold(lowest, f64::max)));
-    let circle = 0.375 * PI.sqrt();
+    let force = 0.375 * PI.sqrt() * force_times_compliance;
     let cells_below = |level: f64| (images * rows.count(heights().filter(|&h| h <= level).count())) as f64;
-    let root_of_area = |level: f64| (cells_below(level) * scene.grid.cell_area()).sqrt();
-    let rise = |level: f64| match held {
-        Held::By(force) => circle * force / root_of_area(level),
-        Held::OnSpring { drive, stiffness } => drive / (2.0 + root_of_area(level) / (circle * stiffness)),
-    };
-    let at = |level: f64, rest: f64| Level { lowest, rest, width: 2.0 / PI.sqrt() * root_of_area(level) };
+    let rise = |level: f64| force / (cells_below(level) * scene.grid.cell_area()).sqrt();
     if high - lowest < rise(high) {
-        return at(high, rise(high)); // all of it is pressed
+        return [lowest, rise(high)]; // all of it is pressed
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if middle - lowest < rise(middle) { low = middle } else { high = middle }
     }
-    at(high, high - lowest)
+    [lowest, high - lowest]
 }
 
 /// Cells that a region holds beyond the reach of contact, so that it need not grow every step.
