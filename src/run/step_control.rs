@@ -32,7 +32,7 @@ pub(super) struct StepControl {
     lasting: Option<[LastingError; 2]>,
     /// Number of accepted steps, and the time of the last jump or corner.
     steps: u64,
-    since: f64,
+    pub(super) since: f64,
     /// Number of rejected steps.
     pub(super) rejected: u64,
 }

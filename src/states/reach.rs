@@ -163,7 +163,7 @@ pub(crate) fn greatest_level(mut contact: StatesContact, history: &dyn LoadHisto
     let mut greatest = 0.0_f64;
     while run.next_step()?.is_some() {
         for sample in run.samples() {
-            greatest = greatest.max(sample?.level());
+            greatest = greatest.max(sample?.contact().level());
         }
     }
     Ok(greatest)
