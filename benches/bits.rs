@@ -50,7 +50,7 @@ fn main() {
         for window in [false, true] {
             println!("any kernel {seed} window {window}: {}", of_any_kernel(seed, window));
         }
-        println!("adaptive {seed}: {}", adaptive(&Scene::draw(1, seed, Features::Any)));
-        println!("returning {seed}: {}", adaptive(&Scene::draw(1, seed, Features::Returning)));
+        println!("adaptive {seed}: {}", adaptive(&Scene::draw(1, seed, Features::ANY)));
+        println!("returning {seed}: {}", adaptive(&Scene::draw(1, seed, Features::RETURNING)));
     }
 }

@@ -30,6 +30,7 @@ mod shifted;
 mod sphere;
 mod statistics;
 mod sum;
+mod waves;
 mod wavy;
 
 pub use crate::error::MapError;
@@ -45,6 +46,8 @@ pub use shifted::Shifted;
 pub use sphere::Sphere;
 pub use statistics::SurfaceStatistics;
 pub use sum::Sum;
+pub(crate) use waves::Missed;
+pub use waves::Waves;
 pub use wavy::Wavy;
 
 use std::fmt::Debug;
@@ -106,6 +109,13 @@ pub trait Geometry: Debug + Send + Sync {
     fn failure(&self) -> Option<UserError> {
         None
     }
+
+    /// Periods and shortest waves of the shape and of its parts, for the warnings of contacts whose grid does not hold them
+    /// ([`Warnings::OTHER_PERIOD`](crate::contact::Warnings::OTHER_PERIOD), [`Warnings::SHORT_WAVES`](crate::contact::Warnings::SHORT_WAVES)).
+    /// By default none are told.
+    fn waves(&self) -> Vec<Waves> {
+        Vec::new()
+    }
 }
 
 /// Writes the gap of the shifted shape at the cell centres, one by one.
@@ -138,6 +148,10 @@ macro_rules! forward_geometry {
 
             fn failure(&self) -> Option<UserError> {
                 (**self).failure()
+            }
+
+            fn waves(&self) -> Vec<Waves> {
+                (**self).waves()
             }
         }
     )*};

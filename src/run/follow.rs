@@ -241,7 +241,10 @@ impl<'a, C: RunContact> Run<'a, C> {
     fn take_next(&mut self) -> Result<Option<StepReport>> {
         self.last = None;
         let start = self.contact.time();
-        let report = if self.events.is_empty() { self.take_step()? } else { self.take_until_event()? };
+        let mut report = if self.events.is_empty() { self.take_step()? } else { self.take_until_event()? };
+        if let Some(report) = report.as_mut().filter(|report| report.time >= self.until) {
+            self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
+        }
         self.last = report.map(|report| (start, report));
         report.iter().for_each(|report| self.progress.count(report));
         Ok(report)

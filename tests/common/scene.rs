@@ -8,19 +8,24 @@ use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
 use super::draws::Draws;
-use super::random_bodies::{Body, random_body};
-use super::random_histories::{Control, RandomHistory, random_history};
+use super::random_bodies::{Body, body_of_twenty_decades, random_body};
+use super::random_histories::{Control, RandomHistory, random_history, taps};
 use super::random_returns::{returning_body, returning_history};
 
 /// What is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Features {
-    /// Any body and history, under forces and given approaches.
-    Any,
-    /// The same, driven by a spring.
-    Spring,
-    /// Loads that go back and return to a surface that recovers.
-    Returning,
+pub struct Features {
+    /// Whether loads go back and return to a surface that recovers.
+    pub returns: bool,
+    /// Whether a spring drives the body, which taps in some scenes; else a force or a given approach.
+    pub by_spring: bool,
+}
+
+impl Features {
+    pub const ANY: Features = Features { returns: false, by_spring: false };
+    pub const SPRING: Features = Features { returns: false, by_spring: true };
+    pub const RETURNING: Features = Features { returns: true, by_spring: false };
+    pub const RETURNING_BY_SPRING: Features = Features { returns: true, by_spring: true };
 }
 
 pub struct Scene {
@@ -81,10 +86,15 @@ fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Bo
 impl Scene {
     /// The scene of this number in the series of this seed.
     pub fn draw(seed: u64, number: u64, features: Features) -> Scene {
-        let returns = features == Features::Returning;
+        let Features { returns, by_spring } = features;
         let series = seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(if returns { 1 << 40 } else { 0 });
         let draws = &mut Draws::new(series);
-        let body = if returns { returning_body(draws) } else { random_body(draws) };
+        let is_wide = by_spring && !returns && draws.chance(0.15);
+        let body = match returns {
+            true => returning_body(draws),
+            false if is_wide => body_of_twenty_decades(draws),
+            false => random_body(draws),
+        };
         let grid = random_grid(draws);
         let reach = random_reach(draws);
         let (shape, geometry, depth) = match returns && draws.below(6) == 0 {
@@ -101,34 +111,27 @@ impl Scene {
         };
         let mut scene = Scene::unloaded(body, geometry, grid, kernel);
         let (touch, force) = scene.answers(depth);
-        scene.control = match features {
-            Features::Returning if draws.chance(0.5) => Control::Approach { touch, depth },
-            Features::Returning => Control::Force(force),
-            Features::Any | Features::Spring => {
-                let kind = draws.below(10);
-                if features == Features::Spring {
-                    let over = draws.power_of_ten(-2.0, 2.0);
-                    let (depth, stiffness) = (depth * (1.0 + 1.0 / over), over * force / depth);
-                    Control::Spring { touch, depth, stiffness, is_stiff: over > 1.0 }
-                } else {
-                    match kind {
-                        0..4 => Control::Approach { touch, depth },
-                        4 => Control::EccentricForce(force, [(); 2].map(|()| draws.between(-0.15, 0.15) * reach)),
-                        _ => Control::Force(force),
-                    }
-                }
-            }
+        // ten kinds of control; of loads that return, half are approaches
+        let kind = if returns { 0 } else { draws.below(10) };
+        scene.control = match kind {
+            _ if by_spring => Control::by_spring(draws, touch, depth, force),
+            _ if returns && !draws.chance(0.5) => Control::Force(force),
+            0..4 => Control::Approach { touch, depth },
+            4 => Control::EccentricForce(force, [(); 2].map(|()| draws.between(-0.15, 0.15) * reach)),
+            _ => Control::Force(force),
         };
         let until = scene.body.until;
-        if returns {
-            scene.history = returning_history(draws, scene.control, until);
-            scene.stops = (0..8).map(|_| until * draws.between(0.0, 1.0)).collect();
-        } else {
-            scene.history = random_history(draws, scene.control, until, scene.body.is_elastic_at_once());
-            let count = 1 + draws.below(10);
-            let mut part = |k: usize| if k % 2 == 0 { draws.between(0.0, 1.0) } else { draws.power_of_ten(-4.0, 0.0) };
-            scene.stops = (0..count).map(|k| part(k) * until).collect();
-        }
+        scene.history = match returns {
+            true => returning_history(draws, scene.control, until),
+            false if by_spring && draws.chance(0.15) => taps(draws, scene.control, until),
+            false => random_history(draws, scene.control, until, scene.body.is_elastic_at_once()),
+        };
+        let count = if returns { 8 } else { 1 + draws.below(10) };
+        let mut part = |k: usize| match returns || k % 2 == 0 {
+            true => draws.between(0.0, 1.0),
+            false => draws.power_of_ten(-4.0, 0.0),
+        };
+        scene.stops = (0..count).map(|k| part(k) * until).collect();
         scene.stops.push(until);
         scene.called(seed, number, &format!("{shape}{on}"))
     }
@@ -161,8 +164,7 @@ impl Scene {
             Control::Force(_) => "force",
             Control::EccentricForce(..) => "eccentric force",
             Control::Approach { .. } => "approach",
-            Control::Spring { is_stiff: false, .. } => "soft spring",
-            Control::Spring { .. } => "stiff spring",
+            Control::Spring { over, .. } => &format!("spring of {over:.2}"),
         };
         let (body, history) = (&self.body, &self.history);
         self.name = format!(

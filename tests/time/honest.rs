@@ -77,13 +77,13 @@ fn is_doubtful(truth: &Truth, tolerance: f64, run: &Result<Watched, Stopped>) ->
 /// of random scenes, and below three times in all of them; no run ends in an error.
 #[test]
 fn errors_are_honest_on_random_scenes() {
-    check_honesty(Features::Any, ("HONEST_SCENES", 40));
+    check_honesty(Features::ANY, ("HONEST_SCENES", 40));
 }
 
-/// The same of bodies that springs drive: of the force where they are stiffer than the contact, else of the approach.
+/// The same of bodies that springs drive: of approach and force.
 #[test]
 fn errors_under_springs_are_honest() {
-    check_honesty(Features::Spring, ("HONEST_SPRINGS", 20));
+    check_honesty(Features::SPRING, ("HONEST_SPRINGS", 20));
 }
 
 fn check_honesty(features: Features, count: (&'static str, u64)) {
