@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::contact::StepReport;
+use crate::contact::{Contact, StepReport};
 use crate::error::{Result, finite};
 use crate::run::RunContact;
 use crate::run::follow::{Run, SAME_TIME};
@@ -53,7 +53,10 @@ enum Side {
 pub struct Event<C> {
     quantity: Box<dyn Fn(&C) -> f64 + Send + Sync>,
     crossing: Crossing,
+    /// At the start of the step to be taken, unknown before the first.
     side: Option<Side>,
+    /// At the end of the step tried; `None` if it has crossed.
+    next: Option<Side>,
     /// Greatest distance of the quantity from the value.
     greatest: f64,
     times: Vec<f64>,
@@ -82,13 +85,22 @@ impl<C> Event<C> {
         matches!(self.side, Some(Side::Met | Side::Beyond))
     }
 
-    /// How far the quantity of a contact is beyond the value.
-    fn beyond(&self, contact: &C) -> f64 {
-        self.crossing.beyond((self.quantity)(contact))
+    fn look(&self, contact: &C) -> Look
+    where
+        C: Contact,
+    {
+        Look { time: contact.time(), beyond: self.crossing.beyond((self.quantity)(contact)) }
+    }
+
+    /// Accepts the step tried, which ends at `time`.
+    fn settle(&mut self, time: f64) {
+        self.is_met = self.next.is_none();
+        self.side = self.next.or(Some(Side::Met));
+        self.times.extend(self.is_met.then_some(time));
     }
 
     /// The side of a quantity that is `now` so far beyond the value, after it was at `side`; `None` if it has crossed.
-    fn side(&self, side: Option<Side>, start: f64, now: f64) -> Option<Side> {
+    fn side_after(&self, side: Option<Side>, start: f64, now: f64) -> Option<Side> {
         let noise = NOISE * self.greatest;
         let crosses = if start == 0.0 { now > 0.0 } else { now >= 0.0 };
         match side {
@@ -155,7 +167,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     ) -> Result<Run<'a, C>> {
         finite("value of an event", crossing.value())?;
         let (quantity, times) = (Box::new(quantity), Vec::new());
-        self.events.push(Event { quantity, crossing, side: None, greatest: 0.0, times, is_met: false });
+        self.events.push(Event { quantity, crossing, side: None, next: None, greatest: 0.0, times, is_met: false });
         Ok(self)
     }
 
@@ -166,78 +178,66 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Takes a step that ends at the first event in it.
     pub(super) fn take_until_event(&mut self) -> Result<Option<StepReport>> {
-        let start = C::clone(&self.contact);
-        let saved = self.progress.clone();
-        let mut met = None;
-        for _ in 0..MOST_ATTEMPTS {
+        let (start, saved) = (C::clone(&self.contact), self.progress.clone());
+        let mut target: Option<(usize, f64)> = None;
+        for attempt in 0.. {
+            self.events.iter_mut().for_each(|event| event.is_met = false);
             let Some(report) = self.take_step()? else { break };
-            if met.is_some_and(|(_, time)| time == report.time) {
-                self.settle(&start, met);
-                return Ok(Some(report));
-            }
-            met = match self.first_event(&start, &report) {
-                Ok(met) => met,
+            let arrived = target.filter(|(_, time)| *time == report.time);
+            let searches = arrived.is_none() && attempt < MOST_ATTEMPTS;
+            let mut events = std::mem::take(&mut self.events);
+            let first = self.first_event(&mut events, &start, searches);
+            self.events = events;
+            match first {
+                Ok(Some((first, time))) if time < report.time => {
+                    self.stops.add([time].into(), self.progress.start)?;
+                    target = Some((first, time));
+                }
+                Ok(_) => {
+                    arrived.iter().for_each(|(event, _)| self.events[*event].next = None);
+                    self.events.iter_mut().for_each(|event| event.settle(report.time));
+                    return Ok(Some(report));
+                }
                 Err(error) => {
                     (*self.contact, self.progress) = (start, saved);
                     return Err(error);
                 }
-            };
-            let Some((_, time)) = met.filter(|(_, time)| *time < report.time) else {
-                self.settle(&start, met);
-                return Ok(Some(report));
-            };
-            self.stops.add([time].into(), self.progress.start)?;
+            }
             (*self.contact, self.progress) = (start.clone(), saved.clone());
         }
-        self.settle(&start, None);
-        self.take_step()
+        Ok(None)
     }
 
-    /// Brings all events up to the end of the last step; `met` is the first of those that end it.
-    fn settle(&mut self, start: &C, met: Option<(usize, f64)>) {
-        let Run { contact, events, .. } = self;
-        for (k, event) in events.iter_mut().enumerate() {
-            let [before, now] = [start, &**contact].map(|contact| event.beyond(contact));
-            event.greatest = event.greatest.max(before.abs()).max(now.abs());
-            let begun = event.side.or_else(|| event.side(None, 0.0, before));
-            let next = event.side(begun, before, now);
-            event.is_met = next.is_none() || met.is_some_and(|(first, _)| first == k);
-            event.side = if event.is_met { Some(Side::Met) } else { next };
-            if event.is_met {
-                event.times.push(contact.time());
-            }
-        }
-    }
-
-    /// The first event within the last step or at its end, and its time: the end, if it is as near as that.
-    fn first_event(&self, start: &C, report: &StepReport) -> Result<Option<(usize, f64)>> {
-        let (from, to) = (start.time(), report.time);
+    /// Follows all events through the last step. Returns the first of them and its time, the end of the step if it is as near as that or
+    /// not to be searched for.
+    fn first_event(&self, events: &mut [Event<C>], start: &C, searches: bool) -> Result<Option<(usize, f64)>> {
+        let (from, to) = (start.time(), self.contact.time());
         let same = SAME_TIME * (to - from);
-        if to <= from || self.events.is_empty() {
-            return Ok(None);
-        }
-        let middle = self.within_step(0.5 * (from + to))?;
+        let middle = if to > from { Some(self.within_step(0.5 * (from + to))?) } else { None };
         let mut first: Option<(usize, f64)> = None;
-        for (k, event) in self.events.iter().enumerate() {
-            let look = |contact: &C| Look { time: contact.time(), beyond: event.beyond(contact) };
-            let at = |time: f64| Ok::<_, crate::Error>(look(&self.within_step(time)?));
-            let ends = [look(start), look(&middle), look(self.contact())];
-            let mut looks = ends.to_vec();
-            if let Some(top) = top(ends) {
-                looks.push(at(top)?);
-                looks.sort_by(|a, b| a.time.total_cmp(&b.time));
+        for (k, event) in events.iter_mut().enumerate() {
+            let mut looks: Vec<Look> = [Some(start), middle.as_ref(), Some(self.contact())]
+                .into_iter()
+                .flatten()
+                .map(|c| event.look(c))
+                .collect();
+            if let Some(top) = top(&looks) {
+                looks.insert(if top < looks[1].time { 1 } else { 2 }, event.look(&self.within_step(top)?));
             }
-            let mut side = event.side.or_else(|| event.side(None, 0.0, ends[0].beyond));
+            event.greatest = looks.iter().fold(event.greatest, |most, look| most.max(look.beyond.abs()));
+            event.next = event.side.or_else(|| event.side_after(None, 0.0, looks[0].beyond));
             for pair in looks.windows(2) {
-                side = event.side(side, pair[0].beyond, pair[1].beyond);
-                if side.is_none() {
-                    let time = crossing_within([pair[0], pair[1]], same, &at)?;
-                    let time = if time > to - same { to } else { time };
-                    if first.is_none_or(|(_, earlier)| time < earlier) {
-                        first = Some((k, time));
-                    }
-                    break;
+                event.next = event.side_after(event.next, pair[0].beyond, pair[1].beyond);
+                if event.next.is_some() {
+                    continue;
                 }
+                let at = |time: f64| Ok(event.look(&self.within_step(time)?));
+                let found = if searches { crossing_within([pair[0], pair[1]], same, at)? } else { to };
+                let time = if found > to - same { to } else { found };
+                if first.is_none_or(|(_, earlier)| time < earlier) {
+                    first = Some((k, time));
+                }
+                break;
             }
         }
         Ok(first)
@@ -246,7 +246,8 @@ impl<'a, C: RunContact> Run<'a, C> {
 
 /// The time of the extremum of the parabola through start, middle and end of a step, if it is inside the step and on the other side of the
 /// value than the middle.
-fn top([start, middle, end]: [Look; 3]) -> Option<f64> {
+fn top(looks: &[Look]) -> Option<f64> {
+    let [start, middle, end] = looks[..] else { return None };
     let (slope, bend) = (end.beyond - start.beyond, start.beyond - 2.0 * middle.beyond + end.beyond);
     let share = -0.25 * slope / bend;
     let value = middle.beyond + slope * share + 2.0 * bend * share * share;
