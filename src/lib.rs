@@ -134,7 +134,7 @@
 //! # Limitations
 //!
 //! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). Surfaces may
+//! at small strains and slopes: steps warn beyond ([`guide::accuracy`] lists the warnings). Surfaces may
 //! attract each other ([`contact::Builder::attraction`]): one body on the whole grid ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on one
 //! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
