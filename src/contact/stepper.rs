@@ -7,6 +7,7 @@ use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
 use crate::contact::{Computation, Scene, StepReport};
 use crate::error::Result;
+use crate::geometry::Missed;
 use crate::load::Load;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
@@ -48,6 +49,8 @@ pub struct ViscoelasticContact {
     pub(crate) scene: Arc<Scene>,
     /// The state, and the window and the trial that compute steps.
     pub(crate) computation: Computation,
+    /// What the grid misses of the waves of the shapes.
+    pub(crate) missed: Missed,
     /// Fields on the whole grid, for users to read.
     pub(crate) view: View,
     /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which use contacts.
@@ -57,12 +60,13 @@ pub struct ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    pub(crate) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
+    pub(crate) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state);
         ViscoelasticContact {
             scene: Arc::new(scene),
             computation,
+            missed,
             view,
             saved_run: None,
             indenter_buffer: IndenterBuffer::default(),
@@ -117,7 +121,7 @@ pub trait Contact: Clone {
     /// Contact area \[m²\].
     fn contact_area(&self) -> f64;
 
-    /// Whether the bodies are apart.
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
     fn is_separated(&self) -> bool;
 
     /// Force over contact area \[Pa\]; 0 without contact.
@@ -130,36 +134,26 @@ pub trait Contact: Clone {
     fn in_space(&self) -> Option<&ViscoelasticContact>;
 }
 
-impl Contact for ViscoelasticContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        ViscoelasticContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        ViscoelasticContact::time(self)
-    }
-
-    fn force(&self) -> f64 {
-        ViscoelasticContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        ViscoelasticContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        ViscoelasticContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        ViscoelasticContact::contact_area(self)
-    }
-
-    fn is_separated(&self) -> bool {
-        ViscoelasticContact::is_separated(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        Some(self)
-    }
+/// Implements [`Contact`] by methods of the type of the same names.
+macro_rules! impl_contact {
+    ($contact:ty, $in_space:expr) => {
+        impl_contact!($contact, $in_space; time -> f64, force -> f64, approach -> f64, tilt -> [f64; 2], contact_area -> f64,
+            is_separated -> bool);
+    };
+    ($contact:ty, $in_space:expr; $($read:ident -> $value:ty),*) => {
+        impl $crate::contact::Contact for $contact {
+            fn step(&mut self, dt: f64, load: $crate::load::Load) -> $crate::Result<$crate::contact::StepReport> {
+                <$contact>::step(self, dt, load)
+            }
+            $(fn $read(&self) -> $value {
+                <$contact>::$read(self)
+            })*
+            fn in_space(&self) -> Option<&$crate::ViscoelasticContact> {
+                ($in_space)(self)
+            }
+        }
+    };
 }
+pub(crate) use impl_contact;
+
+impl_contact!(ViscoelasticContact, Some);

@@ -17,19 +17,6 @@ pub enum LoadError {
         second: &'static str,
     },
 
-    /// The low load of an oscillation is above the high one.
-    #[error(
-        "the {field} of an oscillation's low load is {low}, above {high} of its high load: give the lower one first, or mean and amplitude by `Sinusoid::about`"
-    )]
-    LowAboveHigh {
-        /// The quantity.
-        field: &'static str,
-        /// Its value in the low load.
-        low: f64,
-        /// Its value in the high load.
-        high: f64,
-    },
-
     /// The kind of load is not the one that a reference solution needs.
     #[error("{field} needs {needed}, not {given}")]
     WrongKind {

@@ -16,14 +16,10 @@ pub struct Violation {
 
 impl std::error::Error for Violation {}
 
-/// The message: a `main` that returns a [`Verdict`] prints it so. `{:#?}` prints the fields.
+/// The message: a `main` that returns a [`Verdict`] prints it so.
 impl std::fmt::Debug for Violation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Violation { law, quantity, at, found, expected } = self;
-        match f.alternate() {
-            true => f.debug_tuple("Violation").field(&(law, quantity, at, found, expected)).finish(),
-            false => write!(f, "{self}"),
-        }
+        write!(f, "{self}")
     }
 }
 

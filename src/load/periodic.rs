@@ -7,15 +7,15 @@ use crate::load::{Load, LoadHistory, PiecewiseLinear};
 /// Jumps and corners are exact at any number of periods: the corner at c of the period number n lies at the f64 nearest to n P + c.
 ///
 /// ```
-/// use viscocontact::load::{Load, LoadHistory, Periodic, PiecewiseLinear};
+/// use viscocontact::load::{Load, LoadHistory, Periodic};
 ///
 /// let [on, off] = [Load::force(0.5), Load::force(0.0)];
 /// let blinking = Periodic::square(on, off, 0.02, 0.5)?; // on for half of 20 ms
 /// assert_eq!([blinking.before(0.01), blinking.at(0.01), blinking.at(0.02)], [on, off, on]);
 /// assert_eq!(blinking.next_breakpoint(1.0e4), Some(10_000.01));
 ///
-/// let taps = PiecewiseLinear::new(&[(0.0, off), (0.125, on), (0.25, off), (1.0, off)])?;
-/// assert_eq!(Periodic::new(&taps)?.at(60.0625), Load::force(0.25)); // a tap a second
+/// let taps = Periodic::new(&[(0.0, off), (0.125, on), (0.25, off), (1.0, off)])?; // one a second
+/// assert_eq!(taps.at(60.0625), Load::force(0.25));
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -29,15 +29,16 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// Repeats `table` from its first time on; a period lasts from its first time to its last. Before, the load is the first one.
+    /// Repeats a `table`, as of [`PiecewiseLinear::new`], from its first time on; a period lasts from its first time \[s\] to its last.
+    /// Before, the load is the first one.
     ///
     /// # Errors
-    /// If the period is not finite and positive.
-    pub fn new(table: &PiecewiseLinear) -> Result<Periodic> {
-        let entries = table.entries();
-        let [start, end] = [0, entries.len() - 1].map(|k| entries[k].0);
+    /// If the period is not finite and positive, and as [`PiecewiseLinear::new`].
+    pub fn new(table: &[(f64, Load)]) -> Result<Periodic> {
+        PiecewiseLinear::new(table)?;
+        let [start, end] = [0, table.len() - 1].map(|k| table[k].0);
         let length = positive("period", end - start)?;
-        Ok(Periodic { period: entries.iter().map(|&(time, load)| (time - start, load)).collect(), length, start })
+        Ok(Periodic { period: table.iter().map(|&(time, load)| (time - start, load)).collect(), length, start })
     }
 
     /// From t = 0 on `first` for the part `duty` of each `period` \[s\], then `second`.
@@ -47,7 +48,7 @@ impl Periodic {
     pub fn square(first: Load, second: Load, period: f64, duty: f64) -> Result<Periodic> {
         within("duty cycle", duty, duty > 0.0 && duty < 1.0, "in (0, 1)")?;
         let change = duty * positive("period", period)?;
-        Periodic::through(&[(0.0, first), (change, first), (change, second), (period, second)])
+        Periodic::new(&[(0.0, first), (change, first), (change, second), (period, second)])
     }
 
     /// From t = 0 on linearly `from` one load `to` another in half of each `period` \[s\], and back.
@@ -55,7 +56,7 @@ impl Periodic {
     /// # Errors
     /// As [`Periodic::square`].
     pub fn triangle(from: Load, to: Load, period: f64) -> Result<Periodic> {
-        Periodic::through(&[(0.0, from), (0.5 * period, to), (period, from)])
+        Periodic::new(&[(0.0, from), (0.5 * positive("period", period)?, to), (period, from)])
     }
 
     /// From t = 0 on linearly `from` one load `to` another in each `period` \[s\], and back at once.
@@ -63,11 +64,7 @@ impl Periodic {
     /// # Errors
     /// As [`Periodic::square`].
     pub fn sawtooth(from: Load, to: Load, period: f64) -> Result<Periodic> {
-        Periodic::through(&[(0.0, from), (period, to)])
-    }
-
-    fn through(table: &[(f64, Load)]) -> Result<Periodic> {
-        Periodic::new(&PiecewiseLinear::new(table)?)
+        Periodic::new(&[(0.0, from), (positive("period", period)?, to)])
     }
 
     /// The time `phase` of the period number `n`. The sum is rounded after it is taken, so that times never decrease from entry to entry.

@@ -36,11 +36,6 @@ impl PiecewiseLinear {
         }
         Ok(PiecewiseLinear { table: checked })
     }
-
-    /// Times \[s\] and loads.
-    pub(super) fn entries(&self) -> &[(f64, Load)] {
-        self.table.as_slice()
-    }
 }
 
 impl LoadHistory for PiecewiseLinear {

@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use crate::error::{LoadError, Result, non_negative, positive};
+use crate::error::{Result, in_order, non_negative, positive};
 use crate::load::{Load, LoadHistory};
 
 /// A load that oscillates between two values: it starts at the mean at t = 0, rising towards `high`, and is
@@ -27,13 +27,11 @@ impl Sinusoid {
     ///
     /// # Errors
     /// If the frequency is not finite and positive, a load is invalid, the loads are of different kinds, or force, approach or drive of
-    /// `low` is above that of `high` ([`LoadError::LowAboveHigh`]).
+    /// `low` is above that of `high`.
     pub fn new(low: Load, high: Load, frequency: f64) -> Result<Sinusoid> {
         Load::validate_all("sinusoid", [low, high])?;
-        let (field, [least, greatest]) = (low.names()[0], [low, high].map(|load| load.values()[0]));
-        if least > greatest {
-            return Err(LoadError::LowAboveHigh { field, low: least, high: greatest }.into());
-        }
+        let (field, rule) = ("sinusoid from low to high", "not fall; `Sinusoid::about` takes mean and amplitude");
+        in_order(field, [low, high].map(|load| load.values()[0]), rule, |low, high| low <= high)?;
         Ok(Sinusoid { low, high, frequency: positive("frequency", frequency)? })
     }
 

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::ViscoelasticContact;
-use crate::contact::{Contact, Estimated, StepReport, Warnings};
+use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings, impl_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -37,7 +36,7 @@ pub(super) struct Scene {
     /// Solves the state of each step.
     elastic: Option<Arc<Mutex<ElasticContact>>>,
     pub(super) temperature: Option<TemperatureHistory>,
-    known_until: f64,
+    limits: Limits,
     pub(super) interpolant: Interpolant,
 }
 
@@ -53,9 +52,8 @@ impl StatesContact {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
-        let (states, known_until, interpolant) =
-            (Arc::clone(states), material.known_until(), Interpolant::CorrectedLinear);
-        let scene = Scene { swept: Arc::clone(&states), elastic: None, temperature: None, known_until, interpolant };
+        let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
+        let scene = Scene { swept: Arc::clone(&states), elastic: None, temperature: None, limits, interpolant };
         let levels = Levels::new(ExponentialRule::new(&creep));
         Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
     }
@@ -94,7 +92,8 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but
+    /// to its present load and a release. A body that tilts freely under no force rests in the limit of small forces.
     ///
     /// # Errors
     /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
@@ -113,12 +112,9 @@ impl StatesContact {
             None => dt,
         };
         let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
-        if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::Step(StepError::BeyondMaterial {
-                time,
-                age: reduced,
-                known_until: self.scene.known_until,
-            }));
+        let known_until = self.scene.limits.known_until;
+        if !is_known(reduced, known_until) {
+            return Err(Error::Step(StepError::BeyondMaterial { time, age: reduced, known_until }));
         }
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
@@ -140,23 +136,35 @@ impl StatesContact {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted.level);
         (self.time, self.reduced_time) = (time, reduced);
-        Ok(StepReport {
-            time,
+        Ok(self.report(dt, load))
+    }
+
+    /// The report of a step of length `dt` to this state.
+    pub(super) fn report(&self, dt: f64, load: Load) -> StepReport {
+        let limits = &self.scene.limits;
+        let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
+        if self.groups() > 0 {
+            let reduced = self.temperature().and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
+            warnings |= limits.warnings(self.reduced_time, reduced.unwrap_or(dt));
+        }
+        warnings.set(Warnings::MODULUS, limits.modulus.is_some());
+        StepReport {
+            time: self.time,
             force: self.force(),
             approach: self.approach(),
-            contact_cells: self.states.cells(self.level()),
+            contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
             tilt: self.tilt(),
             dt,
             time_error: (dt == 0.0).then_some(0.0),
             estimated: Estimated::under(&[load]),
-            warnings: Warnings::empty(),
-            max_slope: None,
+            warnings,
+            figures: Figures { modulus: limits.modulus, ..figures },
             iterations: 0,
             fallback_iterations: 0,
             convolutions: 0,
             preconditioner_applications: 0,
             residual: 0.0,
-        })
+        }
     }
 
     /// Adds the elastic state at a level to the states of this contact.
@@ -217,9 +225,8 @@ impl StatesContact {
         self.levels.reset_differences();
     }
 
-    /// The first corner of the temperature after a time; infinite where there is none.
-    pub(crate) fn next_temperature_corner(&self, after: f64) -> f64 {
-        self.scene.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
+    pub(super) fn temperature(&self) -> Option<&TemperatureHistory> {
+        self.scene.temperature.as_ref()
     }
 
     /// Depth of the load point \[m\].
@@ -282,7 +289,7 @@ impl StatesContact {
         self.states.area(self.levels.level)
     }
 
-    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    /// Whether the bodies are apart.
     pub fn is_separated(&self) -> bool {
         self.levels.level == 0.0
     }
@@ -311,39 +318,7 @@ impl StatesContact {
     }
 }
 
-impl Contact for StatesContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        StatesContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn force(&self) -> f64 {
-        StatesContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        StatesContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        StatesContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        StatesContact::contact_area(self)
-    }
-
-    fn is_separated(&self) -> bool {
-        StatesContact::is_separated(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        None
-    }
-}
+impl_contact!(StatesContact, |_| None);
 
 impl fmt::Debug for StatesContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

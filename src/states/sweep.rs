@@ -235,34 +235,28 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     }
 
     /// Levels from `last` down by halves to the smallest contact, then what lies between them. Pairs of neighbours are halved in turn:
-    /// where a sweep ends early, the pairs left have about the same error.
+    /// where a sweep ends early, the pairs left have about the same error. Where the pressure falls between the levels of a pair of the
+    /// first pass but the last, contacts of these levels and below are held or free as a whole.
     fn sweep(&mut self, last: f64) -> Result<()> {
         let mut states = self.first_pass(last)?;
         self.last_depth = self.depth(&states[0].state);
         let ended = states.iter().position(|solved| self.add(solved).is_break());
         states.truncate(ended.map_or(states.len(), |last| last + 1));
-        let mut pairs: VecDeque<Pair> =
-            states.windows(2).map(|pair| Pair::new(&pair[1], &pair[0], pair[0].state.level, f64::INFINITY)).collect();
-        drop(states);
-        if pairs.is_empty() {
-            self.error = f64::INFINITY;
-        }
-        for Pair { lower, upper, top, .. } in &pairs {
-            let grows = self.check_growth(lower, upper);
-            self.begin_above(*top, last, grows)?;
-        }
+        self.error = if states.len() > 1 { 0.0 } else { f64::INFINITY };
         let mut ends = ended.is_some();
+        let first = |pair: &[Rc<Solved>]| Pair::new(&pair[1], &pair[0], pair[0].state.level, f64::INFINITY);
+        let mut pairs: VecDeque<Pair> = states.windows(2).map(first).collect();
+        drop(states);
         while let Some(pair) = pairs.pop_front() {
             let top = pair.top;
             if top <= self.first_level {
                 continue;
             }
-            if ends {
-                self.error = self.error.max(pair.error);
-                continue;
+            match self.halve(pair, &mut pairs, ends) {
+                Ok(next) => ends |= next.is_break(),
+                Err(Error::States(StatesError::Shrinks { .. })) if top < last => self.first_level = top,
+                Err(error) => return Err(error),
             }
-            let halved = self.halve(pair, &mut pairs);
-            ends = self.begin_above(top, last, halved)?.is_some_and(|next| next.is_break());
         }
         Ok(())
     }
@@ -287,18 +281,6 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         Ok(states)
     }
 
-    /// Where the pressure falls below the level `top` of the first pass, the contacts there are held or free as a whole. It may not fall
-    /// below the last level.
-    fn begin_above<T>(&mut self, top: f64, last: f64, found: Result<T>) -> Result<Option<T>> {
-        match found {
-            Err(Error::States(StatesError::Shrinks { .. })) if top < last => {
-                self.first_level = self.first_level.max(top);
-                Ok(None)
-            }
-            other => other.map(Some),
-        }
-    }
-
     /// Depth of the load point at a state.
     fn depth(&self, state: &ElasticState) -> f64 {
         approach_at(self.at, state.approach, state.tilt) - self.rest.approach
@@ -314,17 +296,24 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         Rest { approach, tilt: [first, second] }
     }
 
-    /// Adds the state in the middle of a pair, and both halves to the pairs unless the pair is accurate.
-    fn halve(&mut self, pair: Pair, pairs: &mut VecDeque<Pair>) -> Result<ControlFlow<()>> {
-        let Pair { lower, upper, top, .. } = pair;
+    /// Adds the state in the middle of a pair, and both halves to the pairs unless the pair is accurate. A sweep that ends leaves the
+    /// pair as it is.
+    fn halve(&mut self, pair: Pair, pairs: &mut VecDeque<Pair>, ends: bool) -> Result<ControlFlow<()>> {
+        let Pair { lower, upper, top, error } = pair;
+        self.check_growth(&lower, &upper)?;
+        if ends {
+            self.error = self.error.max(error);
+            return Ok(ControlFlow::Break(()));
+        }
         let curve = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
         let middle = Rc::new(self.solve((lower.state.level * upper.state.level).sqrt())?);
-        self.check_growth(&lower, &middle)?;
-        self.check_growth(&middle, &upper)?;
         let error = curve.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
         if SAFETY * error <= self.accuracy || upper.state.level < FINEST * lower.state.level {
+            self.check_growth(&lower, &middle)?;
+            self.check_growth(&middle, &upper)?;
             self.error = self.error.max(error);
         } else {
+            // checked in their turn
             pairs.extend([Pair::new(&middle, &upper, top, error), Pair::new(&lower, &middle, top, error)]);
         }
         Ok(self.add(&middle))

@@ -204,8 +204,7 @@ pub fn history(source: &mut Source, length: f64, softness: f64) -> viscocontact:
                 table.push((time, if k % 2 == 0 { first } else { second }));
                 time += if source.chance(0.2) { 0.0 } else { source.scale(1e-3, 1e2) };
             }
-            let table = PiecewiseLinear::new(&table)?;
-            if source.chance(0.5) { Box::new(Periodic::new(&table)?) } else { Box::new(table) }
+            if source.chance(0.5) { Box::new(Periodic::new(&table)?) } else { Box::new(PiecewiseLinear::new(&table)?) }
         }
         _ => {
             let (normal, rate) = (length * length / softness * source.scale(1e-6, 1e-1), source.scale(1e-3, 1e3));

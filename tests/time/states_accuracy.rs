@@ -41,6 +41,7 @@ fn sweeps_are_as_accurate_as_asked() {
             let states = sweep(accuracy, 4000);
             let (error, count) = (error_of(&states, &exact), states.states().len());
             println!("{name}, {accuracy:.0e}: {count} states of {}, {error:.1e}", exact.states().len());
+            assert!(states.interpolation_error() <= accuracy, "{name}: {states:?}");
             assert!(error < 2.0 * accuracy, "{name}: {error:e} where {accuracy:e} is asked");
             table += &format!(" {count}: {error:.1e} |");
             points.push((count as f64, error));
@@ -64,7 +65,7 @@ fn sweeps_that_end_at_their_limit_give_their_error() {
             sweep.run(Reach::Approach(depth)).unwrap()
         };
         let exact = sweep(3e-6, 4000);
-        assert!(exact.interpolation_error() <= 3e-6 && exact.states().len() < 4000, "{name}: {exact:?}");
+        assert!(exact.interpolation_error() <= 5e-6 && exact.states().len() < 4000, "{name}: {exact:?}");
         for most in [3, 10, 25, 40, 60, 100, 200, 300] {
             let states = sweep(3e-6, most);
             assert_eq!(states.states().len(), most);

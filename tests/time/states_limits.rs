@@ -5,9 +5,13 @@ use std::sync::Arc;
 
 use crate::common::{Draws, from_environment};
 use approx::assert_relative_eq;
+use viscocontact::contact::Edge;
 use viscocontact::contact::StepError;
+use viscocontact::geometry::Sum;
+use viscocontact::load::Tilt;
 use viscocontact::prelude::*;
-use viscocontact::states::{ElasticStates, StatesContact};
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
 
 /// A Zener body of the contact moduli 4 and 1, times `modulus`.
 fn zener(modulus: f64) -> Material {
@@ -198,7 +202,9 @@ fn bodies_without_elastic_response_follow_histories_without_jumps() {
             let mut again = held.clone();
             let mut run = again.follow(&history, stepping, 5.1);
             while run.next_step().unwrap().is_some() {}
-            assert!((again.force() - 2.0).abs() < 2e-2, "{load}: {}", again.force());
+            // a body that stops loses the force of its dashpots
+            let forces = 0.99 * held.level()..2.01;
+            assert!(forces.contains(&again.force()), "{load}: {}", again.force());
         }
         // more at once is refused and changes nothing; less than the surface releases the body, and the surface recovers
         for load in
@@ -215,8 +221,10 @@ fn bodies_without_elastic_response_follow_histories_without_jumps() {
         assert_eq!([report.force, contact.level()], [0.0, 0.0]);
         assert_relative_eq!(report.approach, approach, max_relative = 1e-12);
         for contact in [&mut contact, &mut parted] {
-            contact.step(1.0, Load::force(0.0)).unwrap();
-            assert_relative_eq!(contact.approach(), approach * (-1.0_f64).exp(), max_relative = 1e-9);
+            for _ in 0..200 {
+                contact.step(0.005, Load::force(0.0)).unwrap();
+            }
+            assert_relative_eq!(contact.approach(), approach * (-1.0_f64).exp(), max_relative = 1e-3);
         }
     }
     let approaching = Ramp::new(Load::approach(-0.1), Load::approach(0.3), 1.0).unwrap();
@@ -225,4 +233,126 @@ fn bodies_without_elastic_response_follow_histories_without_jumps() {
     while run.next_step().unwrap().is_some() {}
     assert_relative_eq!(contact.force(), 4.0 / 3.0 * 0.3_f64.powf(1.5), max_relative = 0.5);
     assert_eq!(contact.approach(), 0.3);
+}
+
+/// A history of a run of a second: forces, approaches, a spring, or a force that is held and then a way back.
+fn history(draws: &mut Draws, kind: usize, [force, depth]: [f64; 2]) -> Box<dyn LoadHistory> {
+    let points: Vec<f64> = (0..6).map(|k| if k == 0 { 0.0 } else { draws.between(-0.3, 1.0) }).collect();
+    let soft = draws.power_of_ten(-1.5, 1.5);
+    let load = move |kind: usize, part: f64| match kind {
+        0 => Load::force(force * part.max(0.0)),
+        1 => Load::approach(depth * part),
+        _ => Load::spring(soft * force / depth, depth * part * (1.0 + 1.0 / soft)),
+    };
+    match kind {
+        0..3 => {
+            let table: Vec<_> = (0..).zip(&points).map(|(k, part)| (0.2 * f64::from(k), load(kind, *part))).collect();
+            Box::new(PiecewiseLinear::new(&table).unwrap())
+        }
+        3..6 => {
+            let cycles = draws.between(0.3, 30.0);
+            Box::new(FnHistory::new(move |t| load(kind - 3, 0.4 - 0.6 * (cycles * t).cos())))
+        }
+        _ => {
+            let held = move |t: f64| if t < 0.5 { load(0, 2.0 * t) } else { load(1, 1.0 - t) };
+            Box::new(FnHistory::new(held).with_breakpoints(&[0.5]).unwrap())
+        }
+    }
+}
+
+/// A sweep to the reach of a run holds all states of the run, and under forces and approaches few others.
+#[test]
+fn sweeps_reach_what_a_run_needs() {
+    let (mut beyond, mut wasted, mut kinds) = (0, 0.0f64, [0; 7]);
+    let grid = Grid::square(10, 1.0).unwrap();
+    for number in 0..from_environment("STATES_REACH", 42) {
+        let mut draws = Draws::new(number.wrapping_add(86_000_001));
+        let kind = (number % 7) as usize;
+        let rise = draws.between(-0.05, 0.05);
+        let bowl = FnGeometry::new(move |x1: f64, x2: f64| rise + 0.5 * (x1 * x1 + 1.5 * x2 * x2));
+        let terms: Vec<_> =
+            (0..1 + draws.below(4)).map(|_| (draws.between(0.1, 1.0), draws.power_of_ten(-2.0, 1.0))).collect();
+        let body = Material::incompressible(GeneralizedMaxwell::new(draws.between(0.02, 0.3), &terms).unwrap());
+        let warming = draws.chance(0.3).then(|| {
+            let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
+            TemperatureHistory::function(law, |t| 300.0 + 5.0 * t, &[]).unwrap()
+        });
+        let depth = 0.02 + rise.max(0.0);
+        let history = history(&mut draws, kind, [2.0e-3, depth]);
+        let reach = match &warming {
+            Some(warming) => Reach::at_temperature(&body, warming, &*history, 1.0).unwrap(),
+            None => Reach::of(&body, &*history, 1.0).unwrap(),
+        };
+        let sweep = Sweep::new(grid.clone(), &bowl).settings(Settings::default().with_edge(Edge::Allow)).accuracy(1e-2);
+        let states = match sweep.run(reach) {
+            Ok(states) => states,
+            Err(Error::OutOfRange { field: "load that a sweep reaches", .. }) => continue,
+            Err(error) => panic!("{number}: {error}"),
+        };
+        let mut contact = StatesContact::new(&states, &body).unwrap();
+        if let Some(warming) = warming {
+            contact = contact.with_temperature(warming);
+        }
+        let mut run = contact.follow(&*history, Stepping::adaptive(1e-3), 1.0);
+        let mut greatest = 0.0f64;
+        loop {
+            match run.next_step() {
+                Ok(Some(_)) => greatest = greatest.max(run.contact().level()),
+                Ok(None) => break,
+                Err(Error::States(StatesError::Beyond { .. })) => {
+                    beyond += 1;
+                    println!("{number}, kind {kind}: beyond");
+                    break;
+                }
+                Err(error) => panic!("{number}: {error}"),
+            }
+        }
+        kinds[kind] += 1;
+        let last = states.states()[states.states().len() - 1].level;
+        if !matches!(kind, 2 | 5 | 6) {
+            wasted = wasted.max(last / greatest);
+        }
+    }
+    println!("runs by kind {kinds:?}; {beyond} go beyond; sweeps reach {wasted:.3} times the level needed");
+    assert!(beyond == 0 && wasted < 1.2 && kinds.iter().all(|runs| *runs > 2), "{beyond} {wasted} {kinds:?}");
+}
+
+/// A body that tilts freely under no force rests where small forces press it. The stepper has the same limit; under exactly no force its
+/// bodies are upright.
+#[test]
+fn free_tilts_under_no_force_are_the_limit_of_small_forces() {
+    let (mut compared, mut tilted) = (0, 0);
+    for seed in 0..from_environment("STATES_REST", 4) {
+        let grid = Grid::square(16, 1.0).unwrap();
+        let spec = RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(3e-4)).with_seed(seed);
+        let face = FlatPunch::rectangular([0.7, 0.55]).unwrap();
+        let shape = Sum::new(face, Rough::new(&grid, spec).unwrap());
+        let (at, settings) = ([0.03, -0.02], Settings::default().with_edge(Edge::Allow).with_tolerance(1e-11));
+        let tilt = at.map(|at| Tilt::Free { at });
+        let force = |normal: f64| Load::Force { normal, tilt };
+        let sweep = Sweep::new(grid.clone(), &shape).tilt(tilt).settings(settings).accuracy(1e-4);
+        let states = sweep.run(Reach::Level(0.02)).unwrap();
+        let mut contact = StatesContact::new(&states, &zener(0.25)).unwrap();
+        let builder = ViscoelasticContact::builder(grid).geometry(&shape).material(zener(0.25)).settings(settings);
+        let mut full = builder.build().unwrap();
+        let of_point = |approach: f64, tilt: [f64; 2]| approach + tilt[0] * at[0] + tilt[1] * at[1];
+        for held in [false, true] {
+            if held {
+                for dt in [0.0, 1.0] {
+                    contact.step(dt, force(5e-3)).unwrap();
+                    full.step(dt, force(5e-3)).unwrap();
+                }
+            }
+            let dt = if held { 0.3 } else { 0.0 };
+            let free = contact.clone().step(dt, force(0.0)).unwrap();
+            let (mut resting, mut unloaded) = (full.clone(), full.clone());
+            let touching = resting.step(dt, force(1e-12)).unwrap();
+            let off = of_point(free.approach, free.tilt) / of_point(touching.approach, touching.tilt) - 1.0;
+            assert!(off.abs() < 1e-6, "{seed}: {off:e}");
+            assert_eq!(unloaded.step(dt, force(0.0)).unwrap().tilt, [0.0; 2]);
+            compared += 1;
+            tilted += u32::from(touching.tilt != [0.0; 2]);
+        }
+    }
+    assert!(compared >= 2 && tilted == compared, "{compared} {tilted}");
 }

@@ -9,12 +9,13 @@ use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
 use crate::contact::distributed::gap::SharedGap;
+use crate::contact::read::limits::Limits;
 use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
 use crate::error::{AdhesionError, Error, KernelError, RanksError, Result, StepError, count_within, length, positive};
-use crate::geometry::Gap;
+use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
@@ -69,14 +70,16 @@ impl Builder {
 
     /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
     fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
-        let Builder { grid, temperature, attraction, .. } = self;
+        let Builder { grid, waves, temperature, attraction, .. } = self;
         let Parts { settings, material, kernel, history, .. } = parts;
+        let missed = Missed::of(&waves, &grid, kernel.periodic_axes());
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
             built: Built::new(indenter.gap(), &region.of_gap()),
             bodies: indenter.bodies(),
             grid,
             kernel,
+            limits: Limits::of(&material),
             material,
             settings,
             temperature,
@@ -85,7 +88,7 @@ impl Builder {
         };
         let attracts = scene.attraction.is_some();
         let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history, attracts));
-        ViscoelasticContact::new(scene, computation)
+        ViscoelasticContact::new(scene, computation, missed)
     }
 
     /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
@@ -104,17 +107,19 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
+        self.special().map_or(Ok(()), |[what, _]| Err(RanksError::NotShared { what }.into()))
+    }
+
+    /// What neither ranks nor surfaces that attract each other cover, and what to do.
+    fn special(&self) -> Option<[&'static str; 2]> {
         let Settings { solver, time_rule, frame, .. } = self.settings;
         let refused = [
-            (self.gaps.len() > 1, "a contact of several rigid bodies"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer"),
-            (!time_rule.needs_series(), "a direct sum"),
-            (frame != Frame::Bodies, "Frame::Indenter"),
+            (self.gaps.len() > 1, ["a contact of several rigid bodies", "compute one body"]),
+            (solver != Solver::ActiveSet, ["Solver::PolonskyKeer", "take Solver::ActiveSet"]),
+            (!time_rule.needs_series(), ["a direct sum", "take TimeRule::Exponential"]),
+            (frame != Frame::Bodies, ["Frame::Indenter", "take Frame::Bodies"]),
         ];
-        match refused.into_iter().find(|(refused, _)| *refused) {
-            Some((_, what)) => Err(RanksError::NotShared { what }.into()),
-            None => Ok(()),
-        }
+        refused.into_iter().find(|(refused, _)| *refused).map(|(_, what)| what)
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -181,18 +186,12 @@ impl Builder {
 
     /// Rejects scenes that are not covered where surfaces attract each other.
     fn attraction_is_covered(&self) -> Result<()> {
-        let Settings { solver, time_rule, frame, .. } = self.settings;
-        let refused = [
-            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
-            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
-            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
-            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
-        ];
-        match refused.into_iter().find(|(refused, ..)| *refused) {
-            Some((_, what, cure)) => Err(AdhesionError::NotCovered { what, cure }.into()),
-            None => Ok(()),
-        }
+        let cure =
+            "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
+        let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
+        let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
+        let refused = self.special().or(shared).or(planned);
+        refused.map_or(Ok(()), |[what, cure]| Err(AdhesionError::NotCovered { what, cure }.into()))
     }
 
     /// Material, kernel and history.

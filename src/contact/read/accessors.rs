@@ -82,10 +82,17 @@ impl ViscoelasticContact {
     /// If `out` does not hold one value per cell, or there is no memory for the displacement on the whole grid, where
     /// only a region is computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
-        let (Scene { grid, kernel, .. }, State { region, history, .. }) = (&*self.scene, &self.computation.state);
+        let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.computation.state);
+        let State { region, indenter, current, history, .. } = state;
         exact_length("gap", out.len(), region.shown_len())?;
+        let initial = indenter.gap();
+        let gap = |k: usize, u: f64, center: [f64; 2]| {
+            let RigidMotion { approach, tilt } = current.motions[initial.owner(k)];
+            let lowered = RigidMotion { approach: approach - initial.datum, tilt };
+            initial.above[k] + u - lowered.at(center)
+        };
         if region.is_shared() {
-            let own = history.displacement().iter().enumerate().map(|(k, &u)| self.gap_of(k, u, region.center(k)));
+            let own = history.displacement().iter().enumerate().map(|(k, &u)| gap(k, u, region.center(k)));
             region.show(&own.collect::<Vec<_>>(), out);
             return Ok(());
         }
@@ -95,23 +102,11 @@ impl ViscoelasticContact {
             let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
             memory::check("the displacement on the whole grid", kernel + fields)?;
         }
-        out.iter_mut().zip(self.gaps()).for_each(|(out, h)| *out = h);
+        let n2 = grid.cells()[1];
+        for (k, (h, &u)) in out.iter_mut().zip(self.displacement()).enumerate() {
+            *h = gap(k, u, grid.center(k / n2, k % n2));
+        }
         Ok(())
-    }
-
-    /// The gap of cell `k` where the displacement is `u`.
-    fn gap_of(&self, k: usize, u: f64, center: [f64; 2]) -> f64 {
-        let State { indenter, current, .. } = &self.computation.state;
-        let initial = indenter.gap();
-        let RigidMotion { approach, tilt } = current.motions[initial.owner(k)];
-        let lowered = RigidMotion { approach: approach - initial.datum, tilt };
-        initial.above[k] + u - lowered.at(center)
-    }
-
-    /// The gaps on the whole grid.
-    fn gaps(&self) -> impl Iterator<Item = f64> {
-        let (grid, n2) = (self.grid(), self.grid().cells()[1]);
-        self.displacement().iter().enumerate().map(move |(k, &u)| self.gap_of(k, u, grid.center(k / n2, k % n2)))
     }
 
     /// Whether the bodies are apart: no cell is in contact, and where surfaces attract each other
@@ -119,8 +114,8 @@ impl ViscoelasticContact {
     /// Surfaces without a cell in contact still pull.
     pub fn is_separated(&self) -> bool {
         let far = |law: &Arc<dyn Attraction>| {
-            let narrowest = self.gaps().fold(f64::INFINITY, f64::min).max(0.0);
-            law.energy(narrowest) <= UNDONE * law.work()
+            let narrowest = self.gap().map(|gap| gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0));
+            narrowest.is_ok_and(|gap| law.energy(gap) <= UNDONE * law.work())
         };
         self.contact_cells() == 0 && self.scene.attraction.as_ref().is_none_or(far)
     }

@@ -5,8 +5,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
-use super::built;
-use crate::error::Result;
+use super::{built, history};
 use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
 
 /// A load history of any type.
@@ -36,13 +35,6 @@ pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Val
     ]
 }
 
-fn history<I: std::fmt::Debug + 'static, H: LoadHistory + 'static>(
-    numbers: impl Strategy<Value = I> + 'static,
-    build: impl Fn(I) -> Result<H> + 'static,
-) -> BoxedStrategy<AnyHistory> {
-    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyHistory))
-}
-
 /// Histories of a force up to `force` \[N\] on a body that does not tilt, varying over `duration` \[s\]: constant,
 /// ramps, tables with corners and jumps, oscillations, closures with and without corners.
 pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory> {
@@ -57,12 +49,12 @@ pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory>
             table.extend(jump.map(|after| (time, after)));
             time += pause * duration;
         }
-        PiecewiseLinear::new(&table)
+        Ok(table)
     });
     Union::new([
         history(load(), StepLoad::new),
         history((load(), load(), time()), |(from, to, time)| Ramp::new(from, to, time)),
-        history(tables.clone(), Ok),
+        history(tables.clone(), |table| PiecewiseLinear::new(&table)),
         history(tables, |table| Periodic::new(&table)),
         history((load(), load(), time(), 0.05..0.95_f64), |(a, b, period, duty)| Periodic::square(a, b, period, duty)),
         history((load(), load(), time()), |(from, to, period)| Periodic::triangle(from, to, period)),
