@@ -1,13 +1,12 @@
 //! Steps as long as their error allows.
 
-use std::sync::atomic::AtomicBool;
-
 use crate::contact::step::error_in_time::{StepContext, error_in_time};
 use crate::contact::{Computation, Scene, Settings, State, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
-use crate::run::progress::StepErrors;
+use crate::run::driven::Course;
+use crate::run::error_budget::StepErrors;
 use crate::run::step_control::{NODES, StepControl};
 
 /// Number of shorter attempts after the solver has failed to converge.
@@ -29,19 +28,6 @@ const ROUNDINGS: f64 = 1e3;
 /// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
 /// them.
 const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
-
-/// What a run prescribes of its next adaptive step.
-#[derive(Clone, Copy)]
-pub(super) struct Course<'a> {
-    pub(super) history: &'a dyn LoadHistory,
-    /// End of the run.
-    pub(super) until: f64,
-    /// The next time at which a step has to end, and the next at which the displacement may have a kink.
-    pub(super) stop: f64,
-    pub(super) kink: f64,
-    /// Set by another thread to end the step.
-    pub(super) cancelled: Option<&'a AtomicBool>,
-}
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
 /// error, and accepts it or tries a shorter one.

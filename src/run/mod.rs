@@ -1,11 +1,17 @@
-//! Runs along a load history.
+//! Runs along a load history, of every contact.
 //!
-//! `follow` takes the next step: of given length, or as long as its error allows. An adaptive step is proposed, tried, judged
-//! by its error, and accepted or tried again shorter (`adaptive_step`); `step_control` holds the error, the past steps and the
-//! length of the next one, `run_scale` the greatest loads and displacements of the run, and `progress` the state of a run.
+//! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)) or on elastic states
+//! ([`StatesContact`](crate::states::StatesContact)); [`SteadyRun`] moves one in space to its steady state.
+
+// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space (`in_space`) an
+// adaptive step is proposed, tried, judged by its error, and accepted or tried again shorter (`adaptive_step`); `step_control` holds the
+// error, the past steps and the length of the next one, `run_scale` the greatest loads and displacements of the run.
 
 mod adaptive_step;
+pub(crate) mod driven;
+mod error_budget;
 mod follow;
+mod in_space;
 mod progress;
 mod run_scale;
 mod samples;
@@ -15,56 +21,44 @@ mod steady;
 mod step_control;
 
 pub use crate::ascending::Times;
+pub use error_budget::ErrorBudget;
 pub use follow::Run;
-pub use progress::{ErrorBudget, RunProgress, Stepping};
+pub(crate) use follow::SAME_TIME;
+pub use progress::{RunProgress, Stepping};
 pub use samples::Sample;
 pub use steady::{SteadyMotion, SteadyRun};
 
 use std::ops::{Deref, DerefMut};
 
-use crate::contact::ViscoelasticContact;
-use crate::load::LoadHistory;
+/// A contact that a [`Run`] leads: [`ViscoelasticContact`](crate::ViscoelasticContact) or
+/// [`StatesContact`](crate::states::StatesContact). What a run asks of it is private.
+pub trait RunContact: driven::Driven {}
+
+impl<C: driven::Driven> RunContact for C {}
 
 /// A value that a run borrows as `B` or owns as `O`.
 #[derive(Debug)]
-pub(super) enum OwnedOrBorrowed<B, O> {
+pub(crate) enum OwnedOrBorrowed<B, O> {
     Borrowed(B),
     Owned(O),
 }
 
-/// The contact of a run.
-pub(super) type RunContact<'a> = OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>;
-/// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
-/// the run is dropped.
-pub(super) type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
+impl<B: Deref, O: Deref<Target = B::Target>> Deref for OwnedOrBorrowed<B, O> {
+    type Target = B::Target;
 
-impl Deref for RunContact<'_> {
-    type Target = ViscoelasticContact;
-
-    fn deref(&self) -> &ViscoelasticContact {
+    fn deref(&self) -> &B::Target {
         match self {
-            OwnedOrBorrowed::Borrowed(contact) => contact,
-            OwnedOrBorrowed::Owned(contact) => contact,
+            OwnedOrBorrowed::Borrowed(value) => value,
+            OwnedOrBorrowed::Owned(value) => value,
         }
     }
 }
 
-impl DerefMut for RunContact<'_> {
-    fn deref_mut(&mut self) -> &mut ViscoelasticContact {
+impl<B: DerefMut, O: DerefMut<Target = B::Target>> DerefMut for OwnedOrBorrowed<B, O> {
+    fn deref_mut(&mut self) -> &mut B::Target {
         match self {
-            OwnedOrBorrowed::Borrowed(contact) => contact,
-            OwnedOrBorrowed::Owned(contact) => contact,
-        }
-    }
-}
-
-impl<'a> Deref for RunHistory<'a> {
-    type Target = dyn LoadHistory + 'a;
-
-    fn deref(&self) -> &(dyn LoadHistory + 'a) {
-        match self {
-            OwnedOrBorrowed::Borrowed(history) => *history,
-            OwnedOrBorrowed::Owned(history) => &**history,
+            OwnedOrBorrowed::Borrowed(value) => value,
+            OwnedOrBorrowed::Owned(value) => value,
         }
     }
 }

@@ -5,11 +5,59 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::contact::ViscoelasticContact;
+use crate::contact::checkpoint::SavedRun;
 use crate::error::Result;
 use crate::run::follow::Run;
+use crate::run::in_space::SpaceControl;
 use crate::run::progress::Progress;
+use crate::run::run_scale::RunScale;
 
 impl ViscoelasticContact {
+    /// Saves the whole state to a file: a contact that is built like this one and continues from it
+    /// ([`ViscoelasticContact::resume`]) takes the same steps, bitwise, on any number of threads.
+    ///
+    /// Needs the feature `checkpoint`.
+    ///
+    /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It carries the version
+    /// of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for each relaxation time, and 8 per cell of the
+    /// whole grid, or of its computed part where the gap is symmetric.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let build = || {
+    ///     ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///         .geometry(&Sphere::new(10.0e-3)?)
+    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///         .build()
+    /// };
+    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-checkpoint-{}", std::process::id()));
+    /// let mut contact = build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// contact.save(&path)?;
+    /// contact.step(0.1, Load::force(0.5))?;
+    ///
+    /// let mut again = build()?; // after a power cut
+    /// again.resume(&path)?;
+    /// again.step(0.1, Load::force(0.5))?;
+    /// assert_eq!(contact.pressure(), again.pressure());
+    /// # std::fs::remove_file(&path).unwrap();
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// Contacts may save to one path at once: the file always belongs to one of them, in the end to the last to finish. Where the path
+    /// is a link, the file that it leads to is replaced.
+    ///
+    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them: rank 0 writes the file, and the others
+    /// send it their rows, some at a time. Any number of ranks can resume from it, one process too, and any number of ranks from
+    /// the file of one process.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        self.save_with::<Progress<SpaceControl>>(path.as_ref(), None)
+    }
+
     /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
     /// kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance, iterations, edge,
     /// memory), not in the rest. Where an indenter has moved, it is where it was.
@@ -31,7 +79,7 @@ impl ViscoelasticContact {
     /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved
     /// ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
-        let progress = self.resume_with::<Progress>(path.as_ref())?;
+        let progress = self.resume_with::<Progress<SpaceControl>>(path.as_ref())?;
         self.saved_run = progress.map(|progress| Arc::new(progress) as _);
         Ok(())
     }
@@ -82,7 +130,7 @@ impl Run<'_> {
     }
 
     /// Saves the run if that is due, or the run is `over`.
-    pub(super) fn autosave(&mut self, over: bool) -> Result<()> {
+    pub(super) fn save_if_due(&mut self, over: bool) -> Result<()> {
         let Some(autosave) = &self.autosave else { return Ok(()) };
         let (due, rows) = (over || autosave.is_due(), self.contact.computation.state.region.rows());
         // clocks differ: where it is due on one rank, it is on all
@@ -93,6 +141,17 @@ impl Run<'_> {
         self.save(path)?;
         self.autosave.iter_mut().for_each(Autosave::done);
         Ok(())
+    }
+}
+
+impl SavedRun for Progress<SpaceControl> {
+    fn fits(&self) -> bool {
+        let SpaceControl { adaptive, scale, .. } = &self.control;
+        scale.as_ref().is_none_or(RunScale::fits)
+            && match adaptive {
+                Some(control) => control.fits(),
+                None => (self.now - self.start - self.equal_steps as f64 * self.dt).abs() <= 2.0 * self.dt,
+            }
     }
 }
 

@@ -140,8 +140,13 @@ impl StatesContact {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted.level);
         (self.time, self.reduced_time) = (time, reduced);
-        Ok(StepReport {
-            time,
+        Ok(self.report(dt, load))
+    }
+
+    /// The report of a step of length `dt` to this state.
+    pub(super) fn report(&self, dt: f64, load: Load) -> StepReport {
+        StepReport {
+            time: self.time,
             force: self.force(),
             approach: self.approach(),
             contact_cells: self.states.cells(self.level()),
@@ -156,7 +161,7 @@ impl StatesContact {
             convolutions: 0,
             preconditioner_applications: 0,
             residual: 0.0,
-        })
+        }
     }
 
     /// Adds the elastic state at a level to the states of this contact.
@@ -217,9 +222,8 @@ impl StatesContact {
         self.levels.reset_differences();
     }
 
-    /// The first corner of the temperature after a time; infinite where there is none.
-    pub(crate) fn next_temperature_corner(&self, after: f64) -> f64 {
-        self.scene.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
+    pub(super) fn temperature(&self) -> Option<&TemperatureHistory> {
+        self.scene.temperature.as_ref()
     }
 
     /// Depth of the load point \[m\].

@@ -143,7 +143,7 @@ impl Course<'_> {
         let mut greatest = 0.0_f64;
         while run.next_step()?.is_some() {
             for sample in run.samples() {
-                greatest = greatest.max(sample?.level());
+                greatest = greatest.max(sample?.contact().level());
             }
         }
         Ok(greatest)

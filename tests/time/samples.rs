@@ -142,7 +142,7 @@ fn steps_end_where_they_are_stopped() {
         let mut ends = Vec::new();
         while let Some(report) = run.next_step().unwrap() {
             ends.push(report.time);
-            assert_eq!(run.samples().map(|sample| sample.unwrap().time()).collect::<Vec<_>>(), [report.time]);
+            assert_eq!(run.samples().map(|sample| sample.unwrap().report().time).collect::<Vec<_>>(), [report.time]);
         }
         assert!(met(&multiples, &ends) && met(&decades, &ends), "{ends:?}");
     }
@@ -163,7 +163,7 @@ fn samples_of_elastic_states_leave_the_steps_as_they_are() {
         let (mut reports, mut points) = (Vec::new(), Vec::new());
         while let Some(report) = run.next_step().unwrap() {
             reports.push(report);
-            points.extend(run.samples().map(|sample| sample.unwrap().time()));
+            points.extend(run.samples().map(|sample| sample.unwrap().report().time));
         }
         (reports, points)
     };

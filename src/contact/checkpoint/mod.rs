@@ -29,58 +29,7 @@ pub(crate) trait SavedRun: Clone + Serialize + DeserializeOwned {
     fn fits(&self) -> bool;
 }
 
-impl SavedRun for () {
-    fn fits(&self) -> bool {
-        true
-    }
-}
-
 impl ViscoelasticContact {
-    /// Saves the whole state to a file: a contact that is built like this one and continues from it
-    /// ([`ViscoelasticContact::resume`]) takes the same steps, bitwise, on any number of threads.
-    ///
-    /// Needs the feature `checkpoint`.
-    ///
-    /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It carries the version
-    /// of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for each relaxation time, and 8 per cell of the
-    /// whole grid, or of its computed part where the gap is symmetric.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let build = || {
-    ///     ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///         .geometry(&Sphere::new(10.0e-3)?)
-    ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///         .build()
-    /// };
-    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-checkpoint-{}", std::process::id()));
-    /// let mut contact = build()?;
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// contact.save(&path)?;
-    /// contact.step(0.1, Load::force(0.5))?;
-    ///
-    /// let mut again = build()?; // after a power cut
-    /// again.resume(&path)?;
-    /// again.step(0.1, Load::force(0.5))?;
-    /// assert_eq!(contact.pressure(), again.pressure());
-    /// # std::fs::remove_file(&path).unwrap();
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// Contacts may save to one path at once: the file always belongs to one of them, in the end to the last to finish. Where the path
-    /// is a link, the file that it leads to is replaced.
-    ///
-    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them: rank 0 writes the file, and the others
-    /// send it their rows, some at a time. Any number of ranks can resume from it, one process too, and any number of ranks from
-    /// the file of one process.
-    ///
-    /// # Errors
-    /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        self.save_with::<()>(path.as_ref(), None)
-    }
-
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(crate) fn save_with<P: SavedRun>(&self, path: &Path, progress: Option<&P>) -> Result<()> {
         let State { region, indenter, .. } = &self.computation.state;
