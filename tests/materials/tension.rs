@@ -233,7 +233,12 @@ fn headings_keep_tension_and_shear_apart() {
     }
     for (experiment, headings) in [(Experiment::Relaxation, "t,modulus"), (Experiment::Creep, "t,compliance")] {
         let table = read(experiment, headings);
-        assert_eq!(table.fit().unwrap().report(), table.fit_tension().unwrap().report());
+        // the same series, which knows what it was taken for
+        let [shear, rod] = [table.fit().unwrap(), table.fit_tension().unwrap()];
+        assert_eq!((shear.spectrum(), shear.report().samples()), (rod.spectrum(), rod.report().samples()));
+        assert!(contact_on(Material::incompressible(shear)).is_ok());
+        let refused = contact_on(Material::incompressible(rod)).err();
+        assert!(matches!(refused, Some(Error::Material(MaterialError::TakenForShear))), "{refused:?}");
     }
     // a diameter is no compliance
     let diameter = "t,D [mm],J\n1,5,1.0\n2,5,1.1\n4,5,1.3\n8,5,1.4\n";
