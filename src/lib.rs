@@ -101,7 +101,7 @@
 //! computed cell and further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory for it is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
 //! first two of a run, along a path, under a tilting load or an attraction; one in which a window grows; and one in which a changing
-//! temperature alters the rate of creep by decades. `docs/performance.md` has the threads.
+//! temperature alters the rate of creep by many decades. `docs/performance.md` has the threads.
 //!
 //! # Co-simulation and long runs
 //!

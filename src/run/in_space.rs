@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::contact::step::error_in_time::StepContext;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::hereditary::StepContext;
 use crate::load::{Load, LoadHistory};
 use crate::observe::MeshError;
 use crate::rheology::TemperatureHistory;

@@ -117,7 +117,17 @@ impl ElasticStates {
     /// # Errors
     /// If there are fewer than two states, a number is not finite and positive, or levels and approaches do not ascend.
     pub fn from_table(table: &[(f64, f64, f64, f64)]) -> Result<Arc<ElasticStates>> {
-        let states = table.iter().map(|&(level, approach, stiffness, area)| ElasticState {
+        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
+        ElasticStates::from_rows(table.iter().copied(), rest, [Tilt::Fixed(0.0); 2])
+    }
+
+    /// States of a body that does not turn, from rows of level, approach, stiffness and area.
+    pub(crate) fn from_rows(
+        rows: impl Iterator<Item = (f64, f64, f64, f64)>,
+        rest: Rest,
+        tilt: [Tilt; 2],
+    ) -> Result<Arc<ElasticStates>> {
+        let states = rows.map(|(level, approach, stiffness, area)| ElasticState {
             level,
             approach,
             stiffness,
@@ -125,7 +135,6 @@ impl ElasticStates {
             area,
             ..ElasticState::default()
         });
-        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
-        ElasticStates::new(states.collect(), rest, [Tilt::Fixed(0.0); 2]).validated().map(Arc::new)
+        ElasticStates::new(states.collect(), rest, tilt).validated().map(Arc::new)
     }
 }

@@ -60,6 +60,6 @@ pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
-pub(crate) use reach::{as_elastic, greatest, greatest_level, is_force, on_any_shape, sampled, softest_compliance};
+pub(crate) use reach::{Course, as_elastic, greatest};
 pub use run::StatesRun;
 pub use sweep::Sweep;

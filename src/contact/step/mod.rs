@@ -35,7 +35,7 @@ use crate::contact::{
 use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
-use crate::hereditary::{Interval, TimeError};
+use crate::hereditary::{Interval, StepContext, TimeError};
 use crate::load::{Load, Loads};
 use crate::parallel::in_pool;
 use crate::solver::{RigidMotion, Solution, Stop};
@@ -43,7 +43,7 @@ use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use constraints::{find_free_motions, validate_loads};
-use error_in_time::{StepContext, error_in_time};
+use error_in_time::error_in_time;
 use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
