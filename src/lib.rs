@@ -95,8 +95,8 @@
 //! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
 //! times per decade for an error of 1e-4, in a tenth of a second.
 //!
-//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is computed,
-//! <!-- figures memory -->158 to 186<!-- end --> where all are, 16 more for each computed cell where threads share a contact
+//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
+//! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, 16 more for each computed cell where threads share a contact
 //! (<!-- figures memory of a line -->370<!-- end --> for a line contact, whose transform tables are as long as the line), and 8 for each
 //! computed cell and further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory for it is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
@@ -134,7 +134,7 @@
 //! # Limitations
 //!
 //! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). Surfaces may
+//! at small strains and slopes: steps warn beyond ([`guide::accuracy`] lists the warnings). Surfaces may
 //! attract each other ([`contact::Builder::attraction`]): one body on the whole grid ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on one
 //! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).

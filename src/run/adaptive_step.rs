@@ -1,9 +1,10 @@
 //! Steps as long as their error allows.
 
-use crate::contact::step::error_in_time::{StepContext, error_in_time};
+use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Computation, Scene, Settings, State, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
+use crate::hereditary::StepContext;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::run::driven::Course;
 use crate::run::error_budget::StepErrors;

@@ -1,10 +1,10 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
+use crate::contact::step::error_in_time::SHORTEST_TOUCH;
 use crate::contact::{Computation, Scene, State};
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{ExponentialRule, LastingError, TimeError};
+use crate::hereditary::{ExponentialRule, LastingError, Meeting, StepContext, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
 use crate::run::run_scale::RunScale;
@@ -212,16 +212,14 @@ impl StepControl {
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
+        let lasting = self.lasting.as_ref().map(<[_; 2]>::each_ref);
         let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
-        let [depth, stiffness] =
-            self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now]));
+        let meeting =
+            self.scale.as_ref().map_or(Meeting::default(), |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: [depth, stiffness.max(soon)],
-            lasting: self
-                .lasting
-                .as_ref()
-                .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
+            meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
+            lasting: lasting.map_or([0.0; 2], |errors| errors.map(LastingError::of_displacement)),
             on_switch,
             greatest_on_switch: if on_switch[1] > 0.0 { greatest } else { 0.0 },
             on_jump: 0.0,

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::contact::depth_of_power;
 use crate::error::{Result, positive, within};
 use crate::load::Tilt;
 use crate::states::curve::{ElasticState, ElasticStates, Rest};
@@ -66,8 +67,7 @@ impl ElasticStates {
     pub fn power(coefficient: f64, exponent: f64) -> Result<Arc<ElasticStates>> {
         positive("coefficient of the shape c r^n", coefficient)?;
         let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;
-        let factor = PI.sqrt() * libm::tgamma(0.5 * n + 1.0) / libm::tgamma(0.5 * n + 0.5);
-        let depth = factor * coefficient;
+        let depth = depth_of_power(n) * coefficient;
         ElasticStates::of_powers([(2.0 * n / (n + 1.0) * depth, n + 1.0), (depth, n), (2.0, 1.0), (PI, 2.0)])
     }
 
@@ -130,13 +130,10 @@ impl ElasticStates {
         let states = rows.map(|(level, approach, stiffness, area)| ElasticState {
             level,
             approach,
-            tilt: [0.0; 2],
             stiffness,
             load_stiffness: stiffness,
-            tilt_rate: [0.0; 2],
             area,
-            cells: 0,
-            patches: 0,
+            ..ElasticState::default()
         });
         ElasticStates::new(states.collect(), rest, tilt).validated().map(Arc::new)
     }

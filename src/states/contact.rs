@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::contact::{Estimated, StepReport, Warnings, impl_contact};
+use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings, impl_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -36,7 +36,7 @@ pub(super) struct Scene {
     /// Solves the state of each step.
     elastic: Option<Arc<Mutex<ElasticContact>>>,
     pub(super) temperature: Option<TemperatureHistory>,
-    known_until: f64,
+    limits: Limits,
     pub(super) interpolant: Interpolant,
 }
 
@@ -52,9 +52,8 @@ impl StatesContact {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
-        let (states, known_until, interpolant) =
-            (Arc::clone(states), material.known_until(), Interpolant::CorrectedLinear);
-        let scene = Scene { swept: Arc::clone(&states), elastic: None, temperature: None, known_until, interpolant };
+        let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
+        let scene = Scene { swept: Arc::clone(&states), elastic: None, temperature: None, limits, interpolant };
         let levels = Levels::new(ExponentialRule::new(&creep));
         Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
     }
@@ -113,12 +112,9 @@ impl StatesContact {
             None => dt,
         };
         let reduced = if self.scene.temperature.is_some() { self.reduced_time + length } else { time };
-        if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::Step(StepError::BeyondMaterial {
-                time,
-                age: reduced,
-                known_until: self.scene.known_until,
-            }));
+        let known_until = self.scene.limits.known_until;
+        if !is_known(reduced, known_until) {
+            return Err(Error::Step(StepError::BeyondMaterial { time, age: reduced, known_until }));
         }
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
@@ -145,17 +141,24 @@ impl StatesContact {
 
     /// The report of a step of length `dt` to this state.
     pub(super) fn report(&self, dt: f64, load: Load) -> StepReport {
+        let limits = &self.scene.limits;
+        let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
+        if self.groups() > 0 {
+            let reduced = self.temperature().and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
+            warnings |= limits.warnings(self.reduced_time, reduced.unwrap_or(dt));
+        }
+        warnings.set(Warnings::MODULUS, limits.modulus.is_some());
         StepReport {
             time: self.time,
             force: self.force(),
             approach: self.approach(),
-            contact_cells: self.states.cells(self.level()),
+            contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
             tilt: self.tilt(),
             dt,
             time_error: (dt == 0.0).then_some(0.0),
             estimated: Estimated::under(&[load]),
-            warnings: Warnings::empty(),
-            max_slope: None,
+            warnings,
+            figures: Figures { modulus: limits.modulus, ..figures },
             iterations: 0,
             fallback_iterations: 0,
             convolutions: 0,

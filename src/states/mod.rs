@@ -45,6 +45,7 @@ mod elastic;
 mod fields;
 mod interpolation;
 mod levels;
+mod outside;
 mod pressed;
 mod reach;
 mod run;
