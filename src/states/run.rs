@@ -122,7 +122,7 @@ impl Driven for StatesContact {
         if control.halved && time > middle && time < end {
             contact.step_to(middle, middle - start, load_at(history, middle)?)?;
         }
-        let load = history.at(time).validated_at(time, false)?;
+        let load = history.checked_at(time, false)?;
         if time > start && time < end {
             contact.step_to(time, time - contact.time(), load)?;
         }
@@ -137,7 +137,7 @@ impl Driven for StatesContact {
 
 /// The load at a time, or just before it where it jumps.
 fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
-    history.before(time).validated_at(time, false)
+    history.checked_before(time, false)
 }
 
 /// Chooses the adaptive steps.
