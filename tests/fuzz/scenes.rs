@@ -216,7 +216,7 @@ fn follow(source: &mut Source) -> Verdict {
     let landings = [source.between(0.0, 1.0) * until, source.between(0.0, 1.0) * until];
     let mut reports = Vec::new();
     {
-        let Ok(run) = contact.follow(&*history, stepping, until).stop_at(&landings) else {
+        let Ok(run) = contact.follow(&*history, stepping, until).stop_at(landings) else {
             return Ok(Outcome::Refused);
         };
         // no more than these, or the slowest scenes take for ever

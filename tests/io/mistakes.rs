@@ -60,7 +60,7 @@ fn jump_in_a_closure() -> Result<()> {
 
 fn stop() -> Result<()> {
     let hold = StepLoad::new(Load::force(0.1))?;
-    contact()?.follow(&hold, Stepping::fixed(0.1), 2.0).stop_at(&[f64::NAN]).map(drop)
+    contact()?.follow(&hold, Stepping::fixed(0.1), 2.0).stop_at([f64::NAN]).map(drop)
 }
 
 fn beyond_the_table() -> Result<StepReport> {

@@ -311,7 +311,7 @@ proptest! {
         let (mut jumping, mut plain) = (scene.contact(), scene.contact());
         let touch = plain.approach();
         let run = |contact: &mut ViscoelasticContact, protocol: &Protocol| {
-            let mut run = contact.follow(protocol, Stepping::adaptive(1e-3), protocol.end()).stop_at(&[2.7]).unwrap();
+            let mut run = contact.follow(protocol, Stepping::adaptive(1e-3), protocol.end()).stop_at([2.7]).unwrap();
             let mut state = Vec::new();
             while let Some(report) = run.next_step().unwrap() {
                 if report.time == 2.7 {

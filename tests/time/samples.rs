@@ -33,7 +33,7 @@ fn samples_leave_the_steps_as_they_are() {
         let mut contact = contact();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), 80.0);
         if sampled {
-            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0)).and(&[0.77, 90.0])).unwrap();
+            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0)).and([0.77, 90.0])).unwrap();
         }
         assert_eq!(run.samples().count(), 0, "no step yet");
         let (mut reports, mut looks, mut asked, mut problems): (Vec<StepReport>, _, Vec<f64>, _) =
@@ -158,7 +158,7 @@ fn samples_of_elastic_states_leave_the_steps_as_they_are() {
         let mut contact = StatesContact::new(&states, &rubber()).unwrap();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), 80.0);
         if sampled {
-            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0))).unwrap().sample_at(&[0.77]).unwrap();
+            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0))).unwrap().sample_at([0.77]).unwrap();
         }
         let (mut reports, mut points) = (Vec::new(), Vec::new());
         while let Some(report) = run.next_step().unwrap() {

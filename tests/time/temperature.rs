@@ -215,7 +215,7 @@ fn adaptive_steps_end_on_corners_and_keep_their_error() {
         let scene = builder_on(grid(32), Material::incompressible(zener())).temperature(history.clone());
         let mut contact = scene.settings(Settings::default().with_tolerance(1e-10)).build().unwrap();
         let stops = [0.7, 1.0, 1.3, 2.0, 2.6, 3.0, 4.0];
-        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 4.0).stop_at(&stops).unwrap();
+        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 4.0).stop_at(stops).unwrap();
         let (mut answers, mut ends) = (Vec::new(), Vec::new());
         while let Some(report) = run.next_step().unwrap() {
             ends.push(report.time);
