@@ -11,6 +11,14 @@ const SAME_LEVEL: f64 = 1e-15;
 const GROUPS: usize = 256;
 /// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
 const MORE: [usize; 2] = [8, 8];
+/// What merging changes is measured against the force and depth with a cut at the level of the groups, but against this part of those at the
+/// top at least.
+const LEAST: f64 = 1e-4;
+/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, and counts so much.
+const SWEPT: f64 = 0.05;
+#[allow(dead_code)]
+/// Strains of levels that were swept count as far as they last for so many halves of the step.
+const LASTING: i32 = 8;
 
 /// What is prescribed at the end of a step.
 #[derive(Debug, Clone, Copy)]
@@ -47,7 +55,7 @@ struct Group {
 pub(super) struct Levels {
     history: GroupHistory,
     groups: Vec<Group>,
-    /// Number of groups from which on those with the same past are merged.
+    /// Number of groups from which on they are merged.
     merge_from: usize,
     /// W of each group at the end of the step being tried.
     trial: Vec<f64>,
@@ -70,6 +78,11 @@ impl Clone for Levels {
     }
 }
 
+pub(super) fn par(k: usize) -> f64 {
+    static P: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
+    P.get_or_init(|| std::env::var("PAR").unwrap_or_default().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect()).get(k).copied().unwrap_or(f64::NAN)
+}
+fn or(k: usize, d: f64) -> f64 { let x = par(k); if x.is_nan() { d } else { x } }
 impl Levels {
     pub(super) fn new(rule: ExponentialRule) -> Levels {
         Levels {
@@ -259,10 +272,11 @@ impl Levels {
         self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
     }
 
-    /// Holds the groups up to a level, commits the step, and merges groups with the same past.
+    /// Holds the groups up to a level, and commits the step.
     fn hold(&mut self, level: f64) {
         let stiffness = 1.0 / self.history.rule().compliance();
-        let held = self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL));
+        self.level = level;
+        let held = self.held();
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
         for (k, (group, displacement)) in self.groups.iter_mut().zip(&mut self.trial).enumerate() {
             group.traction = if k < held { (1.0 - *displacement) * stiffness } else { 0.0 };
@@ -274,25 +288,99 @@ impl Levels {
             (bottom, lower) = (group.top, group.motions);
         }
         self.history.commit(&self.trial);
-        (self.level, self.force, self.motions, self.lift) = (level, force, motions, 0.0);
-        if self.groups.len() < self.merge_from {
-            return;
-        }
-        let Some(last) = self.groups.last().copied() else { return };
-        for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
-            // a difference counts with the share of the thinner group, in levels or in depth
-            let [before, own] = [group - 1, group].map(|k| {
-                let ((bottom, lower), Group { top, motions, .. }) = (self.bottom(k), &self.groups[k]);
-                ((top - bottom) / last.top).max((motions.depth - lower.depth) / last.motions.depth)
-            });
-            if self.history.is_like_the_one_before(group, before.min(own)) {
-                self.history.remove(if before < own { group - 1 } else { group });
-                if before >= own {
-                    self.groups[group].traction = self.groups[group - 1].traction;
+        (self.force, self.motions, self.lift) = (force, motions, 0.0);
+    }
+
+    /// Number of groups that are held.
+    fn held(&self) -> usize {
+        self.groups.partition_point(|group| group.top <= self.level * (1.0 + SAME_LEVEL))
+    }
+
+    /// Merges neighbours, both held or both free, where a later step that ends within the merged group errs by at most about `error`, in
+    /// depth and in force, relative to those with a cut at its top. Let A be the greatest difference of the strains of both: what a cut inside
+    /// leaves out is a profile of slope 2 A over the sum of both widths, so it errs by A/4 times this sum. Held groups keep their force,
+    /// free ones the depth.
+    pub(super) fn merge(&mut self, states: &ElasticStates, error: f64) {
+        let Some(last) = self.groups.last().copied().filter(|_| self.groups.len() >= self.merge_from) else { return };
+        let (held, reach, compliance) = (self.held(), states.reach(), self.history.rule().compliance());
+        // of (1 − W) Δl, the force over the compliance of a step that cuts there
+        let carried_by = |levels: &Levels, k: usize| {
+            let Group { top, traction, .. } = levels.groups[k];
+            let part = if k < held { traction * compliance } else { 1.0 - levels.history.displacements()[k] };
+            part * (top - levels.bottom(k).0)
+        };
+        let width = |levels: &Levels, k: usize| {
+            let ((bottom, lower), Group { top, motions, .. }) = (levels.bottom(k), levels.groups[k]);
+            let turned = (0..2).map(|axis| (motions.tilt[axis] - lower.tilt[axis]).abs()).sum::<f64>();
+            [top - bottom, motions.depth - lower.depth + reach * turned]
+        };
+        let least = LEAST * (0..self.groups.len()).map(|k| carried_by(self, k)).sum::<f64>();
+        let (mut kept, mut carried) = (0, 0.0);
+        for k in 0..self.groups.len() {
+            carried += carried_by(self, k);
+            let (group, own) = (self.groups[k], width(self, k));
+            if kept > 0 && k != held {
+                let before = width(self, kept - 1);
+                let [level, depth] = [0, 1].map(|axis| before[axis] + own[axis]);
+                let deep = group.motions.depth.max(LEAST * last.motions.depth);
+                let most = 4.0 * error * (carried.max(least) / level).min(deep / depth);
+                if self.history.differ_at_most(kept - 1, k, most) {
+                    let share = if k < held { own[0] / level } else { own[1] / depth };
+                    self.history.mix(kept - 1, k, share);
+                    let into = &mut self.groups[kept - 1];
+                    let traction = into.traction + share * (group.traction - into.traction);
+                    *into = Group { traction, ..group };
+                    continue;
                 }
-                self.groups.remove(group - 1);
             }
+            self.groups[kept] = group;
+            self.history.copy_within(k, kept);
+            kept += 1;
         }
-        self.merge_from = self.groups.len() + self.groups.len() / MORE[0] + MORE[1];
+        self.groups.truncate(kept);
+        self.history.truncate(kept);
+        self.merge_from = kept + kept / MORE[0] + MORE[1];
+    }
+
+    /// Σ W Δδ at the end of a step in which all groups are free: the depth that a body must pass to touch.
+    pub(super) fn surface_after(&mut self, dt: f64, interpolant: Interpolant) -> f64 {
+        self.history.predict(dt, interpolant, &mut self.trial);
+        self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum()
+    }
+
+    /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|
+    /// from below over the compliance, for X = W and X the strains as far as they can raise a free surface. This is the most that the
+    /// difference can ever add to a depth and to a force. The `cuts` are those of the other outcome.
+    pub(super) fn distance(&mut self, states: &ElasticStates, other: &Levels, start: f64, cuts: [f64; 2], steps: f64) -> [f64; 2] {
+        cuts.into_iter().for_each(|level| self.cut_at(states, level));
+        let all = [start, self.level, cuts[0], cuts[1]];
+        let [from, to] = [all.into_iter().fold(start, f64::min), all.into_iter().fold(start, f64::max)];
+        let mut worst = [0.0f64; 2];
+        for ((_, own), ([weight, decay], others)) in self.history.strains().zip(other.history.strains()) {
+            let swept = or(0, SWEPT) * decay.powf(or(1, 8.0));
+            let unswept = decay.powf(or(2, 0.0));
+            let before = worst;
+            let (mut k, mut sums) = (0, [0.0f64; 2]);
+            // least and greatest sum over the depth below a level, of levels that were swept and of others
+            let mut range = [[0.0f64; 2]; 2];
+            for (group, Group { top, motions, .. }) in self.groups.iter().enumerate() {
+                let (bottom, lower) = self.bottom(group);
+                while other.groups.get(k).is_some_and(|group| group.top < top * (1.0 - ROUNDING)) {
+                    k += 1;
+                }
+                let difference = weight * (own(group) - if k < other.groups.len() { others(k) } else { 0.0 });
+                sums[0] += difference * (motions.depth - lower.depth);
+                sums[1] += difference * (top - bottom);
+                let is_swept = from * (1.0 + ROUNDING) < *top && if or(4, 0.0) == 1.0 { *top <= to * (1.0 + ROUNDING) } else { *top < to * (1.0 - ROUNDING) };
+                worst[1] = worst[1].max(or(3, 1.0) * if is_swept { swept } else { unswept } * sums[1].abs());
+                let [least, most] = &mut range[usize::from(is_swept)];
+                (*least, *most) = (least.min(sums[0]), most.max(sums[0]));
+            }
+            for ([least, most], weight) in range.into_iter().zip([unswept, swept]) {
+                worst[0] = worst[0].max(weight * (sums[0] - least).max(most - sums[0]));
+            }
+            if worst != before && std::env::var("DBG").is_ok() { eprintln!("   w {weight:.2} decay {decay:.3e} worst {:.2e} {:.2e} total {sums:?}", worst[0], worst[1]); }
+        }
+        [worst[0], worst[1] * other.history.stiffness_over(steps)]
     }
 }

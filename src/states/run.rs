@@ -5,25 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::ascending::{Schedule, Times};
 use crate::contact::{RunProgress, StepReport, Stepping};
-use crate::error::{Error, LoadError, Result, StepError, within};
+use crate::error::{Error, LoadError, Result, within};
 use crate::load::{Load, LoadHistory};
 use crate::states::contact::StatesContact;
-
-/// Two times closer than this fraction of a step are the same time.
-const SAME_TIME: f64 = 1e-6;
-/// First adaptive step after a jump or a corner, over the time to the next one.
-const FIRST_STEP: f64 = 1e-4;
-/// Limits of the ratio of a step to the one before.
-const MAX_GROWTH: f64 = 4.0;
-const MIN_GROWTH: f64 = 0.1;
-/// Shares of the tolerance that the error of a step aims at, and that it may have: errors of several steps add up.
-const AIM: f64 = 0.1;
-const ALLOWED: f64 = 0.3;
-/// Order of a corrected step, by which its length is chosen.
-const ORDER: f64 = 3.0;
-/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
-/// curvature.
-const OF_HALVES: f64 = 1.0 / 3.0;
+use crate::states::control::{SAME_TIME, StepControl, load_at};
 
 /// A run of a [`StatesContact`] along a load history, made by [`StatesContact::follow`]. Each call of
 /// [`StatesRun::next_step`] takes one step.
@@ -54,13 +39,9 @@ pub struct StatesRun<'a> {
     /// Number of equal steps taken.
     steps: u64,
     load: Option<Load>,
-    /// Length of the next adaptive step; 0 after a jump or a corner.
-    next: f64,
+    control: StepControl,
     /// State at the start of the last step.
     before: StatesContact,
-    /// Greatest depth and force of the run, for errors relative to them.
-    greatest: [f64; 2],
-    rejected: u64,
     /// Steps taken, and the length of the first one that took time.
     taken: u64,
     first_step: f64,
@@ -77,19 +58,17 @@ impl StatesContact {
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> StatesRun<'a> {
         let (start, before) = (self.time(), self.clone());
-        let (load, steps, next, greatest, rejected) = (None, 0, 0.0, [0.0; 2], 0);
+        let control = StepControl::new(&before, until);
         StatesRun {
             contact: self,
             history,
             stepping,
             until,
             start,
-            steps,
-            load,
-            next,
+            steps: 0,
+            load: None,
+            control,
             before,
-            greatest,
-            rejected,
             taken: 0,
             first_step: 0.0,
             cancelled: None,
@@ -197,7 +176,8 @@ impl<'a> StatesRun<'a> {
         if self.load != Some(load) {
             self.before.copy_from(self.contact);
             let report = self.contact.step(0.0, load)?;
-            (self.load, self.next) = (Some(load), 0.0);
+            self.load = Some(load);
+            self.control.restart();
             return Ok(Some(report));
         }
         if now >= self.until {
@@ -211,11 +191,11 @@ impl<'a> StatesRun<'a> {
         let stop = kink.min(self.stops.after(now).unwrap_or(f64::INFINITY));
         let report = match self.stepping {
             Stepping::Fixed { dt } => self.fixed_step(now, dt, stop)?,
-            Stepping::Adaptive { tolerance } => self.adaptive_step(now, tolerance, stop)?,
+            Stepping::Adaptive { tolerance } => self.adaptive_step(tolerance, stop)?,
         };
         if report.time >= kink {
             self.contact.reset_differences();
-            self.next = 0.0;
+            self.control.restart();
         }
         Ok(Some(report))
     }
@@ -252,59 +232,21 @@ impl<'a> StatesRun<'a> {
 
     /// Advances to a time under the load there, or just before it where it jumps.
     fn step_to(&mut self, now: f64, time: f64) -> Result<StepReport> {
-        let load = self.history.before(time).validated_at(time, false)?;
+        let load = load_at(self.history, time)?;
         self.load = Some(load);
         self.contact.step_to(time, time - now, load)
     }
 
-    fn adaptive_step(&mut self, now: f64, tolerance: f64, stop: f64) -> Result<StepReport> {
+    fn adaptive_step(&mut self, tolerance: f64, stop: f64) -> Result<StepReport> {
         self.before.copy_from(self.contact);
-        let mut length = if self.next > 0.0 { self.next } else { FIRST_STEP * (stop - now) };
-        loop {
-            let end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
-            let middle = now + 0.5 * (end - now);
-            if !(now < middle && middle < end) {
-                return Err(Error::Step(StepError::StepTooShort { time: now, dt: length, tolerance }));
-            }
-            let (report, difference) = match self.whole_and_halves([now, middle, end]) {
-                Ok(taken) => taken,
-                Err(error) => {
-                    self.contact.copy_from(&self.before);
-                    return Err(error);
-                }
-            };
-            let error = OF_HALVES * difference;
-            let growth = (AIM * tolerance / error).powf(1.0 / ORDER).clamp(MIN_GROWTH, MAX_GROWTH);
-            if error <= ALLOWED * tolerance {
-                self.next = growth.max(0.5) * (end - now).max(length.min(stop - now));
-                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
-            }
-            self.contact.copy_from(&self.before);
-            self.rejected += 1;
-            length = growth.min(0.5) * (end - now);
-        }
-    }
-
-    /// Takes a step in two halves. Returns how far the whole step differs from them: in depth and force, relative to values that are
-    /// not small in this run.
-    fn whole_and_halves(&mut self, [now, middle, end]: [f64; 3]) -> Result<(StepReport, f64)> {
-        let whole = self.contact.outcome(end, self.history.before(end).validated_at(end, false)?)?;
-        self.step_to(now, middle)?;
-        let report = self.step_to(middle, end)?;
-        let mut difference = 0.0f64;
-        for (k, halves) in [self.contact.depth(), report.force].into_iter().enumerate() {
-            self.greatest[k] = self.greatest[k].max(halves.abs());
-            let scale = halves.abs().max(0.1 * self.greatest[k]);
-            if scale > 0.0 {
-                difference = difference.max((whole[k] - halves).abs() / scale);
-            }
-        }
-        Ok((report, difference))
+        let report = self.control.step(self.contact, self.history, tolerance, stop)?;
+        self.load = Some(load_at(self.history, report.time)?);
+        Ok(report)
     }
 
     /// Number of steps rejected for their error, with [`Stepping::adaptive`].
     pub fn rejected_steps(&self) -> u64 {
-        self.rejected
+        self.control.rejected
     }
 
     /// The contact after the last step.
