@@ -278,10 +278,11 @@ fn causes(args: &Args) -> Result<(), Box<dyn Error>> {
         ("window (default)", Settings::default()),
     ];
     println!(
-        "\n{cells}² cells, {steps} steps\n| | ms per step | convolutions per step | factor | MB |\n|---|---|---|---|---|"
+        "\n{cells}² cells, {steps} steps\n| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|"
     );
     let (mut first, mut last) = (None, None);
-    let mut table = "| | ms per step | convolutions per step | factor | MB |\n|---|---|---|---|---|\n".to_owned();
+    let mut table =
+        "| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|\n".to_owned();
     let mut rows = Vec::new();
     for (name, settings) in chain {
         let Cost { convolutions, seconds, bytes, .. } = cost(cells, steps, settings, args.repeat)?;
@@ -301,7 +302,7 @@ fn causes(args: &Args) -> Result<(), Box<dyn Error>> {
         support::figures::timed("where the factor comes from", &table)?;
         let [literal, kept, .., default] = &rows[..] else { unreachable!() };
         let table = format!(
-            "| | ms per step | convolutions per step | memory |\n|---|---|---|---|\n\
+            "| | ms per step | convolution equivalents per step | memory |\n|---|---|---|---|\n\
              | the source paper's algorithm, literally | {literal}\n\
              | the same, convolutions of past pressures kept | {kept}\n\
              | this crate's defaults | {default}"

@@ -120,7 +120,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 strongest.clone_from(&contact);
             }
             progress.inc(1);
-            if k > turn && report.contact_cells == 0 && report.force > 0.05 * strongest.force() {
+            if k > turn && contact.is_separated() {
                 break;
             }
         }

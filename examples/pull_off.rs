@@ -63,17 +63,16 @@ fn main() {
 /// A point of a history: time \[s\], approach \[m\], force \[N\] and contact area \[m²\].
 type Point = [f64; 4];
 
-/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart, and hold a hundredth of their greatest pull.
+/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart.
 fn pull(contact: &mut ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::Result<Vec<Point>> {
     let (began, start) = (contact.time(), contact.approach());
     let mut path = vec![[0.0, start, contact.force(), contact.contact_area()]];
-    let (mut moved, mut step, mut least) = (0.0, 0.1 * longest, 0.0_f64);
+    let (mut moved, mut step) = (0.0, 0.1 * longest);
     loop {
         moved += step;
         let report = contact.step(step / speed, Load::approach(start - moved))?;
         path.push([report.time - began, report.approach, report.force, contact.contact_area()]);
-        least = least.min(report.force);
-        if report.contact_cells == 0 && report.force > 0.01 * least {
+        if contact.is_separated() {
             return Ok(path);
         }
         step = (1.1 * step).min(longest);

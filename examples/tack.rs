@@ -65,7 +65,7 @@ struct Pull {
     strongest: ViscoelasticContact,
 }
 
-/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart, and hold a hundredth of their greatest pull.
+/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart.
 fn pull(held: &ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::Result<Pull> {
     let (mut contact, mut strongest, start) = (held.clone(), held.clone(), held.approach());
     let mut path = vec![[0.0, contact.force(), contact.contact_area()]];
@@ -77,7 +77,7 @@ fn pull(held: &ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::R
         if report.force < strongest.force() {
             strongest.clone_from(&contact);
         }
-        if report.contact_cells == 0 && report.force > 0.01 * strongest.force() {
+        if contact.is_separated() {
             return Ok(Pull { path, strongest });
         }
         step = (1.1 * step).min(longest);

@@ -27,8 +27,8 @@ impl Ascending {
     }
 }
 
-/// Times at which the steps of a run end ([`Run::stop_at`](crate::contact::Run::stop_at)) or its states are sampled
-/// ([`Run::sample_at`](crate::contact::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade. References to
+/// Times at which the steps of a run end ([`Run::stop_at`](crate::run::Run::stop_at)) or its states are sampled
+/// ([`Run::sample_at`](crate::run::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade. References to
 /// slices, arrays and vectors of times \[s\] are times, too.
 ///
 /// ```

@@ -1,8 +1,8 @@
 //! Frictionless contact of viscoelastic bodies, for tribologists, and for engineers who couple a contact to other programs.
 //!
 //! An indenter is pressed onto a creeping half-space. The crate computes the pressure between them, the contact area and the
-//! approach, and how they evolve in time. Geometry, load history and linear rheology are arbitrary; measured surfaces and
-//! measured creep are read from files.
+//! approach, and how they evolve in time. Geometry and load history are arbitrary, the rheology is linear with a creep compliance that is
+//! concave after t = 0; measured surfaces and measured creep are read from files.
 //!
 //! # The problem
 //!
@@ -55,8 +55,9 @@
 //! slide and roll: [`motion`]. [`observe`] evaluates a state, and [`output`] writes it to files that NumPy and ParaView
 //! open.
 //!
-//! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`],
-//! [`guide::data`], [`guide::curves`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and [`guide::results`].
+//! Pages to read next, with programs to start from: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
+//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and
+//! [`guide::results`]. The package `viscocontact-identify` finds the modulus over time of a measured indentation.
 //!
 //! # Conventions
 //!
@@ -84,24 +85,23 @@
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid, O(N log N). Periodic
 //! bodies are not padded and cost a third; a line of N × 1 cells is transformed in one dimension. A step of the default
-//! solver takes <!-- figures convolutions per step -->3.1<!-- end --> convolutions in the first scene of the README; tilts cost nothing in a scene without
-//! them. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
-//! ([`contact::Settings::symmetry`]); cells that contact cannot reach are not computed at all
+//! solver takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents (a transform without padding is a quarter of one) in the scene of the paper; tilts cost nothing in
+//! a scene without them. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
+//! ([`contact::Settings::symmetry`]); on half-spaces, cells that contact cannot reach are not computed at all
 //! ([`contact::Settings::window`]). `docs/performance.md` gives the cost of a step with each method.
 //!
 //! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. Thirty
-//! relaxation times make a step of 256² cells 1.05 to 1.15 times as long as one. A rheology without an exact
+//! relaxation times make a step of 256² cells about a tenth longer than one where a quarter is computed, a third longer on the whole grid. A rheology without an exact
 //! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
 //! times per decade for an error of 1e-4, in a tenth of a second.
 //!
-//! Memory: <!-- figures memory -->158 to 164<!-- end --> bytes per computed cell with one relaxation time, 16 more where threads share a
-//! contact (<!-- figures memory of a line -->370<!-- end --> for a line contact, whose transform tables are as long as the line),
-//! and 8 for each further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their
-//! number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory is an error
+//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is computed,
+//! <!-- figures memory -->158 to 186<!-- end --> where all are, 16 more for each computed cell where threads share a contact
+//! (<!-- figures memory of a line -->370<!-- end --> for a line contact, whose transform tables are as long as the line), and 8 for each
+//! computed cell and further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory for it is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
-//! first two of a run, along a path or under a tilting load, and one in which a window grows. On several threads the
-//! queue of their pool takes a block of 1.5 kB about every 30 steps, unless the program runs in the pool
-//! (`rayon::ThreadPool::install`).
+//! first two of a run, along a path, under a tilting load or an attraction; one in which a window grows; and one in which a changing
+//! temperature alters the rate of creep by decades. `docs/performance.md` has the threads.
 //!
 //! # Co-simulation and long runs
 //!
@@ -111,7 +111,7 @@
 //!
 //! # Features
 //!
-//! `checkpoint`: saves the state to a file and resumes from it ([`contact::Run`]`::autosave_to`,
+//! `checkpoint`: saves the state to a file and resumes from it ([`run::Run`]`::autosave_to`,
 //! `ViscoelasticContact::save` and `resume`).
 //!
 //! `laws`: `proptest` strategies for testing your own rheologies, geometries and load histories (`laws`).
@@ -123,7 +123,7 @@
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
 //! `serde`: `Serialize` and `Deserialize` for the description of a run, [`load::Load`], [`contact::Settings`],
-//! [`contact::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
+//! [`run::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
 //! statistics. Part of `checkpoint`.
 //!
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
@@ -135,8 +135,7 @@
 //!
 //! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
 //! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). Surfaces may
-//! attract each other ([`contact::Builder::attraction`]): one body on the whole grid; free tilts under a given approach or
-//! a spring, ranks, moving indenters and direct sums are refused there. A [`Layer`] lies on a rigid base, or on one
+//! attract each other ([`contact::Builder::attraction`]): one body on the whole grid ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on one
 //! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 //!
@@ -148,7 +147,7 @@
 //! periodic or not, with contact plasticity; adhesion is in a separate package.
 //! [CONTACT](https://www.kalkersoftware.org) (Fortran) computes rolling and sliding with friction, conformal and
 //! transient, also of viscoelastic bodies. Their friction and plasticity are not available here. This crate
-//! offers any linear rheology, measured or fitted, in a recursion whose cost does not grow with the number of steps, of
+//! offers any concave creep, measured or fitted, in a recursion whose cost does not grow with the number of steps, of
 //! third order in given steps and fourth in steps chosen by their error (second at cells that join); eccentric loads
 //! that tilt; all of it as a typed library that another program drives step by step. Its accuracy is given claim by
 //! claim in `docs/validation.md` and `docs/accuracy.md`.
@@ -200,6 +199,7 @@ pub mod plot;
 mod quadrature;
 pub mod rheology;
 mod rounded;
+pub mod run;
 mod solver;
 pub mod states;
 mod sum;
@@ -225,14 +225,14 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Contact, Edge, Frame, Run, Settings, Snapshot, Solver, SteadyMotion, StepError, StepReport,
-        Stepping, TimeRule, Times, ViscoelasticContact, Warnings,
+        BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, Solver, StepError, StepReport, TimeRule,
+        ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
         RoughSpec, Roughness, Shifted, Sphere, SurfaceStatistics, Wavy,
     };
-    pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+    pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
     pub use crate::output::CsvHistory;
     pub use crate::output::{Field, FrameSeries, Metadata};
@@ -241,6 +241,7 @@ pub mod prelude {
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Zener,
     };
+    pub use crate::run::{Run, SteadyMotion, Stepping, Times};
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }

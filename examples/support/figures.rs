@@ -21,6 +21,16 @@ pub fn row(name: &str, key: &str, rest: &str) -> Outcome {
     update(name, key, true, |table| with_row(table, key, rest))
 }
 
+/// As [`figure`], for the lines of `page` that begin with `key`; the others stay.
+pub fn lines(name: &str, page: &str, key: &str) -> Outcome {
+    update(name, page, true, |old| {
+        let mut fresh = page.lines().filter(|line| line.starts_with(key));
+        let merged =
+            old.lines().map(|line| if line.starts_with(key) { fresh.next().unwrap_or_default() } else { line });
+        merged.collect::<Vec<_>>().join("\n")
+    })
+}
+
 /// As [`figure`], for times and what else differs between machines: written, never compared.
 pub fn timed(name: &str, text: &str) -> Outcome {
     update(name, text, false, |_| text.to_owned())

@@ -8,13 +8,13 @@ use crate::error::Result;
 /// contact takes over if the step is accepted.
 #[derive(Debug, Clone)]
 pub(crate) struct Computation {
-    pub(super) state: State,
-    pub(super) window: Window,
-    pub(super) trial: Trial,
+    pub(crate) state: State,
+    pub(crate) window: Window,
+    pub(crate) trial: Trial,
 }
 
 impl Computation {
-    pub(super) fn new(scene: &Scene, state: State) -> Computation {
+    pub(crate) fn new(scene: &Scene, state: State) -> Computation {
         let window = Window::new(scene, &state.region, &state.indenter);
         Computation { trial: Trial::new(state.region.len(), scene.bodies), window, state }
     }
@@ -23,7 +23,7 @@ impl Computation {
     ///
     /// # Errors
     /// If there is no memory for both.
-    pub(super) fn transferred_to(
+    pub(crate) fn transferred_to(
         &mut self,
         scene: &Scene,
         region: Region,
@@ -36,7 +36,7 @@ impl Computation {
     }
 
     /// Rejects a region for which there is no memory beside this one.
-    pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
+    pub(crate) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let Scene { kernel, settings, bodies, .. } = scene;
         let footprint = Footprint {
             bodies: *bodies,
@@ -49,7 +49,7 @@ impl Computation {
     }
 
     /// Goes to another state, without reallocating where the regions are the same.
-    pub(super) fn restore(&mut self, scene: &Scene, state: &State) {
+    pub(crate) fn restore(&mut self, scene: &Scene, state: &State) {
         if self.state.region == state.region {
             self.state.clone_from(state);
         } else {

@@ -11,7 +11,6 @@
 //! | what does a step change, and what was it before, or within, the last one? | `state` |
 //! | which part of the grid is computed? | `window` |
 //! | what is one step? | `step` |
-//! | how does a run follow a load history? | `run` |
 //! | what if the indenter moves? | `moving` |
 //! | what does a user read? | `read` |
 //! | how does a run go on after an interruption? | `checkpoint` |
@@ -20,11 +19,9 @@
 // the documentation lists methods in the order of these modules: methods that drive a contact, then its results
 mod builder;
 
-mod step;
+pub(crate) mod step;
 
-mod run;
-
-mod moving;
+pub(crate) mod moving;
 
 mod read;
 
@@ -43,34 +40,31 @@ mod indenter;
 mod scene;
 mod settings;
 mod stepper;
-mod window;
+pub(crate) mod window;
 
-pub use crate::ascending::Times;
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
-pub use crate::error::StepError;
+pub use crate::error::{StepError, Unsteady};
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
-pub use moving::steady::{SteadyMotion, SteadyRun};
 pub use read::energies::{Energies, EnergyBalance};
 pub use read::report::{BodyState, Estimated, StepReport, Warnings};
 pub use read::stress::StressHistory;
-pub use run::follow::Run;
-pub use run::progress::{ErrorBudget, RunProgress, Stepping};
-pub use run::samples::Sample;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
+pub(crate) use stepper::impl_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 
 use builder::memory::Footprint;
-use computation::Computation;
+pub(crate) use computation::Computation;
 use indenter::Indenter;
 use indenter::hull::Hull;
-use run::progress::Progress;
-use scene::Scene;
-use state::{Clock, Equilibrium, State};
-use step::request::{Step, Trial};
+pub(crate) use scene::Scene;
+pub(crate) use state::State;
+use state::{Clock, Equilibrium};
+pub(crate) use step::request::Step;
+use step::request::Trial;
 use window::Window;
 use window::region::Region;

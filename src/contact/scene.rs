@@ -15,32 +15,32 @@ use crate::rheology::{Material, TemperatureHistory};
 /// Grid, kernel, material and settings of a contact. A contact and its clones share one.
 #[derive(Debug)]
 pub(crate) struct Scene {
-    pub(super) grid: Grid,
-    pub(super) kernel: Arc<InfluenceKernel>,
-    pub(super) material: Material,
-    pub(super) settings: Settings,
-    pub(super) temperature: Option<TemperatureHistory>,
+    pub(crate) grid: Grid,
+    pub(crate) kernel: Arc<InfluenceKernel>,
+    pub(crate) material: Material,
+    pub(crate) settings: Settings,
+    pub(crate) temperature: Option<TemperatureHistory>,
     /// The attraction between the surfaces.
-    pub(super) attraction: Option<Arc<dyn Attraction>>,
+    pub(crate) attraction: Option<Arc<dyn Attraction>>,
     /// The slope at which it softens \[Pa/m\]; 0 without one.
-    pub(super) softening: f64,
+    pub(crate) softening: f64,
     /// Number of rigid bodies.
-    pub(super) bodies: usize,
+    pub(crate) bodies: usize,
     /// Fingerprint of the gap as built.
     #[cfg(feature = "checkpoint")]
-    pub(super) built: Built,
+    pub(crate) built: Built,
 }
 
 impl Scene {
     /// Inputs of the time rule.
-    pub(super) fn history_inputs(&self) -> HistoryInputs<'_> {
+    pub(crate) fn history_inputs(&self) -> HistoryInputs<'_> {
         let least_side = self.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
         let (material, history_limit) = (&self.material, self.settings.history_limit);
         HistoryInputs { material, history_limit, least_side, pulls: self.attraction.is_some() }
     }
 
     /// The reduced time at a `time` not before the clock's.
-    pub(super) fn reduced_time(&self, clock: &Clock, time: f64) -> Result<f64> {
+    pub(crate) fn reduced_time(&self, clock: &Clock, time: f64) -> Result<f64> {
         match &self.temperature {
             None => Ok(time),
             Some(history) => Ok(clock.reduced_time + history.reduced_time(clock.time, time)?),
@@ -48,7 +48,7 @@ impl Scene {
     }
 
     /// The reduced time that passes between two times a `length` apart.
-    pub(super) fn reduced_length(&self, [from, to]: [f64; 2], length: f64) -> Result<f64> {
+    pub(crate) fn reduced_length(&self, [from, to]: [f64; 2], length: f64) -> Result<f64> {
         match &self.temperature {
             Some(history) if length > 0.0 => history.reduced_time(from, to),
             _ => Ok(length),
@@ -56,7 +56,7 @@ impl Scene {
     }
 
     /// Approximate time in which the reduced time grows by `reduced` after the clock's, at most `most`.
-    pub(super) fn length_of(&self, clock: &Clock, reduced: f64, most: f64) -> Result<f64> {
+    pub(crate) fn length_of(&self, clock: &Clock, reduced: f64, most: f64) -> Result<f64> {
         match &self.temperature {
             None => Ok(reduced.min(most)),
             Some(history) => history.length_of(clock.time, reduced, most),
@@ -64,7 +64,7 @@ impl Scene {
     }
 
     /// The first corner of the temperature after a time, and whether the temperature jumps there.
-    pub(super) fn next_temperature_corner(&self, after: f64) -> (f64, bool) {
+    pub(crate) fn next_temperature_corner(&self, after: f64) -> (f64, bool) {
         let Some(history) = &self.temperature else { return (f64::INFINITY, false) };
         history.next_corner(after).map_or((f64::INFINITY, false), |corner| (corner, history.jumps_at(corner)))
     }

@@ -86,7 +86,7 @@ pub enum TimeRule {
     /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time. Within
     /// a step the displacement is a polynomial of time through its last values, and each step corrects the step before, which
     /// had one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
-    /// ([`Stepping::adaptive`](crate::contact::Stepping::adaptive)), and all of a body without elastic response (as
+    /// ([`Stepping::adaptive`](crate::run::Stepping::adaptive)), and all of a body without elastic response (as
     /// Kelvin–Voigt), take it to be quadratic: fourth order, second without elastic response. A kink of the displacement, as
     /// at cells that come into contact, is met with second order.
     ///

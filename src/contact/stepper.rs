@@ -1,10 +1,11 @@
 //! A contact: the object that users drive.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
-use crate::contact::{Computation, Progress, Scene, StepReport};
+use crate::contact::{Computation, Scene, StepReport};
 use crate::error::Result;
 use crate::load::Load;
 
@@ -44,26 +45,26 @@ use crate::load::Load;
 #[derive(Clone)]
 pub struct ViscoelasticContact {
     /// Grid, kernel, material and settings, which never change.
-    pub(super) scene: Arc<Scene>,
+    pub(crate) scene: Arc<Scene>,
     /// The state, and the window and the trial that compute steps.
-    pub(super) computation: Computation,
+    pub(crate) computation: Computation,
     /// Fields on the whole grid, for users to read.
-    pub(super) view: View,
-    /// Progress of a run that was saved and resumed, for the next run to continue.
-    pub(super) progress: Option<Box<Progress>>,
+    pub(crate) view: View,
+    /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which use contacts.
+    pub(crate) saved_run: Option<Arc<dyn Any + Send + Sync>>,
     /// Buffers for the indenter of the next step along a path.
-    pub(super) indenter_buffer: IndenterBuffer,
+    pub(crate) indenter_buffer: IndenterBuffer,
 }
 
 impl ViscoelasticContact {
-    pub(super) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
+    pub(crate) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state);
         ViscoelasticContact {
             scene: Arc::new(scene),
             computation,
             view,
-            progress: None,
+            saved_run: None,
             indenter_buffer: IndenterBuffer::default(),
         }
     }
@@ -116,6 +117,9 @@ pub trait Contact: Clone {
     /// Contact area \[m²\].
     fn contact_area(&self) -> f64;
 
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    fn is_separated(&self) -> bool;
+
     /// Force over contact area \[Pa\]; 0 without contact.
     fn mean_pressure(&self) -> f64 {
         let area = self.contact_area();
@@ -126,32 +130,26 @@ pub trait Contact: Clone {
     fn in_space(&self) -> Option<&ViscoelasticContact>;
 }
 
-impl Contact for ViscoelasticContact {
-    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        ViscoelasticContact::step(self, dt, load)
-    }
-
-    fn time(&self) -> f64 {
-        ViscoelasticContact::time(self)
-    }
-
-    fn force(&self) -> f64 {
-        ViscoelasticContact::force(self)
-    }
-
-    fn approach(&self) -> f64 {
-        ViscoelasticContact::approach(self)
-    }
-
-    fn tilt(&self) -> [f64; 2] {
-        ViscoelasticContact::tilt(self)
-    }
-
-    fn contact_area(&self) -> f64 {
-        ViscoelasticContact::contact_area(self)
-    }
-
-    fn in_space(&self) -> Option<&ViscoelasticContact> {
-        Some(self)
-    }
+/// Implements [`Contact`] by methods of the type of the same names.
+macro_rules! impl_contact {
+    ($contact:ty, $in_space:expr) => {
+        impl_contact!($contact, $in_space; time -> f64, force -> f64, approach -> f64, tilt -> [f64; 2], contact_area -> f64,
+            is_separated -> bool);
+    };
+    ($contact:ty, $in_space:expr; $($read:ident -> $value:ty),*) => {
+        impl $crate::contact::Contact for $contact {
+            fn step(&mut self, dt: f64, load: $crate::load::Load) -> $crate::Result<$crate::contact::StepReport> {
+                <$contact>::step(self, dt, load)
+            }
+            $(fn $read(&self) -> $value {
+                <$contact>::$read(self)
+            })*
+            fn in_space(&self) -> Option<&$crate::ViscoelasticContact> {
+                ($in_space)(self)
+            }
+        }
+    };
 }
+pub(crate) use impl_contact;
+
+impl_contact!(ViscoelasticContact, Some);

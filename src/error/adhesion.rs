@@ -48,8 +48,8 @@ pub enum AdhesionError {
     /// let Some(Error::Adhesion(AdhesionError::PulledOff { time, force })) = pulled_off else { panic!("{pulled_off:?}") };
     /// assert!(force < -4.0 && time == contact.time() + 0.5);
     /// // 20 R away nothing acts: the surface recovers
-    /// let apart = contact.step(0.5, Load::approach(-20.0))?;
-    /// assert!(apart.contact_cells == 0 && apart.force.abs() < 1e-6);
+    /// contact.step(0.5, Load::approach(-20.0))?;
+    /// assert!(contact.is_separated());
     /// # Ok::<(), Error>(())
     /// ```
     #[error("at t = {} s the force of {force} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME))]

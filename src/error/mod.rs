@@ -17,6 +17,7 @@ mod states;
 mod step;
 mod table;
 mod text;
+mod unsteady;
 mod violation;
 
 pub use adhesion::AdhesionError;
@@ -37,6 +38,7 @@ pub use states::StatesError;
 pub use step::StepError;
 pub use table::{Place, TableError};
 pub use text::TextError;
+pub use unsteady::Unsteady;
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};
@@ -231,7 +233,7 @@ pub enum Error {
     },
 
     /// The caller ended the call: by its report of progress, or the flag of
-    /// [`Run::cancelled_by`](crate::contact::Run::cancelled_by).
+    /// [`Run::cancelled_by`](crate::run::Run::cancelled_by).
     #[error("{what} was cancelled by its caller")]
     Cancelled {
         /// The call.

@@ -1,4 +1,4 @@
-use super::Convergence;
+use super::{Convergence, Unsteady};
 use crate::axis::Axis;
 use crate::rounded::{TIME, rounded};
 
@@ -144,18 +144,15 @@ pub enum StepError {
         time: f64,
     },
 
-    /// The motion did not become steady. Contact that comes and goes, as on a rough surface that moves with the bodies,
-    /// has no steady state; otherwise allow a greater change.
-    #[error(
-        "after {:e} m the pressure still changes by {change:.1e} over a contact length, more than {tolerance:e}: allow a greater change with SteadyMotion::with_tolerance; contact that comes and goes has no steady state", rounded(*.distance, 4)
-    )]
+    /// The motion did not become steady. A greater tolerance would not bring the steady state nearer.
+    #[error("no steady state within {tolerance:e} after {:e} m: {reason}", rounded(*.distance, 4))]
     NotSteady {
         /// Distance travelled \[m\].
         distance: f64,
-        /// Relative change of the pressure.
-        change: f64,
         /// Relative change allowed.
         tolerance: f64,
+        /// What is still missing, and what would bring it.
+        reason: Unsteady,
     },
 }
 

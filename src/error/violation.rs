@@ -1,6 +1,5 @@
 /// A law of a trait that an implementation violates, with the value found and the value required.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{law}: {quantity} {at} is {found:e}, expected {expected:e}")]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Violation {
     /// The law.
@@ -11,8 +10,28 @@ pub struct Violation {
     pub at: Location,
     /// The value found.
     pub found: f64,
-    /// The value expected; the bound of an inequality.
+    /// The value expected; the bound of an inequality. NaN, as the value found, of what is no number: the kind of a load.
     pub expected: f64,
+}
+
+impl std::error::Error for Violation {}
+
+/// The message: a `main` that returns a [`Verdict`] prints it so.
+impl std::fmt::Debug for Violation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+impl std::fmt::Display for Violation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Violation { law, quantity, at, found, expected } = self;
+        if expected.is_nan() {
+            return write!(f, "{law}: {quantity} {at} is another one");
+        }
+        let bound = if found == expected { "more than " } else { "" };
+        write!(f, "{law}: {quantity} {at} is {found:e}, expected {bound}{expected:e}")
+    }
 }
 
 /// Nothing if a law holds, otherwise its first violation.

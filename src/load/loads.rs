@@ -42,20 +42,8 @@ impl From<Load> for Loads<'_> {
     }
 }
 
-impl<'a> From<&'a [Load]> for Loads<'a> {
-    fn from(loads: &'a [Load]) -> Self {
-        Loads(Of::Each(loads))
-    }
-}
-
-impl<'a, const BODIES: usize> From<&'a [Load; BODIES]> for Loads<'a> {
-    fn from(loads: &'a [Load; BODIES]) -> Self {
-        Loads(Of::Each(loads))
-    }
-}
-
-impl<'a> From<&'a Vec<Load>> for Loads<'a> {
-    fn from(loads: &'a Vec<Load>) -> Self {
-        Loads(Of::Each(loads))
+impl<'a, T: AsRef<[Load]> + ?Sized> From<&'a T> for Loads<'a> {
+    fn from(loads: &'a T) -> Self {
+        Loads(Of::Each(loads.as_ref()))
     }
 }

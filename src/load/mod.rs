@@ -8,12 +8,14 @@
 //! | [`StepLoad`] | none, then a constant load |
 //! | [`Ramp`] | linear from one load to another, then constant |
 //! | [`PiecewiseLinear`] | a table, linear in between, with jumps |
+//! | [`Periodic`] | square, triangle, sawtooth, any table, repeated |
 //! | [`Sinusoid`] | oscillation between two loads |
 //! | [`FnHistory`] | any closure of time |
 
 mod function;
 pub mod laws;
 mod loads;
+mod periodic;
 mod piecewise_linear;
 mod ramp;
 mod sinusoid;
@@ -22,6 +24,7 @@ mod step;
 pub use crate::error::LoadError;
 pub use function::FnHistory;
 pub use loads::Loads;
+pub use periodic::Periodic;
 pub use piecewise_linear::PiecewiseLinear;
 pub use ramp::Ramp;
 pub use sinusoid::Sinusoid;
@@ -64,7 +67,8 @@ pub enum Load {
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
     },
-    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without tension.
+    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without tension unless
+    /// surfaces attract each other.
     Spring {
         /// Stiffness k of the spring, > 0 \[N/m\].
         stiffness: f64,
@@ -173,6 +177,15 @@ impl Load {
             Load::Force { normal: main, .. } | Load::Approach { approach: main, .. } => [main, first, second, 0.0],
             Load::Spring { stiffness, drive, .. } => [drive, first, second, stiffness],
         }
+    }
+
+    /// With another force, approach or drive, by `change`.
+    fn changed(mut self, change: f64) -> Load {
+        let (Load::Force { normal: main, .. }
+        | Load::Approach { approach: main, .. }
+        | Load::Spring { drive: main, .. }) = &mut self;
+        *main += change;
+        self
     }
 
     /// The names of these values.

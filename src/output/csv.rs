@@ -78,7 +78,7 @@ fn number(value: f64) -> String {
 /// empty where nothing was estimated), and additional columns of your choice. A [`Contact`] is one in space or one on elastic
 /// states; moments and the greatest pressure of the latter are empty.
 /// Where [ranks](crate::parallel) share out the contact, all of them make and write the history, and rank 0 has the file.
-/// [`Run::samples`](crate::contact::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
+/// [`Run::samples`](crate::run::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```

@@ -1,5 +1,6 @@
-use crate::contact::{Settings, Stepping};
+use crate::contact::Settings;
 use crate::error::{Result, within};
+use crate::run::Stepping;
 
 /// The accuracy of a result: approach, force and, where it is finite, peak pressure, relative to their greatest values.
 /// It determines the tolerances of steps and solver and, through a [`Plan`](crate::plan::Plan), mesh and domain.

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
 
 use crate::axis::Axis;
-use crate::contact::{Builder, Stepping};
+use crate::contact::Builder;
 use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
@@ -15,6 +15,7 @@ use crate::plan::error_law::ErrorLaw;
 use crate::plan::trial_runs::TrialScene;
 use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
+use crate::run::Stepping;
 use crate::{Grid, InfluenceKernel};
 
 /// Fewest cells across the widest contact: fewer do not resolve it.

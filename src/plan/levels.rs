@@ -19,8 +19,6 @@ const MAX_PARTS: usize = 4096;
 const MIN_PARTS: usize = 2;
 /// Level of a curve beyond its last state, over the level of that state.
 const BEYOND: f64 = 16.0;
-/// Levels of a curve for any shape [m²].
-const ANY_LEVELS: [f64; 2] = [1e-150, 1e150];
 /// δ ∝ l^(2/3), A ∝ l^(2/3) of a paraboloid.
 const PARABOLOID: f64 = 2.0 / 3.0;
 /// Least force at which the radii of the contact on cells and on levels are compared, over the greatest force: less
@@ -63,12 +61,6 @@ impl Curve {
         let states = ElasticStates::new(states, Rest { approach: rest, tilt: [0.0; 2] }, tilt).validated()?;
         let areas = points.iter().map(|[level, _, area]| [level.ln(), area.ln()]).collect();
         Ok(Curve { states: Arc::new(states), line, areas })
-    }
-
-    /// The curve of a paraboloid: the level under a given force does not depend on the shape.
-    pub(super) fn of_any_shape(tilt: [Tilt; 2]) -> Result<Curve> {
-        let point = |level: f64| [level, level.powf(PARABOLOID), level.powf(PARABOLOID)];
-        Curve::new(&ANY_LEVELS.map(point), 0.0, tilt, false)
     }
 
     /// Through the elastic states of a scene.

@@ -14,8 +14,9 @@ pub use accuracy::Accuracy;
 pub use builder::{PlanBuilder, PlanProgress};
 
 use crate::Grid;
-use crate::contact::{Builder, Stepping};
+use crate::contact::Builder;
 use crate::observe::mesh_error::MeshError;
+use crate::run::Stepping;
 
 /// A run planned for an accuracy: the extent of the contact, the required cells and steps, and their cost.
 ///

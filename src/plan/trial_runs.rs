@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
+use crate::contact::{Builder, StepReport, ViscoelasticContact, Warnings};
 use crate::error::{Error, Result, StepError};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory, Tilt};
@@ -11,6 +11,7 @@ use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
 use crate::plan::loads::Loads;
 use crate::rheology::{Elastic, Material, TemperatureHistory};
+use crate::run::Stepping;
 use crate::states::Pressed;
 use crate::{Grid, InfluenceKernel};
 
@@ -178,13 +179,6 @@ impl TrialScene<'_> {
         let heated = self.temperature.and_then(|temperature| temperature.next_corner(after));
         let corners = [self.history.next_breakpoint(after), heated];
         corners.into_iter().flatten().fold(f64::INFINITY, f64::min)
-    }
-
-    /// The compliance at the end of the run, at its start where it is infinite then.
-    pub(super) fn softest_compliance(&self) -> Result<f64> {
-        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
-        let softest = self.material.contact_compliance(creeping.min(self.material.known_until()));
-        Ok(if softest.is_finite() { softest } else { self.material.contact_compliance(0.0) })
     }
 
     /// The kernel on a grid, made once.

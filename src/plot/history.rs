@@ -91,7 +91,7 @@ impl History {
     }
 
     /// Records the current state of a contact, in space or on elastic states, or of a sample within a step
-    /// ([`Run::samples`](crate::contact::Run::samples)).
+    /// ([`Run::samples`](crate::run::Run::samples)).
     pub fn record(&mut self, contact: &impl Contact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(HistoryColumn::ALL) {

@@ -245,16 +245,19 @@ impl TemperatureHistory {
         self.halved(from, to)
     }
 
-    /// The quadrature over a piece, which is halved where halves do not agree with it.
+    /// The quadrature over a piece, which is halved where halves do not agree with it. Nothing is allocated where they do.
     fn halved(&self, from: f64, to: f64) -> Result<f64> {
         let whole = finite("reduced time", self.quadrature(from, to)?)?;
-        let (mut pieces, mut finer) = (vec![(from, to, whole)], Vec::new());
+        let (mut first, mut pieces, mut finer) = (Some((from, to, whole)), Vec::new(), Vec::new());
         let (mut sum, mut all, mut computed) = (0.0, whole, 0);
         let (mut apart, mut before) = (0.0, f64::INFINITY);
-        while !pieces.is_empty() && computed < MAX_PIECES && (pieces.len() < NOISY_PIECES || apart <= NOISE * before) {
-            computed += pieces.len();
+        while (first.is_some() || !pieces.is_empty())
+            && computed < MAX_PIECES
+            && (pieces.len() < NOISY_PIECES || apart <= NOISE * before)
+        {
+            computed += pieces.len().max(1);
             (apart, before) = (0.0, apart);
-            for (from, to, whole) in pieces.drain(..) {
+            for (from, to, whole) in first.take().into_iter().chain(pieces.drain(..)) {
                 let middle = from + 0.5 * (to - from);
                 if middle <= from || middle >= to {
                     sum += whole; // as short as the resolution of a time

@@ -7,11 +7,14 @@ use crate::error::{Result, positive, within};
 use crate::load::Tilt;
 use crate::states::curve::{ElasticState, ElasticStates, Rest};
 
-/// Contact radii \[m\] between which closed forms are tabulated; below, they are continued by the same power.
-const RADII: [f64; 2] = [1e-6, 1e3];
+/// Greatest number of a closed form. Products and quotients of such numbers do not overflow.
+const GREATEST: f64 = 1e100;
 
-/// Upright axisymmetric bodies on a half-space: exact at every level, and the contact may grow to a radius of 1 km. The
-/// superposition is then the method of dimensionality reduction (Popov & Heß, *Method of Dimensionality Reduction in
+/// A power of a size: coefficient and exponent.
+type Power = (f64, f64);
+
+/// Upright axisymmetric bodies on a half-space: exact at every level, in any units. The contact may grow until a number
+/// of it exceeds 10¹⁰⁰. The superposition is then the method of dimensionality reduction (Popov & Heß, *Method of Dimensionality Reduction in
 /// Contact Mechanics and Friction*, 2015; for creeping bodies Ting 1968, Greenwood, Int. J. Mech. Sci. 52, 2010).
 impl ElasticStates {
     /// A sphere of `radius` R \[m\] as a paraboloid r²/2R (Hertz): δ = a²/R, l = 4/3 a³/R.
@@ -52,7 +55,7 @@ impl ElasticStates {
     /// As [`ElasticStates::sphere`].
     pub fn punch(radius: f64) -> Result<Arc<ElasticStates>> {
         positive("punch radius", radius)?;
-        ElasticStates::from_table(&RADII.map(|depth| (2.0 * radius * depth, depth, 2.0 * radius, PI * radius * radius)))
+        ElasticStates::of_powers([(2.0 * radius, 1.0), (1.0, 1.0), (2.0 * radius, 0.0), (PI * radius * radius, 0.0)])
     }
 
     /// A body of the shape c r^n, with `coefficient` c \[m^(1−n)\] and `exponent` n (Galin; Sneddon 1965): δ = κ c a^n,
@@ -64,10 +67,21 @@ impl ElasticStates {
         positive("coefficient of the shape c r^n", coefficient)?;
         let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;
         let factor = PI.sqrt() * libm::tgamma(0.5 * n + 1.0) / libm::tgamma(0.5 * n + 0.5);
-        ElasticStates::from_table(&RADII.map(|radius| {
-            let depth = factor * coefficient * radius.powf(n);
-            (2.0 * n / (n + 1.0) * depth * radius, depth, 2.0 * radius, PI * radius * radius)
-        }))
+        let depth = factor * coefficient;
+        ElasticStates::of_powers([(2.0 * n / (n + 1.0) * depth, n + 1.0), (depth, n), (2.0, 1.0), (PI, 2.0)])
+    }
+
+    /// Level, approach, stiffness and area as powers of one size. Two states give the powers between them and below: the size 1, or less
+    /// where a number is great there, and the size at which the first number is [`GREATEST`].
+    fn of_powers(powers: [Power; 4]) -> Result<Arc<ElasticStates>> {
+        let greatest = |(coefficient, exponent): Power| (GREATEST.ln() - coefficient.ln()) / exponent;
+        let last = powers.into_iter().map(greatest).fold(f64::INFINITY, f64::min);
+        let table = [last.min(1.0) - 1.0, last].map(|size| {
+            let [level, depth, stiffness, area] =
+                powers.map(|(factor, exponent)| (factor.ln() + exponent * size).exp());
+            (level, depth, stiffness, area)
+        });
+        ElasticStates::from_table(&table)
     }
 
     /// States of an upright body from a table of (level \[m²\], approach \[m\], stiffness over the modulus \[m\],

@@ -7,11 +7,10 @@
 use crate::contact::StepReport;
 use crate::error::{Result, StepError};
 use crate::load::{Load, LoadHistory};
+use crate::run::SAME_TIME;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
 
-/// Two times closer than this fraction of a step are the same time.
-pub(super) const SAME_TIME: f64 = 1e-6;
 /// First step after a jump or a corner, over the time to the next one.
 const FIRST_STEP: f64 = 1e-4;
 /// Rounding of times: no step is shorter than this part of the time.
@@ -40,10 +39,13 @@ const OVERSHOOT: f64 = 0.01;
 const AT_START: f64 = 1e-3;
 /// Contacts that get smaller than this part of the greatest level within a step are looked at inside its halves too.
 const SHALLOW: f64 = 0.3;
+/// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run will make of them.
+const EXPECTED: f64 = 0.1;
 /// Groups of levels merge with this share of the tolerance.
 const MERGING: f64 = 0.01;
 
-#[derive(Debug)]
+/// Chooses the adaptive steps.
+#[derive(Debug, Clone)]
 pub(super) struct StepControl {
     until: f64,
     /// Length of the next step; 0 after a jump or a corner.
@@ -263,7 +265,9 @@ impl StepControl {
         if self.by_force {
             of_surface[1] = 0.0;
         }
+        let expected = halves.expected(contact.demand(load_at(history, end)?)?, self.greatest_load, self.until / half);
         let greatest = self.greatest_with(report.force);
+        let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
         let StepControl { whole, halves, middle, .. } = self;
         let scales = [halves.depth(), report.force];
         let scales = [0, 1].map(|k| f64::abs(scales[k]).max(0.1 * greatest[k]));

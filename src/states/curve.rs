@@ -54,7 +54,7 @@ pub struct ElasticStates {
     pub(crate) tilt: [Tilt; 2],
     /// Poisson's ratio of a layer, on which its elastic states depend.
     pub(crate) poisson: Option<f64>,
-    /// Greatest error that a state in the middle of two others showed, after which none was added.
+    /// Greatest error that a state in the middle of two others showed, less those that the states added later removed.
     pub(crate) error: f64,
     /// Below this level the elastic contact does not only grow: these levels are held or free as a whole.
     pub(crate) first_level: f64,
@@ -163,7 +163,7 @@ impl ElasticStates {
     }
 
     /// Greatest error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle
-    /// of two others.
+    /// of two others. Infinite if the sweep ended before it measured between all states of its first pass.
     pub fn interpolation_error(&self) -> f64 {
         self.error
     }
@@ -266,27 +266,26 @@ impl ElasticStates {
         value.max(2.0 / 27.0 * scatter.sum::<f64>())
     }
 
-    /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, NaN beyond the last state.
+    /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, infinite beyond the last state, NaN if numbers
+    /// overflow. Logarithms of sums of powers are nearly linear in ln l, over any number of decades.
     pub(super) fn level_where(&self, give: f64, sum: f64) -> f64 {
         let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| sum > 0.0) else { return 0.0 };
-        let log = sum.ln();
-        // in logarithms where nothing gives
+        let [sum, give, half] = [sum, give, 0.5 * sum].map(f64::ln);
+        // ln (δ + give l) − ln sum, and its slope over ln l
         let excess = |[depth, slope, level]: [f64; 3]| {
-            if give == 0.0 {
-                return [depth - log, slope];
-            }
-            let [depth, yielded] = [depth.exp(), give * level.exp()];
-            [depth + yielded - sum, depth * slope + yielded]
+            let yielded = give + level;
+            let (greater, ratio) = (depth.max(yielded), (-(depth - yielded).abs()).exp());
+            let [of_depth, of_yielded] = if depth > yielded { [1.0, ratio] } else { [ratio, 1.0] };
+            [greater + ratio.ln_1p() - sum, (of_depth * slope + of_yielded) / (1.0 + ratio)]
         };
         let excess_at = |node: &Node| excess([node.depth, 1.0, node.level])[0];
         if excess_at(last) < 0.0 {
-            return f64::NAN;
+            return f64::INFINITY;
         }
         let upper = self.nodes.partition_point(|node| excess_at(node) < 0.0);
         if upper == 0 {
-            // either half of the sum at least
-            let half = (0.5 * sum).ln();
-            let low = ((half - first.depth) / first.slope).min(half - give.ln() - first.level);
+            // one of the summands is half of the sum at least
+            let low = ((half - first.depth) / first.slope).min(half - give - first.level);
             let at = |s: f64| excess([first.depth + first.slope * s, first.slope, first.level + s]);
             return (first.level + root([low, 0.0], at)).exp();
         }
@@ -336,7 +335,8 @@ impl ElasticStates {
     /// The level of the elastic contact at an approach of the load point \[m²\]: 0 without contact, NaN beyond the
     /// last state. An elastic body of contact modulus E* carries the force E* times it.
     pub fn level_at(&self, approach: f64) -> f64 {
-        self.level_where(0.0, approach - self.rest.approach)
+        let level = self.level_where(0.0, approach - self.rest.approach);
+        if level == f64::INFINITY { f64::NAN } else { level }
     }
 
     /// Contact area at a level \[m²\].

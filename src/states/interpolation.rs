@@ -1,27 +1,30 @@
 //! Cubics between states, and roots.
 
-/// Upper limit of the steps of Newton's method.
-const MAX_STEPS: usize = 100;
+/// Rounding of a root, relative to the greater of the root and 1.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The root of a rising function, given with its slope: Newton's steps from the upper end, halved intervals where one
-/// leaves the bracket.
+/// The root between `low` and `high` of a rising function, given with its slope; NaN where the function is NaN. Newton's steps start at
+/// the upper end. The bracket is halved where a step leaves it, or where the last step did not halve the function, so that the search ends.
 pub(super) fn root([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> [f64; 2]) -> f64 {
-    let mut s = high;
-    for _ in 0..MAX_STEPS {
+    let (mut s, mut last) = (high, f64::INFINITY);
+    loop {
         let [excess, slope] = at(s);
+        if excess.is_nan() {
+            return f64::NAN;
+        }
         if excess > 0.0 {
             high = s
         } else {
             low = s
         }
-        let next = s - excess / slope;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - s).abs() <= f64::EPSILON * s.abs().max(1.0) {
-            break;
+        let (newton, middle) = (s - excess / slope, 0.5 * (low + high));
+        let is_near = |next: f64| (next - s).abs() <= ROUNDING * s.abs().max(1.0);
+        if is_near(newton) || is_near(middle) {
+            return if is_near(newton) { newton.clamp(low, high) } else { middle };
         }
-        s = next;
+        let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;
+        (s, last) = (if converges { newton } else { middle }, excess.abs());
     }
-    s
 }
 
 /// Cubic with the values `f` and slopes `m` at 0 and 1.

@@ -147,7 +147,10 @@ impl Levels {
         let is_between = self.history.predict(dt, interpolant, &mut self.trial);
         let compliance = self.history.rule().compliance();
         if compliance == 0.0 {
-            return Err(Error::Step(StepError::NoElasticResponse { time, what: "a jump of the load" }));
+            let what = "a jump of the load that changes the pressure";
+            let level = self.level_without_response(demand);
+            let level = level.ok_or(Error::Step(StepError::NoElasticResponse { time, what }))?;
+            return Ok(Wanted { level, give: f64::INFINITY, sum: 0.0 });
         }
         if !compliance.is_finite() {
             return Err(Error::Step(StepError::Overflow { time, what: "the compliance" }));
@@ -162,7 +165,10 @@ impl Levels {
             Demand::Depth { depth, give } => self.level_of_depth(states, give / compliance, depth),
         };
         let level = wanted.level;
-        if level.is_nan() || level > states.last_level() {
+        if level.is_nan() {
+            return Err(Error::Step(StepError::Overflow { time, what: "the level" }));
+        }
+        if level > states.last_level() {
             let (needed, last) = match demand {
                 Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),
                 Demand::Depth { depth, .. } => (format!("the depth {depth:.3e} m"), states.last_depth()),
@@ -173,6 +179,20 @@ impl Levels {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
         Ok(wanted)
+    }
+
+    /// The level after a jump of a body without elastic response, which moves no surface: the present level if the demand is met already,
+    /// 0 if nothing presses on the surface any more.
+    fn level_without_response(&self, demand: Demand) -> Option<f64> {
+        let is_met = |present: f64, wanted: f64| (present - wanted).abs() <= ROUNDING * present.abs().max(wanted.abs());
+        let (is_met, presses) = match demand {
+            Demand::Force(force) => (is_met(self.force, force), force > 0.0),
+            Demand::Depth { depth, give } => {
+                let surface = self.motions.depth + self.lift;
+                (is_met(self.motions.depth + give * self.force, depth), depth > surface * (1.0 + ROUNDING))
+            }
+        };
+        if is_met && self.level > 0.0 { Some(self.level) } else { (!presses).then_some(0.0) }
     }
 
     /// No group that nothing holds sinks below those that are held.
@@ -200,8 +220,12 @@ impl Levels {
 
     /// Accepts the step of [`Levels::wanted`].
     pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, level: f64) {
-        self.cut_at(states, level);
-        self.hold(level);
+        if self.history.rule().compliance() > 0.0 {
+            self.cut_at(states, level);
+            self.hold(level);
+        } else if level == 0.0 {
+            self.release();
+        }
         if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
             self.lift = self.motions.depth - depth;
             self.motions.depth = depth;
@@ -270,6 +294,13 @@ impl Levels {
             self.trial.insert(group, self.trial[group]);
         }
         self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
+    }
+
+    /// Releases all groups where they are; takes no step.
+    fn release(&mut self) {
+        self.groups.iter_mut().for_each(|group| group.traction = 0.0);
+        self.motions.depth += self.lift;
+        (self.level, self.force, self.lift) = (0.0, 0.0, 0.0);
     }
 
     /// Holds the groups up to a level, and commits the step.
@@ -346,6 +377,19 @@ impl Levels {
     pub(super) fn surface_after(&mut self, dt: f64, interpolant: Interpolant) -> f64 {
         self.history.predict(dt, interpolant, &mut self.trial);
         self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum()
+    }
+
+    /// Depth and force of an undisturbed contact under a load of this kind and size, the depth as soon as it acts, the force after so many
+    /// steps like the last one.
+    pub(super) fn expected(&self, states: &ElasticStates, demand: Demand, size: f64, steps: f64) -> [f64; 2] {
+        match demand {
+            Demand::Force(_) => [states.depth(size * self.history.rule().compliance()), size],
+            Demand::Depth { give, .. } => {
+                let stiffness = self.history.stiffness_over(steps);
+                let level = states.level_where(give * stiffness, size);
+                [states.depth(level), stiffness * level]
+            }
+        }
     }
 
     /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|

@@ -47,6 +47,7 @@ mod fields;
 mod interpolation;
 mod levels;
 mod pressed;
+mod reach;
 mod run;
 #[cfg(feature = "checkpoint")]
 mod saved;
@@ -58,5 +59,7 @@ pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
 pub(crate) use pressed::Pressed;
+pub use reach::Reach;
+pub(crate) use reach::{as_elastic, greatest, greatest_level, is_force, on_any_shape, sampled, softest_compliance};
 pub use run::StatesRun;
-pub use sweep::{Reach, Sweep};
+pub use sweep::Sweep;

@@ -6,11 +6,14 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::checkpoint::check_clocks;
 use crate::contact::checkpoint::format::{Input, Output};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
+use crate::hereditary::Interpolant;
 use crate::parallel::Rows;
 use crate::states::contact::StatesContact;
+use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
 
 /// The contents of a file.
@@ -18,8 +21,9 @@ use crate::states::levels::Levels;
 struct Saved<'a> {
     /// Distinguishes it from the state of a [`ViscoelasticContact`](crate::ViscoelasticContact).
     kind: Cow<'a, str>,
-    /// Number of states, the last level and the last depth.
-    states: (u64, f64, f64),
+    /// Fingerprint of the elastic states.
+    states: u32,
+    interpolant: Interpolant,
     times: [f64; 2],
     levels: Cow<'a, Levels>,
 }
@@ -27,8 +31,8 @@ struct Saved<'a> {
 const KIND: &str = "elastic states";
 
 impl StatesContact {
-    /// Saves the whole state to a file, from which a contact of the same states and material continues
-    /// ([`StatesContact::resume`]) by the same steps, bitwise. The file is complete when this returns; until then,
+    /// Saves the whole state to a file, from which a contact of the same states, material and time rule continues
+    /// ([`StatesContact::resume`]) by the same steps, bitwise, with exact states to the tolerance of the solver. The file is complete when this returns; until then,
     /// what was there before is not touched.
     ///
     /// Needs the feature `checkpoint`.
@@ -36,8 +40,9 @@ impl StatesContact {
     /// # Errors
     /// If the file cannot be written, or there is something other than a file at `path`.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let (kind, states) = (Cow::Borrowed(KIND), self.fingerprint());
-        let saved = Saved { kind, states, times: [self.time, self.reduced_time], levels: Cow::Borrowed(&self.levels) };
+        let (kind, states, interpolant) = (Cow::Borrowed(KIND), self.fingerprint(), self.scene.interpolant);
+        let times = [self.time, self.reduced_time];
+        let saved = Saved { kind, states, interpolant, times, levels: Cow::Borrowed(&self.levels) };
         replace(path.as_ref(), |out| {
             let mut out = Output::begin(out)?;
             postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
@@ -45,7 +50,8 @@ impl StatesContact {
         })
     }
 
-    /// Puts a saved state in the place of this one. The contact must be made of the same states and material.
+    /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with the same time rule
+    /// and temperature.
     ///
     /// Needs the feature `checkpoint`.
     ///
@@ -70,9 +76,14 @@ impl StatesContact {
         if saved.kind != KIND {
             return malformed("no contact on elastic states");
         }
+        let text = |number: u32| format!("{number:x}");
         if saved.states != self.fingerprint() {
-            let [saved, built] = [saved.states, self.fingerprint()].map(|states| format!("{states:?}"));
-            return other("elastic states", saved, built);
+            return other("elastic states", text(saved.states), text(self.fingerprint()));
+        }
+        if saved.interpolant != self.scene.interpolant {
+            let [saved, built] =
+                [saved.interpolant, self.scene.interpolant].map(|interpolant| format!("{interpolant:?}"));
+            return other("time rule", saved, built);
         }
         if !saved.levels.is_of_the_material_of(&self.levels) {
             return other("material", "another".into(), "its own".into());
@@ -80,11 +91,14 @@ impl StatesContact {
         if !saved.levels.fits(&self.levels) || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0) {
             return malformed("levels that no contact has");
         }
+        let [time, reduced] = saved.times;
+        check_clocks(time, reduced, self.scene.temperature.as_ref())?;
         Ok(saved)
     }
 
-    fn fingerprint(&self) -> (u64, f64, f64) {
-        let states = self.states();
-        (states.states().len() as u64, states.last_level(), states.last_depth())
+    /// Checksum of all numbers of the elastic states that this contact was made of.
+    fn fingerprint(&self) -> u32 {
+        let ElasticStates { states, rest, tilt, .. } = &*self.scene.swept;
+        crc32fast::hash(format!("{states:?} {rest:?} {tilt:?}").as_bytes())
     }
 }

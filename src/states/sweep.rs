@@ -1,6 +1,8 @@
 //! The elastic states of a scene, found by the stepper with an elastic body.
 
+use std::collections::VecDeque;
 use std::ops::ControlFlow;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::Grid;
@@ -13,17 +15,7 @@ use crate::rheology::{Elastic, Material};
 use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at, load_point};
 use crate::states::elastic::{ElasticContact, Solved};
 use crate::states::pressed::Pressed;
-
-/// How far a sweep goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Reach {
-    /// To a level \[m²\]: force times compliance. A force F held on a body of the contact creep compliance C(t) reaches F C(t).
-    Level(f64),
-    /// To an approach of the load point \[m\].
-    Approach(f64),
-}
+use crate::states::reach::{MARGIN, Reach};
 
 /// Finds the elastic states of a shape on a body, each by the stepper with an elastic body of unit compliance.
 ///
@@ -62,7 +54,7 @@ impl Sweep {
             layer: None,
             tilt: [Tilt::Fixed(0.0); 2],
             accuracy: 1e-4,
-            max_states: 400,
+            max_states: 4000,
             settings,
             keep_pressures: false,
         }
@@ -88,8 +80,8 @@ impl Sweep {
         self
     }
 
-    /// Upper limit of the number of states (default: 400): where it is reached, the sweep is less accurate than asked for, and
-    /// [`ElasticStates::interpolation_error`] says so.
+    /// Upper limit of the number of states (default: 4000). A sweep that reaches it is less accurate than asked for, by
+    /// [`ElasticStates::interpolation_error`].
     pub fn max_states(mut self, max_states: usize) -> Sweep {
         self.max_states = max_states;
         self
@@ -119,7 +111,7 @@ impl Sweep {
     }
 
     /// As [`Sweep::run`], calling `progress` after each state with all states so far, in the order of their solution;
-    /// it may end the sweep early, with the states that it has then.
+    /// it may end the sweep early, with the states that it has then. The pressure may not fall between neighbours among them either.
     ///
     /// # Errors
     /// As [`Sweep::run`].
@@ -131,8 +123,9 @@ impl Sweep {
         let accuracy =
             within("accuracy of a sweep", self.accuracy, (1e-8..=0.1).contains(&self.accuracy), "in [1e-8, 0.1]")?;
         count_within("states of a sweep", self.max_states, self.max_states >= 3, "3 or more")?;
-        let (Reach::Level(reach) | Reach::Approach(reach)) = to;
-        positive("reach of a sweep", reach)?;
+        if let Reach::Approach(reach) = to {
+            positive("reach of a sweep", reach)?;
+        }
         for tilt in self.tilt {
             let (Tilt::Fixed(value) | Tilt::Free { at: value }) = tilt;
             finite("tilt or load point of a sweep", value)?;
@@ -162,13 +155,31 @@ impl Sweep {
         };
         let last = match to {
             Reach::Level(level) => level,
-            Reach::Approach(approach) => solver.level_at(approach)?,
+            Reach::Approach(approach) => solver.largest_level(&[Load::Approach { approach, tilt: self.tilt }])?,
+            Reach::Loads(loads) => MARGIN * solver.largest_level(&loads)?,
         };
+        positive("level that a sweep reaches", last)?;
         solver.sweep(last)?;
         let mut states = solver.finish();
         (states.poisson, states.grid) = (self.layer.map(|layer| layer.poisson_ratio()), Some(grid));
         states.scene = Some(scene);
         Ok(Arc::new(states))
+    }
+}
+
+/// Two neighbouring states that may have others between them.
+struct Pair {
+    lower: Rc<Solved>,
+    upper: Rc<Solved>,
+    /// Upper level of the pair of the first pass that this pair is a part of.
+    top: f64,
+    /// Error in the middle of the pair that this pair is a half of; infinite in the first pass.
+    error: f64,
+}
+
+impl Pair {
+    fn new(lower: &Rc<Solved>, upper: &Rc<Solved>, top: f64, error: f64) -> Pair {
+        Pair { lower: Rc::clone(lower), upper: Rc::clone(upper), top, error }
     }
 }
 
@@ -193,15 +204,21 @@ struct Solver<P> {
 }
 
 impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
-    /// The level at an approach of the load point.
-    fn level_at(&mut self, approach: f64) -> Result<f64> {
-        match self.elastic.solve(Load::Approach { approach, tilt: self.tilt })?.state.level {
-            level if level > 0.0 => Ok(level),
-            _ => Err(Error::OutOfRange {
-                field: "approach that a sweep reaches",
-                value: approach,
-                allowed: "beyond the first touch",
-            }),
+    /// The greatest level under some loads.
+    fn largest_level(&mut self, loads: &[Load]) -> Result<f64> {
+        let mut largest = 0.0_f64;
+        for &load in loads {
+            if load.tilt() != self.tilt {
+                let swept = Load::Force { normal: 0.0, tilt: self.tilt }.to_string();
+                return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
+            }
+            largest = largest.max(self.elastic.solve(load)?.state.level);
+        }
+        let allowed = "beyond the first touch";
+        if largest > 0.0 {
+            Ok(largest)
+        } else {
+            Err(Error::OutOfRange { field: "load that a sweep reaches", value: largest, allowed })
         }
     }
 
@@ -209,22 +226,47 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         self.elastic.solve(Load::Force { normal: level, tilt: self.tilt })
     }
 
-    /// Adds a state, unless the sweep is to end.
+    /// Adds a state. Breaks if the sweep is to end with it.
     fn add(&mut self, Solved { state, pressure }: &Solved) -> ControlFlow<()> {
         self.solved.push(*state);
         self.kept.iter_mut().for_each(|kept| kept.push(pressure.clone()));
-        if self.solved.len() >= self.max_states {
-            return ControlFlow::Break(());
-        }
-        (self.progress)(&self.solved)
+        let ends = (self.progress)(&self.solved).is_break() || self.solved.len() >= self.max_states;
+        if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Levels from `last` down by halves to the smallest contact, then what lies between them, the largest contacts first.
+    /// Levels from `last` down by halves to the smallest contact, then what lies between them. Pairs of neighbours are halved in turn:
+    /// where a sweep ends early, the pairs left have about the same error. Where the pressure falls between the levels of a pair of the
+    /// first pass but the last, contacts of these levels and below are held or free as a whole.
     fn sweep(&mut self, last: f64) -> Result<()> {
-        let mut coarse = vec![self.solve(last)?];
+        let mut states = self.first_pass(last)?;
+        self.last_depth = self.depth(&states[0].state);
+        let ended = states.iter().position(|solved| self.add(solved).is_break());
+        states.truncate(ended.map_or(states.len(), |last| last + 1));
+        self.error = if states.len() > 1 { 0.0 } else { f64::INFINITY };
+        let mut ends = ended.is_some();
+        let first = |pair: &[Rc<Solved>]| Pair::new(&pair[1], &pair[0], pair[0].state.level, f64::INFINITY);
+        let mut pairs: VecDeque<Pair> = states.windows(2).map(first).collect();
+        drop(states);
+        while let Some(pair) = pairs.pop_front() {
+            let top = pair.top;
+            if top <= self.first_level {
+                continue;
+            }
+            match self.halve(pair, &mut pairs, ends) {
+                Ok(next) => ends |= next.is_break(),
+                Err(Error::States(StatesError::Shrinks { .. })) if top < last => self.first_level = top,
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// States from `last` down by halves of the level to the smallest contact.
+    fn first_pass(&mut self, last: f64) -> Result<Vec<Rc<Solved>>> {
+        let mut states = vec![Rc::new(self.solve(last)?)];
         // on the same cells, motions are linear in the level; no contact has fewer than one cell for each free motion
         let (mut is_linear, free) = (false, self.tilt.iter().filter(|tilt| matches!(tilt, Tilt::Free { .. })).count());
-        while let Some(Solved { state, pressure }) = coarse.last() {
+        while let Some(Solved { state, pressure }) = states.last().map(Rc::as_ref) {
             let is_smallest = is_linear && (state.cells <= 1 + free || state.level < LINEAR_LEVEL * last);
             if is_smallest || state.level < LEAST_LEVEL * last {
                 break;
@@ -234,27 +276,9 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
             if is_linear {
                 self.rest = self.rest_below(state, &next.state);
             }
-            coarse.push(next);
+            states.push(Rc::new(next));
         }
-        for solved in &coarse {
-            if self.add(solved).is_break() {
-                return Ok(());
-            }
-        }
-        self.last_depth = self.depth(&coarse[0].state);
-        for pair in coarse.windows(2) {
-            match self.between(&pair[1], &pair[0]) {
-                Ok(ControlFlow::Continue(())) => {}
-                Ok(ControlFlow::Break(())) => break,
-                // what lies below is held or free as a whole
-                Err(Error::States(StatesError::Shrinks { .. })) if pair[0].state.level < last => {
-                    self.first_level = pair[0].state.level;
-                    break;
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(())
+        Ok(states)
     }
 
     /// Depth of the load point at a state.
@@ -272,24 +296,27 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         Rest { approach, tilt: [first, second] }
     }
 
-    /// Adds what is needed between two states.
-    fn between(&mut self, lower: &Solved, upper: &Solved) -> Result<ControlFlow<()>> {
-        self.check_growth(lower, upper)?;
-        let pair = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
-        let middle = self.solve((lower.state.level * upper.state.level).sqrt())?;
-        let error = pair.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
-        let is_fine = SAFETY * error <= self.accuracy || upper.state.level < FINEST * lower.state.level;
-        if self.add(&middle).is_break() || is_fine {
+    /// Adds the state in the middle of a pair, and both halves to the pairs unless the pair is accurate. A sweep that ends leaves the
+    /// pair as it is.
+    fn halve(&mut self, pair: Pair, pairs: &mut VecDeque<Pair>, ends: bool) -> Result<ControlFlow<()>> {
+        let Pair { lower, upper, top, error } = pair;
+        self.check_growth(&lower, &upper)?;
+        if ends {
             self.error = self.error.max(error);
-            self.check_growth(lower, &middle)?;
-            self.check_growth(&middle, upper)?;
-            let ends = self.solved.len() >= self.max_states;
-            return Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) });
-        }
-        if self.between(&middle, upper)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
-        self.between(lower, &middle)
+        let curve = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
+        let middle = Rc::new(self.solve((lower.state.level * upper.state.level).sqrt())?);
+        let error = curve.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
+        if SAFETY * error <= self.accuracy || upper.state.level < FINEST * lower.state.level {
+            self.check_growth(&lower, &middle)?;
+            self.check_growth(&middle, &upper)?;
+            self.error = self.error.max(error);
+        } else {
+            // checked in their turn
+            pairs.extend([Pair::new(&middle, &upper, top, error), Pair::new(&lower, &middle, top, error)]);
+        }
+        Ok(self.add(&middle))
     }
 
     /// Nowhere may the pressure fall while the load grows.

@@ -4,6 +4,7 @@ use crate::ALLOCATOR;
 use crate::common::{StepLoadedSphere, builder_of, sphere, sphere_on, zener};
 use stats_alloc::Region;
 use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 /// Panics if the job allocates.
 fn allocates_nothing(what: impl std::fmt::Debug, job: impl FnOnce()) {
@@ -177,6 +178,24 @@ pub fn steps_allocate_nothing() {
         allocates_nothing("along a path", || {
             (0..40).for_each(|_| _ = contact.step_along(&travel, 5.0e-3, Load::force(0.5)).unwrap());
         });
+    }
+
+    // nor do steps at a temperature that changes, unless it changes the rate of creep by decades within a step
+    let law = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
+    let courses = [
+        TemperatureHistory::table(law, &[(0.0, 373.15), (30.0, 393.15), (40.0, 383.15)]),
+        TemperatureHistory::function(law, |t| 380.0 + 5.0 * (0.2 * t).sin(), &[]),
+        TemperatureHistory::constant(law, 373.15).unwrap().ageing(1.0, 10.0, 10.0),
+    ];
+    for course in courses.map(Result::unwrap) {
+        let builder = builder_of(&sphere(), plane.clone(), body()).settings(Settings::default().with_window(false));
+        let mut contact = builder.temperature(course.clone()).build().unwrap();
+        contact.step(0.0, Load::force(0.5)).unwrap();
+        allocates_nothing(&course, || (0..40).for_each(|_| _ = contact.step(0.5, Load::force(0.5)).unwrap()));
+        let load = StepLoad::new(Load::force(0.6)).unwrap();
+        let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 60.0);
+        (0..2).for_each(|_| _ = run.next_step().unwrap());
+        allocates_nothing(&course, || while run.next_step().unwrap().is_some() {});
     }
 
     // nor do snapshots, taken into the memory of one before, and restored

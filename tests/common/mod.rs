@@ -35,6 +35,7 @@ pub mod runs;
 pub mod sealed;
 pub mod spectra;
 pub mod spheres;
+pub mod steady_sliding;
 #[path = "../../examples/support/scenes/step_loaded_sphere.rs"]
 pub mod step_loaded_sphere;
 pub mod temporary;

@@ -91,6 +91,17 @@ pub fn random_history(draws: &mut Draws, control: Control, until: f64, jumps: bo
                 vec![(0.0, 0.0), (at(1), 1.0), (at(2), apart), (at(3), apart), (at(4), again), (1.1 * until, again)];
             tabled("triangle, apart, again".into(), rows)
         }
+        3 if draws.chance(0.5) => {
+            let (periods, least) = (draws.between(1.0, 4.0), draws.between(0.1, 0.8));
+            let (low, high, period) = (control.load(least), control.load(1.0), until / periods);
+            let (kind, built) = match draws.below(3) {
+                0 if jumps => ("square", Periodic::square(high, low, period, 0.5)),
+                1 if jumps => ("sawtooth", Periodic::sawtooth(low, high, period)),
+                _ => ("triangle", Periodic::triangle(control.load(0.0), high, period)),
+            };
+            let corners = (0..=8).map(|half| 0.5 * f64::from(half) * period).collect();
+            RandomHistory { name: format!("{kind}, {periods:.1} periods"), history: Box::new(built.unwrap()), corners }
+        }
         3 => {
             let least = draws.between(0.1, 0.8);
             let times = [draws.between(0.1, 0.3), draws.between(0.4, 0.6), draws.between(0.7, 0.9)];

@@ -188,18 +188,23 @@ pub fn history(source: &mut Source, length: f64, softness: f64) -> viscocontact:
         }
         _ => load(source, length, softness),
     };
-    Ok(match source.below(5) {
+    let period = source.scale(1e-3, 1e3);
+    Ok(match source.below(9) {
         0 => Box::new(StepLoad::new(first)?),
-        1 => Box::new(Ramp::new(first, second, source.scale(1e-3, 1e3))?),
-        2 => Box::new(Sinusoid::new(first, second, source.scale(1e-3, 1e3))?),
-        3 => {
+        1 => Box::new(Ramp::new(first, second, period)?),
+        2 => Box::new(Sinusoid::new(first, second, period.recip())?),
+        3 => Box::new(Sinusoid::about(first, source.scale(1e-9, 1.0), period.recip())?),
+        4 => Box::new(Periodic::square(first, second, period, source.unit())?),
+        5 => Box::new(Periodic::triangle(first, second, period)?),
+        6 => Box::new(Periodic::sawtooth(first, second, period)?),
+        7 => {
             let mut time = source.between(-1.0, 1.0);
             let mut table = Vec::new();
             for k in 0..source.count(0, 5) {
                 table.push((time, if k % 2 == 0 { first } else { second }));
                 time += if source.chance(0.2) { 0.0 } else { source.scale(1e-3, 1e2) };
             }
-            Box::new(PiecewiseLinear::new(&table)?)
+            if source.chance(0.5) { Box::new(Periodic::new(&table)?) } else { Box::new(PiecewiseLinear::new(&table)?) }
         }
         _ => {
             let (normal, rate) = (length * length / softness * source.scale(1e-6, 1e-1), source.scale(1e-3, 1e3));
@@ -220,7 +225,8 @@ pub fn few_turns(source: &mut Source, length: f64, softness: f64) -> viscocontac
         Load::Spring { stiffness, drive, .. } => Load::spring(stiffness, drive),
         other => other,
     });
-    Ok(match source.below(4) {
+    Ok(match source.below(5) {
+        4 => Box::new(Periodic::triangle(first, second, source.scale(1.0, 10.0))?),
         0 | 1 => Box::new(StepLoad::new(first)?),
         2 => Box::new(Ramp::new(first, second, source.scale(0.1, 10.0))?),
         _ => Box::new(PiecewiseLinear::new(&[(0.0, first), (source.scale(0.1, 1.0), second)])?),

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use viscocontact::contact::{SteadyMotion, Stepping};
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::output::Metadata;
 use viscocontact::prelude::*;
+use viscocontact::run::{SteadyMotion, Stepping};
 
 use crate::engine::{Outcome, Target, Verdict, finite, known};
 use crate::models;

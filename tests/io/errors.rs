@@ -189,11 +189,19 @@ fn load_tables_are_checked() {
         (field(table(&[at(0.0, 1.0), at(1.0, f64::INFINITY)])), "normal force"),
         (field(Ramp::new(load, load, 0.0)), "duration of the ramp"),
         (field(Sinusoid::new(load, load, -1.0)), "frequency"),
+        (field(Sinusoid::about(load, -1.0, 1.0)), "amplitude"),
+        (field(Periodic::new(&[at(1.0, 1.0), at(1.0, 2.0)])), "period"),
+        (field(Periodic::square(load, load, 1.0, 1.0)), "duty cycle"),
+        (field(Periodic::square(load, load, f64::NAN, 0.5)), "period"),
+        (field(Periodic::triangle(load, load, -1.0)), "period"),
+        (field(Periodic::sawtooth(load, load, f64::INFINITY)), "period"),
         (field(StepLoad::new(Load::force(f64::NAN))), "normal force"),
         (field(FnHistory::new(|_| Load::force(1.0)).with_breakpoints(&[f64::NAN])), "breakpoint"),
     ] {
         assert_eq!(found, expected);
     }
+    let fallen = Sinusoid::new(Load::approach(3.0e-6), Load::approach(2.0e-6), 1.0);
+    assert!(matches!(fallen, Err(Error::OutOfOrder { value: 2.0e-6, previous: 3.0e-6, .. })), "{fallen:?}");
 }
 
 #[test]

@@ -262,6 +262,10 @@ fn every_history_obeys_every_law() {
         ("StepLoad, approach", Box::new(StepLoad::new(Load::approach(1e-6)).unwrap())),
         ("Ramp", Box::new(Ramp::new(hinge(0.0, 0.1), hinge(2.0, -0.3), 0.7).unwrap())),
         ("table", Box::new(table(&[(0.0, 0.0), (0.3, 1.0), (0.3, 0.2), (0.31, 5.0), (4.0, 0.0)]))),
+        ("square", Box::new(Periodic::square(Load::force(1.0), Load::force(0.0), 0.29, 0.3).unwrap())),
+        ("triangle", Box::new(Periodic::triangle(Load::force(1.0), Load::force(0.0), 0.29).unwrap())),
+        ("sawtooth", Box::new(Periodic::sawtooth(Load::force(1.0), Load::force(0.0), 0.29).unwrap())),
+        ("level", Box::new(Periodic::triangle(Load::force(2.0), Load::force(2.0), 0.1).unwrap())),
         ("Sinusoid", Box::new(Sinusoid::new(Load::approach(-1e-6), Load::approach(1e-6), 7.0).unwrap())),
         ("FnHistory", Box::new(FnHistory::new(|t: f64| Load::force((1.0 + t).ln_1p())))),
         (
@@ -317,6 +321,11 @@ fn every_law_of_histories_can_be_broken() {
     assert_eq!(broken((|_| -1.0, one, none)).law, "every load is one that a step accepts");
     let nan = broken((one, |t| if t == 0.5 { f64::NAN } else { 1.0 }, none));
     assert_eq!((nan.law, time(&nan)), ("every load is one that a step accepts", 0.5));
+    let standing = broken((one, one, |after| (after == 0.25).then_some(0.25)));
+    assert_eq!(
+        standing.to_string(),
+        "breakpoints increase: breakpoint at t = 2.5e-1 s is 2.5e-1, expected more than 2.5e-1"
+    );
     assert_eq!(broken((one, one, Some)).law, "breakpoints increase");
     assert_eq!(broken((one, one, |_| Some(f64::INFINITY))).law, "breakpoints increase");
     let fleeing = broken((one, one, |after| Some(after + 1.0)));
@@ -350,6 +359,7 @@ fn every_law_of_histories_can_be_broken() {
     let turning = FnHistory::new(|t: f64| if t < 0.6 { Load::force(1.0) } else { Load::approach(1.0) });
     let violation = load::laws::all(&turning, &times).unwrap_err();
     assert_eq!((violation.law, violation.quantity), ("jumps lie on breakpoints", "kind of load"));
+    assert!(violation.to_string().ends_with("kind of load at t = 7.5e-1 s is another one"), "{violation}");
 }
 
 /// Whatever the strategies make is valid, and obeys the laws.

@@ -6,5 +6,6 @@ mod laws;
 mod metamorphic;
 #[cfg(feature = "laws")]
 mod metamorphic_time;
+mod periodic;
 #[cfg(feature = "npy")]
 mod ranks;

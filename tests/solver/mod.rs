@@ -8,6 +8,7 @@ mod adhesion_dense;
 mod adhesion_jkr;
 mod adhesion_jumps;
 mod adhesion_population;
+mod adhesion_separation;
 mod adhesion_steps;
 mod adhesion_work;
 mod adhesion_zone;

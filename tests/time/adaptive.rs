@@ -1,10 +1,11 @@
 //! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
 
 use crate::common::histories::{Scene, scenes};
-use crate::common::{RADIUS, builder_on, contact_of, elastic, figures, maxwell};
+use crate::common::{Draws, RADIUS, builder_on, contact_of, elastic, figures, from_environment, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;
+use viscocontact::states::{Reach, Sweep};
 
 const CELLS: usize = 48;
 
@@ -255,4 +256,44 @@ fn steps_of_the_last_digit_come_to_an_end() {
         }
     }
     assert!(stopped > 0);
+}
+
+/// A jump that a history names is followed at any time, on bodies that creep faster than times are resolved there.
+#[test]
+fn named_jumps_are_followed_however_late() {
+    let grid = Grid::square(12, 4.0e-3).unwrap();
+    let sphere = Sphere::new(10.0e-3).unwrap();
+    let sweep = Sweep::new(grid.clone(), &sphere).accuracy(1e-5);
+    let states = sweep.run(Reach::Level(4.0e-7)).unwrap();
+    let (mut late, mut worst) = (0, 0.0f64);
+    for number in 0..from_environment("LATE_JUMPS", 30) {
+        let mut draws = Draws::new(number.wrapping_add(57_000_001));
+        let terms: Vec<_> = (0..21).map(|k| (1.0e5 * draws.power_of_ten(-1.0, 0.0), 10.0_f64.powi(k - 10))).collect();
+        let body = Material::incompressible(GeneralizedMaxwell::new(1.0e5, &terms).unwrap());
+        let end = draws.power_of_ten(0.0, 9.0);
+        let jump = end * draws.between(0.05, 0.95);
+        let last = 4.0e-7 / body.contact_compliance(end) * 0.9;
+        let (before, tolerance) = (draws.between(0.1, 0.9) * last, draws.power_of_ten(-4.0, -2.0));
+        let loads = [(0.0, 0.0), (0.0, before), (jump, before), (jump, last), (end, last)];
+        let history = PiecewiseLinear::new(&loads.map(|(time, force)| (time, Load::force(force)))).unwrap();
+        let mut contact = contact_of(&sphere, grid.clone(), body.clone(), Settings::default().with_tolerance(1e-9));
+        let mut run = contact.follow(&history, Stepping::adaptive(tolerance), end);
+        let mut steps = 0;
+        while let Some(report) = run.next_step().unwrap_or_else(|error| panic!("{number}, jump at {jump:e} s: {error}"))
+        {
+            steps += 1;
+            let since = report.time - jump;
+            // within the resolution of times after the jump, the report gives the error
+            let allowed = if since > 0.0 && since < 1e4 * f64::EPSILON * jump { report.time_error } else { None };
+            let increase = if since > 0.0 || report.force > 0.5 * (before + last) { last - before } else { 0.0 };
+            let level =
+                before * body.contact_compliance(report.time) + increase * body.contact_compliance(since.max(0.0));
+            let off = (report.approach / states.approach(level) - 1.0).abs();
+            worst = worst.max(off / allowed.unwrap_or(0.0).max(tolerance));
+            assert!(steps < 3000, "{number}");
+        }
+        late += u32::from(jump > 1e7);
+    }
+    println!("{late} jumps after 1e7 s; greatest error over the tolerance {worst:.2}");
+    assert!(late > 3 && worst < 2.0, "{late} {worst}");
 }

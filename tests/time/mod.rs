@@ -14,6 +14,7 @@ mod springs;
 mod states;
 mod states_accuracy;
 mod states_kept;
+mod states_limits;
 mod states_outside;
 mod states_population;
 mod temperature;

@@ -118,7 +118,7 @@ fn steps_end_where_they_are_stopped() {
         times.iter().all(|time| ends.iter().any(|end| (end - time).abs() <= 1e-12 * time))
     };
     for stepping in [Stepping::adaptive(1e-3), Stepping::fixed(0.3)] {
-        let ends = |stop: &dyn Fn(viscocontact::contact::Run<'static>) -> viscocontact::contact::Run<'static>| {
+        let ends = |stop: &dyn Fn(viscocontact::run::Run<'static>) -> viscocontact::run::Run<'static>| {
             let mut run = stop(contact().into_follow(load, stepping, 10.0));
             let mut ends = Vec::new();
             while let Some(report) = run.next_step().unwrap() {
@@ -142,7 +142,7 @@ fn steps_end_where_they_are_stopped() {
         let mut ends = Vec::new();
         while let Some(report) = run.next_step().unwrap() {
             ends.push(report.time);
-            assert_eq!(run.samples().map(|sample| sample.unwrap().time()).collect::<Vec<_>>(), [report.time]);
+            assert_eq!(run.samples().map(|sample| sample.unwrap().report().time).collect::<Vec<_>>(), [report.time]);
         }
         assert!(met(&multiples, &ends) && met(&decades, &ends), "{ends:?}");
     }
@@ -163,7 +163,7 @@ fn samples_of_elastic_states_leave_the_steps_as_they_are() {
         let (mut reports, mut points) = (Vec::new(), Vec::new());
         while let Some(report) = run.next_step().unwrap() {
             reports.push(report);
-            points.extend(run.samples().map(|sample| sample.unwrap().time()));
+            points.extend(run.samples().map(|sample| sample.unwrap().report().time));
         }
         (reports, points)
     };

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use crate::common::Temporary;
+use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
 
 fn rough_states(kept: bool) -> Arc<ElasticStates> {
@@ -74,6 +76,62 @@ fn contacts_on_states_come_back_to_the_last_bit() {
         assert!(again.resume(&path).is_err(), "{cut}");
     }
     assert_eq!(format!("{again:?}"), before);
+}
+
+/// A saved state is taken up by a contact of the same curve, time rule and temperature only, with exact states too.
+#[test]
+fn states_are_resumed_by_the_same_contact_only() {
+    let folder = Temporary::folder("states-resumed");
+    let path = folder.join("state");
+    // l = k δ^1.5, with another k but at the last state
+    let row = |depth: f64, k: f64| (depth.powf(1.5) * k, depth, 1.5 * depth.sqrt() * k, depth);
+    let table = |below: f64| {
+        let depth = |k: i32| 1.0e-3 * 4000.0_f64.powf(f64::from(k) / 40.0);
+        let rows: Vec<_> = (0..=40).map(|k| row(depth(k), if k == 40 { 1.0 } else { below })).collect();
+        ElasticStates::from_table(&rows).unwrap()
+    };
+    let warming = |by: f64| {
+        let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
+        TemperatureHistory::function(law, move |t| 300.0 + by * t, &[]).unwrap()
+    };
+    let contact = |below: f64| StatesContact::new(&table(below), &material()).unwrap();
+    let others: [(&str, StatesContact); 4] = [
+        ("elastic states", contact(0.5)),
+        ("time rule", contact(1.0).with_linear_steps()),
+        ("temperature", contact(1.0)),
+        ("temperature", contact(1.0).with_temperature(warming(1.1))),
+    ];
+    let mut saved = contact(1.0).with_temperature(warming(1.0));
+    for step in 1..10 {
+        saved.step(0.1, Load::approach(0.1 * f64::from(step))).unwrap();
+    }
+    saved.save(&path).unwrap();
+    for (named, mut other) in others {
+        let before = format!("{other:?}");
+        match other.resume(&path) {
+            Err(Error::Checkpoint { source: CheckpointError::OtherScene { what, .. }, .. }) => assert_eq!(what, named),
+            resumed => panic!("{named}: {resumed:?}"),
+        }
+        assert_eq!(format!("{other:?}"), before);
+    }
+    let mut again = contact(1.0).with_temperature(warming(1.0));
+    again.resume(&path).unwrap();
+    for contact in [&mut saved, &mut again] {
+        contact.step(0.1, Load::approach(1.2)).unwrap();
+    }
+    assert_eq!(format!("{saved:?}"), format!("{again:?}"));
+
+    let states = rough_states(false);
+    let exact = || StatesContact::new(&states, &material()).unwrap().with_exact_states().unwrap();
+    let (mut contact, mut again) = (exact(), exact());
+    advanced(&mut contact, 0..8);
+    contact.save(&path).unwrap();
+    again.resume(&path).unwrap();
+    for contact in [&mut contact, &mut again] {
+        advanced(contact, 8..12);
+    }
+    assert!((again.force() / contact.force() - 1.0).abs() < 1e-6, "{} {}", again.force(), contact.force());
+    assert!((again.approach() / contact.approach() - 1.0).abs() < 1e-6, "{} {}", again.approach(), contact.approach());
 }
 
 /// States read from a file carry the same contacts, and the same pressures.

@@ -89,8 +89,12 @@ fn scene(seed: u64, number: u64) -> Scene {
         1 => ("ramp", Box::new(Ramp::new(full(0.0), full(1.0), 1.001).unwrap())),
         2 => ("ramp and hold", Box::new(Ramp::new(full(0.0), full(1.0), draws.power_of_ten(-1.5, 0.0)).unwrap())),
         _ => {
-            let low = draws.between(0.2, 0.8);
-            ("sine", Box::new(Sinusoid::new(full(low), full(1.0), draws.between(0.3, 3.0)).unwrap()))
+            let (low, periods) = (draws.between(0.2, 0.8), draws.between(0.3, 3.0));
+            if low < 0.35 {
+                ("square", Box::new(Periodic::square(full(1.0), full(low), 1.0 / periods, 0.5).unwrap()))
+            } else {
+                ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods).unwrap()))
+            }
         }
     };
     let accuracy = if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD };

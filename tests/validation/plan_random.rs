@@ -140,7 +140,11 @@ fn scene(seed: u64, number: u64) -> Scene {
         _ => {
             let low = draws.between(0.2, 0.8);
             let periods = draws.between(0.3, 3.0);
-            ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods / until).unwrap()))
+            if low < 0.35 {
+                ("triangle", Box::new(Periodic::triangle(full(low), full(1.0), until / periods).unwrap()))
+            } else {
+                ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods / until).unwrap()))
+            }
         }
     };
     let accuracy = if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD };

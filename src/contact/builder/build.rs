@@ -104,17 +104,19 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
+        self.special().map_or(Ok(()), |[what, _]| Err(RanksError::NotShared { what }.into()))
+    }
+
+    /// What neither ranks nor surfaces that attract each other cover, and what to do.
+    fn special(&self) -> Option<[&'static str; 2]> {
         let Settings { solver, time_rule, frame, .. } = self.settings;
         let refused = [
-            (self.gaps.len() > 1, "a contact of several rigid bodies"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer"),
-            (!time_rule.needs_series(), "a direct sum"),
-            (frame != Frame::Bodies, "Frame::Indenter"),
+            (self.gaps.len() > 1, ["a contact of several rigid bodies", "compute one body"]),
+            (solver != Solver::ActiveSet, ["Solver::PolonskyKeer", "take Solver::ActiveSet"]),
+            (!time_rule.needs_series(), ["a direct sum", "take TimeRule::Exponential"]),
+            (frame != Frame::Bodies, ["Frame::Indenter", "take Frame::Bodies"]),
         ];
-        match refused.into_iter().find(|(refused, _)| *refused) {
-            Some((_, what)) => Err(RanksError::NotShared { what }.into()),
-            None => Ok(()),
-        }
+        refused.into_iter().find(|(refused, _)| *refused).map(|(_, what)| what)
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -152,7 +154,7 @@ impl Builder {
     /// ```
     ///
     /// # Errors
-    /// As [`Builder::build`], except for invalid gaps and for memory.
+    /// As [`Builder::build`], except for invalid gaps, memory, and more than 2³² − 1 cells.
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
@@ -181,18 +183,9 @@ impl Builder {
 
     /// Rejects scenes that are not covered where surfaces attract each other.
     fn attraction_is_covered(&self) -> Result<()> {
-        let Settings { solver, time_rule, frame, .. } = self.settings;
-        let refused = [
-            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
-            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
-            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
-            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
-        ];
-        match refused.into_iter().find(|(refused, ..)| *refused) {
-            Some((_, what, cure)) => Err(AdhesionError::NotCovered { what, cure }.into()),
-            None => Ok(()),
-        }
+        let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
+        let refused = self.special().or(shared);
+        refused.map_or(Ok(()), |[what, cure]| Err(AdhesionError::NotCovered { what, cure }.into()))
     }
 
     /// Material, kernel and history.

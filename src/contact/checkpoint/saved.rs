@@ -6,25 +6,28 @@ use serde::{Deserialize, Serialize};
 
 use super::scene_fingerprint::Fingerprint;
 use crate::contact::builder::build::windowed;
-use crate::contact::{Clock, Equilibrium, Progress, Region, Scene, State, ViscoelasticContact};
+use crate::contact::checkpoint::SavedRun;
+use crate::contact::{Clock, Equilibrium, Region, Scene, State, ViscoelasticContact};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
+use crate::rheology::TemperatureHistory;
 use crate::rounded::texts_without_noise;
 
 /// A state on no cells, and the fingerprint of its scene.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Saved<'a> {
+#[serde(bound(deserialize = "P: SavedRun"))]
+pub(super) struct Saved<'a, P: SavedRun> {
     pub(super) scene: Fingerprint,
     /// On the region of all ranks, without values.
     pub(super) state: State,
     /// Axes along which the gap is even: the file has one half of it.
     pub(super) gap_folded: [bool; 2],
-    pub(super) progress: Option<Cow<'a, Progress>>,
+    pub(super) progress: Option<Cow<'a, P>>,
 }
 
-impl<'a> Saved<'a> {
-    pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
+impl<'a, P: SavedRun> Saved<'a, P> {
+    pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a P>) -> Saved<'a, P> {
         let (state, grid) = (&contact.computation.state, &contact.scene.grid);
         let folded = state.region.folded();
         let all = if state.region.is_shared() { Region::whole(grid, folded) } else { state.region.clone() };
@@ -86,16 +89,24 @@ pub(super) fn moved_indenter() -> CheckpointError {
 /// Both clocks of a checkpoint must agree to this part: closures of a temperature have no other mark.
 const CLOCKS_AGREE: f64 = 1e-9;
 
-/// Rejects a reduced time that the temperature of the scene does not lead to, and a run that cannot be continued.
-pub(super) fn check_run(clock: &Clock, run: Option<&Progress>, scene: &Scene) -> Result<(), CheckpointError> {
-    if let Some(history) = &scene.temperature {
-        let [saved, built] = [clock.reduced_time, history.reduced_time(0.0, clock.time).unwrap_or(f64::NAN)];
-        let agree = (saved - built).abs() <= CLOCKS_AGREE * built;
-        if !agree {
-            let [saved, built] = texts_without_noise([saved, built].map(|time| format!("reduced time {time:e} s")));
-            return Err(CheckpointError::OtherScene { what: "temperature", saved, built });
-        }
+/// Rejects a reduced time at `time` that the temperature does not lead to.
+pub(crate) fn check_clocks(
+    time: f64,
+    reduced: f64,
+    temperature: Option<&TemperatureHistory>,
+) -> Result<(), CheckpointError> {
+    let built = temperature.map_or(time, |history| history.reduced_time(0.0, time).unwrap_or(f64::NAN));
+    let agree = (reduced - built).abs() <= CLOCKS_AGREE * built;
+    if agree {
+        return Ok(());
     }
+    let [saved, built] = texts_without_noise([reduced, built].map(|time| format!("reduced time {time:e} s")));
+    Err(CheckpointError::OtherScene { what: "temperature", saved, built })
+}
+
+/// Rejects a reduced time that the temperature of the scene does not lead to, and a run that cannot be continued.
+pub(super) fn check_run(clock: &Clock, run: Option<&impl SavedRun>, scene: &Scene) -> Result<(), CheckpointError> {
+    check_clocks(clock.time, clock.reduced_time, scene.temperature.as_ref())?;
     if run.is_some_and(|progress| !progress.fits()) {
         return malformed("a run that no contact can continue");
     }

@@ -14,6 +14,9 @@ use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
 use crate::{Grid, memory, sum};
 
+/// Of bodies apart, the part of the work of separation that is left.
+const UNDONE: f64 = 0.01;
+
 impl ViscoelasticContact {
     /// Time \[s\], initially 0.
     pub fn time(&self) -> f64 {
@@ -104,6 +107,17 @@ impl ViscoelasticContact {
             *h = gap(k, u, grid.center(k / n2, k % n2));
         }
         Ok(())
+    }
+
+    /// Whether the bodies are apart: no cell is in contact, and where surfaces attract each other
+    /// ([`Builder::attraction`](crate::contact::Builder::attraction)) 99 % of the work of separation is done at the narrowest gap.
+    /// Surfaces without a cell in contact still pull.
+    pub fn is_separated(&self) -> bool {
+        let far = |law: &Arc<dyn Attraction>| {
+            let narrowest = self.gap().map(|gap| gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0));
+            narrowest.is_ok_and(|gap| law.energy(gap) <= UNDONE * law.work())
+        };
+        self.contact_cells() == 0 && self.scene.attraction.as_ref().is_none_or(far)
     }
 
     /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach at first

@@ -11,7 +11,7 @@ use crate::hereditary::BranchEnergies;
 /// the tractions. What the springs store and the dashpots dissipate follows from these fields, not from the balance, whose
 /// [imbalance](Energies::imbalance) shows the error of the steps: of second order in their length. The work of the load is ∫ F dδ + ∫ M dα, by
 /// the mean of force and moment over each step: steps that are long for ∫ F dδ are divided by
-/// [`Run::stop_at`](crate::contact::Run::stop_at). In a step of length zero bodies answer elastically, and its work is what they store and lose.
+/// [`Run::stop_at`](crate::run::Run::stop_at). In a step of length zero bodies answer elastically, and its work is what they store and lose.
 /// Where surfaces attract each other, the energy of the attraction is stored too, and steps with
 /// [`Warnings::JUMP`] lose [`PassReport::released`](crate::contact::PassReport::released).
 ///

@@ -28,7 +28,7 @@ pub struct StepReport {
     /// Estimated error in time of the step, relative: of the approach under a given force, of the force under a given
     /// motion. 0 in jumps, which take no time, and of elastic bodies; `None` where nothing was estimated: in steps over
     /// the bodies ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows.
-    /// [`ErrorBudget::time`](crate::contact::ErrorBudget::time) compares it with true errors.
+    /// [`ErrorBudget::time`](crate::run::ErrorBudget::time) compares it with true errors.
     pub time_error: Option<f64>,
     /// The quantity of which [`StepReport::time_error`] is the relative error.
     pub estimated: Estimated,

@@ -1,7 +1,7 @@
 //! What a step changes.
 
-pub(in crate::contact) mod extrapolation;
-pub(in crate::contact) mod snapshot;
+pub(crate) mod extrapolation;
+pub(crate) mod snapshot;
 
 use std::sync::Arc;
 
@@ -20,46 +20,46 @@ use crate::solver::{RigidMotion, Solution};
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
-    pub(super) clock: Clock,
-    pub(super) loads: Vec<Load>,
+    pub(crate) clock: Clock,
+    pub(crate) loads: Vec<Load>,
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::contact::indenter::saved"))]
-    pub(super) indenter: Arc<Indenter>,
+    pub(crate) indenter: Arc<Indenter>,
     /// Whether the indenter has been replaced since the last step.
-    pub(super) indenter_is_new: bool,
+    pub(crate) indenter_is_new: bool,
     /// The part of the grid that is computed: every field lives there, except for the gap of the indenter.
-    pub(super) region: Region,
+    pub(crate) region: Region,
     /// Whether the region was chosen for a contact, rather than for bodies apart.
-    pub(super) region_is_for_contact: bool,
+    pub(crate) region_is_for_contact: bool,
     /// Displacement and past of the bodies.
-    pub(super) history: History,
+    pub(crate) history: History,
     /// Whether the surfaces attract each other.
-    pub(super) attracts: bool,
-    pub(super) current: Equilibrium,
+    pub(crate) attracts: bool,
+    pub(crate) current: Equilibrium,
     /// At the start of the last step.
-    pub(super) previous: Equilibrium,
-    pub(super) start: StepStart,
-    pub(super) extrapolation: Extrapolation,
+    pub(crate) previous: Equilibrium,
+    pub(crate) start: StepStart,
+    pub(crate) extrapolation: Extrapolation,
     /// The greatest means of displacement and v over the contact so far, as far as errors were taken relative to them.
-    pub(super) greatest: [f64; 2],
+    pub(crate) greatest: [f64; 2],
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
-    pub(super) time: f64,
+    pub(crate) time: f64,
     /// Length of the last step.
-    pub(super) last_length: f64,
+    pub(crate) last_length: f64,
     /// Time as it passes for the material; without a history of the temperature, the time.
-    pub(super) reduced_time: f64,
+    pub(crate) reduced_time: f64,
     /// Length of the last step in reduced time.
-    pub(super) last_dt: f64,
+    pub(crate) last_dt: f64,
     /// The reduced time until which the bodies were undisturbed.
-    pub(super) undisturbed_until: f64,
+    pub(crate) undisturbed_until: f64,
 }
 
 impl Clock {
     /// After a step; `touched` is true if anything has ever been displaced.
-    pub(super) fn accept(&mut self, step: Interval, touched: bool) {
+    pub(crate) fn accept(&mut self, step: Interval, touched: bool) {
         (self.time, self.last_length) = (step.time, step.length);
         (self.reduced_time, self.last_dt) = (step.reduced, step.dt);
         if !touched {
@@ -68,7 +68,7 @@ impl Clock {
     }
 
     /// How long the bodies have been disturbed, in reduced time.
-    pub(super) fn age(&self) -> f64 {
+    pub(crate) fn age(&self) -> f64 {
         self.reduced_time - self.undisturbed_until
     }
 }
@@ -78,14 +78,14 @@ impl Clock {
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Equilibrium {
-    pub(super) solution: Solution,
+    pub(crate) solution: Solution,
     /// Motion of each body, prescribed and free parts together.
-    pub(super) motions: Vec<RigidMotion>,
+    pub(crate) motions: Vec<RigidMotion>,
     /// Cells in contact on the whole grid.
-    pub(super) contact_cells: usize,
+    pub(crate) contact_cells: usize,
     /// Σ p over the cells that are computed, of all ranks, less Σ s where surfaces attract each other.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
-    pub(super) sum: f64,
+    pub(crate) sum: f64,
 }
 
 /// The start of the last step, besides `previous` and the fields that the history keeps.
@@ -93,20 +93,20 @@ pub(crate) struct Equilibrium {
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct StepStart {
-    pub(super) clock: Clock,
-    pub(super) loads: Vec<Load>,
+    pub(crate) clock: Clock,
+    pub(crate) loads: Vec<Load>,
     /// How the last step took the displacement to change.
-    pub(super) interpolant: Interpolant,
+    pub(crate) interpolant: Interpolant,
     /// Whether the indenter of the last step was set just before it.
-    pub(super) indenter_was_new: bool,
+    pub(crate) indenter_was_new: bool,
     /// The indenter of the last step, where it has been replaced since.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
-    pub(super) replaced: Option<Arc<Indenter>>,
+    pub(crate) replaced: Option<Arc<Indenter>>,
 }
 
 impl State {
     /// Bodies without load, where they just touch, by the time rule of a history; without values.
-    pub(super) fn layout(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
+    pub(crate) fn layout(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
         let motions = indenter.first_touch();
         let (loads, solution) = (vec![Load::force(0.0); motions.len()], Solution::zero(0, motions.len()));
         let current = Equilibrium { solution, motions, contact_cells: 0, sum: 0.0 };
@@ -128,21 +128,21 @@ impl State {
     }
 
     /// Bodies without load, where they just touch, by the time rule of a history.
-    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
+    pub(crate) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
         let cells = region.len();
         State::layout(indenter, region.clone(), history, attracts)
             .map(&region, &mut |field| vec![0.0; cells * field.per_cell])
     }
 
     /// How many values the state has for each cell.
-    pub(super) fn values_per_cell(&self) -> usize {
+    pub(crate) fn values_per_cell(&self) -> usize {
         let mut values = 0;
         self.each(&mut |field| values += field.per_cell);
         values
     }
 
     /// A copy on `region`; `map` gives its fields, one for each field here. Its sums are to be found anew.
-    pub(super) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
+    pub(crate) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
         let [current, previous] = [&self.current, &self.previous].map(|of| {
             let Solution { pressure, potential, attraction, motions, .. } = &of.solution;
             let (kept, lasting) = (usize::from(self.attracts), Role::Lasting { source: None });
@@ -168,7 +168,7 @@ impl State {
     }
 
     /// Visits all fields.
-    pub(super) fn each(&self, visit: &mut impl FnMut(Field<'_>)) {
+    pub(crate) fn each(&self, visit: &mut impl FnMut(Field<'_>)) {
         self.map(&self.region, &mut |field| {
             visit(field);
             Vec::new()
@@ -176,7 +176,7 @@ impl State {
     }
 
     /// Finds the sums that neither transfer nor file has.
-    pub(super) fn sum_up(&mut self) {
+    pub(crate) fn sum_up(&mut self) {
         let rows = self.region.rows();
         for equilibrium in [&mut self.current, &mut self.previous] {
             equilibrium.sum = net_sum(&rows, &equilibrium.solution);
@@ -184,14 +184,14 @@ impl State {
     }
 
     /// Keeps the start of a step that is accepted with this state still that before it.
-    pub(super) fn keep_start(&mut self, interpolant: Interpolant) {
+    pub(crate) fn keep_start(&mut self, interpolant: Interpolant) {
         let StepStart { clock, loads, interpolant: kept, indenter_was_new, replaced } = &mut self.start;
         (*clock, *kept, *indenter_was_new, *replaced) = (self.clock, interpolant, self.indenter_is_new, None);
         loads.copy_from_slice(&self.loads);
     }
 
     /// Returns to the start of the last step, which the history must still keep.
-    pub(super) fn roll_back(&mut self) {
+    pub(crate) fn roll_back(&mut self) {
         self.history.roll_back(!self.is_undisturbed());
         self.current.clone_from(&self.previous);
         self.clock = self.start.clock;
@@ -204,13 +204,13 @@ impl State {
     }
 
     /// Whether no pressure has ever acted.
-    pub(super) fn is_undisturbed(&self) -> bool {
+    pub(crate) fn is_undisturbed(&self) -> bool {
         self.clock.age() == 0.0 && self.current.contact_cells == 0
     }
 }
 
 /// Σ p, less Σ s where surfaces attract each other.
-pub(in crate::contact) fn net_sum(rows: &Rows, solution: &Solution) -> f64 {
+pub(crate) fn net_sum(rows: &Rows, solution: &Solution) -> f64 {
     let sum = rows.sum(&solution.pressure);
     if solution.attraction.is_empty() { sum } else { sum - rows.sum(&solution.attraction) }
 }

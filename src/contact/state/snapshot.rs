@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::{Run, Scene, State, ViscoelasticContact};
+use crate::contact::{Scene, State, ViscoelasticContact};
 use crate::error::{Error, Result, within};
 use crate::extent::Extent;
 use crate::load::{Load, Tilt};
@@ -75,7 +75,7 @@ impl ViscoelasticContact {
         }
         self.computation.restore(&self.scene, &snapshot.state);
         self.view.refresh(&self.computation.state);
-        self.progress = None;
+        self.saved_run = None;
         Ok(())
     }
 }
@@ -86,7 +86,7 @@ impl ViscoelasticContact {
     ///
     /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
     /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has
-    /// the loads in between, and [`Run::within_step`] takes them from there.
+    /// the loads in between, and [`Run::within_step`](crate::run::Run::within_step) takes them from there.
     ///
     /// This costs a copy of the contact and a contact problem. Where ranks share out the contact, all of them call it.
     ///
@@ -122,7 +122,7 @@ impl ViscoelasticContact {
 
     /// The contact at a `time` within the last step, under the loads that are found for the contact at its start, and the
     /// rectangle of its pressed cells if it was advanced.
-    fn advanced_within_step(
+    pub(crate) fn advanced_within_step(
         &self,
         time: f64,
         tolerance: f64,
@@ -134,7 +134,7 @@ impl ViscoelasticContact {
         let inside = time >= from - 1e-12 * state.clock.last_length && time <= state.clock.time;
         within("time within the last step", time, inside, "between its start and its end")?;
         let mut contact = self.clone();
-        contact.progress = None;
+        contact.saved_run = None;
         if time == state.clock.time {
             return Ok((contact, None));
         }
@@ -166,42 +166,5 @@ impl ViscoelasticContact {
             Load::Approach { .. } => Load::Approach { approach, tilt },
             Load::Spring { stiffness, .. } => Load::Spring { stiffness, drive: approach + now.force / stiffness, tilt },
         }
-    }
-}
-
-impl Run<'_> {
-    /// The contact at a time within the last step of the run, its ends included, under the load of the history at that time:
-    /// as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0)?))
-    ///     .build()?;
-    /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0)?;
-    /// let mut run = contact.follow(&ramp, Stepping::adaptive(1.0e-3), 100.0);
-    /// let mut forces = Vec::new(); // at 25 times a decade, however long the steps are
-    /// let mut times = (-50..=50).map(|k| 10f64.powf(0.04 * f64::from(k))).peekable();
-    /// while let Some(report) = run.next_step()? {
-    ///     while let Some(time) = times.next_if(|&time| time <= report.time) {
-    ///         forces.push((time, run.within_step(time)?.force()));
-    ///     }
-    /// }
-    /// assert_eq!(forces.len(), 101);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
-    pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
-        Ok(self.reached_within_step(time)?.0)
-    }
-
-    /// [`Run::within_step`], and the rectangle of the pressed cells.
-    pub(in crate::contact) fn reached_within_step(&self, time: f64) -> Result<(ViscoelasticContact, Option<Extent>)> {
-        let load = || Ok(vec![self.history.at(time).validated_at(time, self.contact.scene.attraction.is_some())?]);
-        self.contact.advanced_within_step(time, self.solver_tolerance(), |_| load())
     }
 }

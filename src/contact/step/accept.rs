@@ -8,7 +8,7 @@ use crate::solver::RigidMotion;
 
 impl Computation {
     /// Number of cells of the region that are pressed in the trial, and the rectangle of the grid that holds them: of all ranks.
-    pub(in crate::contact) fn pressed(&self) -> (usize, Option<Extent>) {
+    pub(crate) fn pressed(&self) -> (usize, Option<Extent>) {
         let (region, pressure) = (&self.state.region, &self.trial.solution.pressure);
         (region.rows().count(pressure.iter().filter(|&&p| p > 0.0).count()), region.reach(pressure))
     }

@@ -54,38 +54,38 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
 /// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that matter.
-pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
+pub(crate) const SHORTEST_TOUCH: f64 = 10.0;
 
 /// Data of a run besides the step.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::contact) struct StepContext {
+pub(crate) struct StepContext {
     /// Mean displacement and v that are to be expected of the greatest loads.
-    pub(in crate::contact) expected: [f64; 2],
+    pub(crate) expected: [f64; 2],
     /// The depth below first touch to which the bodies may come back, or 0 if they do not, and the response of v to an error
     /// of u when they meet.
-    pub(in crate::contact) coming_back: [f64; 2],
+    pub(crate) coming_back: [f64; 2],
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
-    pub(in crate::contact) lasting: [f64; 2],
-    pub(in crate::contact) tolerance: f64,
+    pub(crate) lasting: [f64; 2],
+    pub(crate) tolerance: f64,
     /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy compliance, that a
     /// unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
-    pub(in crate::contact) on_switch: [f64; 2],
+    pub(crate) on_switch: [f64; 2],
     /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
-    pub(in crate::contact) greatest_on_switch: f64,
+    pub(crate) greatest_on_switch: f64,
     /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
-    pub(in crate::contact) on_jump: f64,
+    pub(crate) on_jump: f64,
     /// Whether the load has a corner or jumps at the end of the step, which no step then puts right.
-    pub(in crate::contact) is_last: bool,
+    pub(crate) is_last: bool,
     /// How far the defects of the run agree in sign, 0 … 1.
-    pub(in crate::contact) agreement: f64,
+    pub(crate) agreement: f64,
     /// Steps so far, this one included.
-    pub(in crate::contact) steps: f64,
+    pub(crate) steps: f64,
     /// Events that take less time than this do not matter, ...
-    pub(in crate::contact) resolution: f64,
+    pub(crate) resolution: f64,
     /// ... nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
-    pub(in crate::contact) beginning: f64,
+    pub(crate) beginning: f64,
     /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
-    pub(in crate::contact) length_is_given: bool,
+    pub(crate) length_is_given: bool,
 }
 
 impl Default for StepContext {
@@ -114,12 +114,7 @@ const SMALL: [f64; 2] = [0.05, 0.2];
 /// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in contact, under a
 /// given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is relative to the parts [`SMALL`] of the
 /// greatest of the run, expected ones included.
-pub(in crate::contact) fn error_in_time(
-    scene: &Scene,
-    tried: &Computation,
-    step: &Step<'_>,
-    outlook: StepContext,
-) -> TimeError {
+pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: StepContext) -> TimeError {
     let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
     let StepContext { greatest_on_switch, on_jump, is_last, steps, resolution, beginning, length_is_given, .. } =
         outlook;

@@ -17,7 +17,7 @@
 mod accept;
 pub(in crate::contact) mod attraction;
 mod constraints;
-pub(in crate::contact) mod error_in_time;
+pub(crate) mod error_in_time;
 mod gap;
 mod initial_guess;
 mod jump;
@@ -50,7 +50,7 @@ use spring::{guess_forces, solve_with_springs};
 
 /// A computed step, not yet accepted. Dropping it leaves the contact unchanged.
 #[must_use]
-pub(in crate::contact) struct Attempt {
+pub(crate) struct Attempt {
     /// The copy on a larger region, if the step needed one.
     larger: Option<Box<Computation>>,
     /// Σ p.
@@ -89,13 +89,7 @@ impl ViscoelasticContact {
     }
 
     /// A step of `length` to the time `time`, without motion along the surface.
-    pub(in crate::contact) fn request<'a>(
-        &self,
-        time: f64,
-        length: f64,
-        loads: &'a [Load],
-        tolerance: f64,
-    ) -> Result<Step<'a>> {
+    pub(crate) fn request<'a>(&self, time: f64, length: f64, loads: &'a [Load], tolerance: f64) -> Result<Step<'a>> {
         let State { indenter, clock, .. } = &self.computation.state;
         non_negative("time", time)?;
         let dt = self.scene.reduced_length([clock.time, time], length)?;
@@ -111,18 +105,14 @@ impl ViscoelasticContact {
     }
 
     /// Computes a step and accepts it; the `outlook` enters the estimate of its error.
-    pub(in crate::contact) fn take_expecting(
-        &mut self,
-        step: Step<'_>,
-        outlook: StepContext,
-    ) -> Result<(StepReport, TimeError)> {
+    pub(crate) fn take_expecting(&mut self, step: Step<'_>, outlook: StepContext) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
         Ok((self.accept(attempt, step, error)?, error))
     }
 
     /// Computes a step. The state stays as it is.
-    pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
+    pub(crate) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
         let (mut larger, region) = (None, &self.computation.state.region);
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other
@@ -148,12 +138,7 @@ impl ViscoelasticContact {
     }
 
     /// Makes an attempt the state, and reports it. The loss of a rank is an error, which leaves the state unchanged.
-    pub(in crate::contact) fn accept(
-        &mut self,
-        attempt: Attempt,
-        step: Step<'_>,
-        error: TimeError,
-    ) -> Result<StepReport> {
+    pub(crate) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let reach = self.adopt(attempt, step, error.sizes)?;
@@ -163,7 +148,7 @@ impl ViscoelasticContact {
     }
 
     /// The report of the last step, whose pressed cells are within `reach`.
-    pub(in crate::contact) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
+    pub(crate) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
         let max_slope = state.indenter.steepest(&scene.grid, &state.region, &state.current.solution.pressure);
@@ -208,7 +193,7 @@ impl ViscoelasticContact {
 
 impl Attempt {
     /// The computation of the attempt: its copy on a larger region, or `own`, the contact's.
-    pub(in crate::contact) fn computation<'a>(&'a self, own: &'a Computation) -> &'a Computation {
+    pub(crate) fn computation<'a>(&'a self, own: &'a Computation) -> &'a Computation {
         self.larger.as_deref().unwrap_or(own)
     }
 }

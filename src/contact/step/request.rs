@@ -12,22 +12,22 @@ use crate::solver::{Freedom, RigidMotion, Solution};
 
 /// A step to be tried.
 #[derive(Debug, Clone)]
-pub(in crate::contact) struct Step<'a> {
-    pub(in crate::contact) interval: Interval,
+pub(crate) struct Step<'a> {
+    pub(crate) interval: Interval,
     /// The load of each body at its end.
-    pub(in crate::contact) loads: &'a [Load],
+    pub(crate) loads: &'a [Load],
     /// The indenter at its end.
-    pub(in crate::contact) indenter: Arc<Indenter>,
+    pub(crate) indenter: Arc<Indenter>,
     /// Tolerance of the solver.
-    pub(in crate::contact) tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Set by another thread to end the step.
-    pub(in crate::contact) cancelled: Option<&'a AtomicBool>,
+    pub(crate) cancelled: Option<&'a AtomicBool>,
 }
 
 impl Step<'_> {
     /// The part of a body's motion that its load prescribes; zero for free components. The approach counts from the datum of
     /// the gap.
-    pub(in crate::contact) fn prescribed(&self, body: usize) -> RigidMotion {
+    pub(crate) fn prescribed(&self, body: usize) -> RigidMotion {
         let (load, datum) = (&self.loads[body], self.indenter.gap().datum);
         let approach = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
         let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
@@ -40,27 +40,27 @@ impl Step<'_> {
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     /// A guess, then the solution.
-    pub(in crate::contact) solution: Solution,
+    pub(crate) solution: Solution,
     /// The gap before any pressure and free motion.
-    pub(in crate::contact) gap: Vec<f64>,
+    pub(crate) gap: Vec<f64>,
     /// Free motions of each body.
-    pub(in crate::contact) free: Vec<Freedom>,
+    pub(crate) free: Vec<Freedom>,
     /// The last force tried of each body that a spring drives.
-    pub(in crate::contact) springs: Vec<TriedSpring>,
+    pub(crate) springs: Vec<TriedSpring>,
     /// What the passes of a step work in, from the first step of surfaces that attract each other.
-    pub(in crate::contact) passes: Option<Box<Passes>>,
+    pub(crate) passes: Option<Box<Passes>>,
     /// Length of the extrapolation of the guess, in last steps.
-    pub(in crate::contact) reach: f64,
+    pub(crate) reach: f64,
     /// Cells that are likely to be in contact, and whether they were predicted.
-    pub(in crate::contact) likely: Vec<bool>,
-    pub(in crate::contact) predicted: bool,
+    pub(crate) likely: Vec<bool>,
+    pub(crate) predicted: bool,
 }
 
 impl Trial {
     /// Two fields of the solution, the gap, and a mark.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 + 8 + 8 + 1;
+    pub(crate) const BYTES_PER_CELL: usize = 8 + 8 + 8 + 1;
 
-    pub(in crate::contact) fn new(cells: usize, bodies: usize) -> Trial {
+    pub(crate) fn new(cells: usize, bodies: usize) -> Trial {
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
         Trial {
             solution: Solution::zero(cells, bodies),

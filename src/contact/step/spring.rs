@@ -23,7 +23,7 @@ const HALVINGS: usize = 40;
 
 /// What the last trial told of a spring.
 #[derive(Debug, Clone, Copy, Default)]
-pub(in crate::contact) struct TriedSpring {
+pub(crate) struct TriedSpring {
     force: f64,
     /// g(F) \[m\].
     excess: f64,

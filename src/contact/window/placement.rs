@@ -78,7 +78,7 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
 
 /// The depth below first touch at which the first body about comes to rest, under the product of a force and a contact
 /// compliance.
-pub(in crate::contact) fn resting_depth(scene: &Scene, state: &State, force_times_compliance: f64) -> f64 {
+pub(crate) fn resting_depth(scene: &Scene, state: &State, force_times_compliance: f64) -> f64 {
     level(scene, &state.region.of_gap(), &state.indenter, 0, force_times_compliance)[1]
 }
 

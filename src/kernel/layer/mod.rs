@@ -190,9 +190,14 @@ impl Layer {
         match bodies {
             [Some(nu)] if (nu - layer).abs() <= SAME_POISSON => Ok(()),
             // to the digits that were given
-            [Some(nu)] => refused(format!("the material has the constant ratio {}", (nu * 1e9).round() / 1e9)),
-            [None] => refused("that of a material with an elastic bulk rises in time".into()),
-            _ => refused("a counter body deforms, too, as a half-space and in a time of its own".into()),
+            [Some(nu)] => refused(format!(
+                "the material has the constant ratio {}: give both the same, a layer after its thickness",
+                (nu * 1e9).round() / 1e9
+            )),
+            [None] => {
+                refused("that of a material with an elastic bulk rises in time: take one of constant ratio".into())
+            }
+            _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
         }
     }
 }

@@ -14,6 +14,7 @@ use crate::error::Result;
 use crate::geometry::{
     Cone, Cylinder, Ellipsoid, FlatPunch, Geometry, HeightMap, Repeated, Shifted, Sphere, Sum, Wavy,
 };
+use crate::load::LoadHistory;
 use crate::rheology::{
     Burgers, CreepSpectrum, Elastic, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
     KelvinVoigt, Kww, LogCreep, Maxwell, PowerLaw, Rheology, SlowCreep, Zener,
@@ -49,18 +50,19 @@ where
     numbers.prop_filter_map("refused by its constructor", move |numbers| build(numbers).ok()).boxed()
 }
 
-fn body<I: std::fmt::Debug + 'static, R: Rheology + 'static>(
-    numbers: impl Strategy<Value = I> + 'static,
-    build: impl Fn(I) -> Result<R> + 'static,
-) -> BoxedStrategy<AnyRheology> {
-    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyRheology))
+/// Models of a trait, by their numbers and constructor.
+macro_rules! models {
+    ($($name:ident: $model:ident as $any:ty,)*) => {$(
+        fn $name<I: std::fmt::Debug + 'static, M: $model + 'static>(
+            numbers: impl Strategy<Value = I> + 'static,
+            build: impl Fn(I) -> Result<M> + 'static,
+        ) -> BoxedStrategy<$any> {
+            built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as $any))
+        }
+    )*};
 }
-
-fn shape<I: std::fmt::Debug + 'static, G: Geometry + 'static>(
-    numbers: impl Strategy<Value = I> + 'static,
-    build: impl Fn(I) -> Result<G> + 'static,
-) -> BoxedStrategy<AnyGeometry> {
-    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyGeometry))
+models! {
+    body: Rheology as AnyRheology, shape: Geometry as AnyGeometry, law: Attraction as AnyAttraction, history: LoadHistory as AnyHistory,
 }
 
 /// Every rheology of the crate that has a formula, with moduli around `modulus` \[Pa\] and times around `time` \[s\].
@@ -117,13 +119,6 @@ pub fn spectra(modulus: f64, time: f64) -> impl Strategy<Value = CreepSpectrum> 
     built((around(1.0 / modulus), fluidity, terms), |(glassy, fluidity, terms)| {
         CreepSpectrum::new(glassy, fluidity, &terms)
     })
-}
-
-fn law<I: std::fmt::Debug + 'static, A: Attraction + 'static>(
-    numbers: impl Strategy<Value = I> + 'static,
-    build: impl Fn(I) -> Result<A> + 'static,
-) -> BoxedStrategy<AnyAttraction> {
-    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyAttraction))
 }
 
 /// Every attraction of the crate, with works of separation around `work` \[J/m²\] and ranges around `range` \[m\].

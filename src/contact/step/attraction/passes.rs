@@ -10,7 +10,7 @@ const LEAST_OF_JUMP: f64 = 15.0;
 
 /// What the passes of a step work in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
-pub(in crate::contact) struct Passes {
+pub(crate) struct Passes {
     /// K s, or N s of the [near field](super::near_field).
     pub(super) image: Vec<f64>,
     /// F (z − s) of the far field; zero where passes work with K.
@@ -20,7 +20,7 @@ pub(in crate::contact) struct Passes {
     pub(super) has_last: bool,
     /// The change of s in the first pass, over the greatest traction: in single precision, since it is a direction.
     pub(super) first: Vec<f32>,
-    pub(in crate::contact) report: PassReport,
+    pub(crate) report: PassReport,
 }
 
 /// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at the gap that the one

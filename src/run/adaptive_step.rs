@@ -1,19 +1,13 @@
 //! Steps as long as their error allows.
 
-use std::sync::atomic::AtomicBool;
-
-use crate::contact::computation::Computation;
-use crate::contact::read::report::StepReport;
-use crate::contact::run::progress::StepErrors;
-use crate::contact::run::step_control::{NODES, StepControl};
-use crate::contact::scene::Scene;
-use crate::contact::settings::Settings;
-use crate::contact::state::State;
 use crate::contact::step::error_in_time::{StepContext, error_in_time};
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{Computation, Scene, Settings, State, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
+use crate::run::driven::Course;
+use crate::run::error_budget::StepErrors;
+use crate::run::step_control::{NODES, StepControl};
 
 /// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;
@@ -29,22 +23,11 @@ const DECADES: i32 = 40;
 const FIRST_FRACTION: f64 = 1e-6;
 /// Greatest factor by which the response of surfaces that attract each other enlarges the error of a step. It has no bound at a jump.
 const MOST_RESPONSE: f64 = 10.0;
+/// Steps of one rounding of the time are accepted within so many of them after a jump or a corner.
+const ROUNDINGS: f64 = 1e3;
 /// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
 /// them.
 const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
-
-/// What a run prescribes of its next adaptive step.
-#[derive(Clone, Copy)]
-pub(super) struct Course<'a> {
-    pub(super) history: &'a dyn LoadHistory,
-    /// End of the run.
-    pub(super) until: f64,
-    /// The next time at which a step has to end, and the next at which the displacement may have a kink.
-    pub(super) stop: f64,
-    pub(super) kink: f64,
-    /// Set by another thread to end the step.
-    pub(super) cancelled: Option<&'a AtomicBool>,
-}
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
 /// error, and accepts it or tries a shorter one.
@@ -66,9 +49,10 @@ pub(super) fn adaptive_step(
         let (state, clock) = (&computation.state, &computation.state.clock);
         let [wanted, reduced] = control.length(scene, state, history, until - now)?;
         let (order, dashpot) = order_of(state, &scene.settings);
-        let (time, dt) = towards(now, stop, wanted);
         // near the resolution of the time, a shortened step may round to the same end again and again
-        if time <= now || time >= tried {
+        let time = towards(now, stop, wanted).max(now.next_up()).min(tried.next_down());
+        let dt = time - now;
+        if time <= now {
             return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance: control.tolerance }));
         }
         tried = time;
@@ -124,7 +108,11 @@ pub(super) fn adaptive_step(
         }
         let by_kinks = error.by_kinks && error.relative > control.tolerance;
         let order = if by_kinks || excess > 1.0 { ORDER_OF_KINKS } else { order };
-        if !control.judge(step.interval.dt, error.relative, order, dashpot) {
+        // no step resolves creep that follows a late jump within the rounding of times: the report gives its error
+        let unresolved = time == now.next_up()
+            && step.interval.reduced - control.since <= ROUNDINGS * step.interval.dt
+            && error.relative.is_finite();
+        if !control.judge(step.interval.dt, error.relative, order, dashpot) && !unresolved {
             events::rejected(time, dt, error.relative, control.tolerance);
             add_work(&mut wasted, computed);
             continue;
@@ -282,14 +270,9 @@ fn add_work(work: &mut [usize; 2], tried: &Computation) {
     *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
 }
 
-/// The end and the length of a step of about `wanted` towards `stop`: the step ends at `stop` if this is near, or
-/// halfway if the remainder would be much shorter than the step.
-fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
+/// The end of a step of about `wanted` towards `stop`: `stop` if this is near, or halfway if the remainder would be much
+/// shorter than the step.
+fn towards(now: f64, stop: f64, wanted: f64) -> f64 {
     let left = stop - now;
-    if wanted >= 0.99 * left {
-        (stop, left)
-    } else {
-        let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
-        (now + dt, now + dt - now) // the step length after rounding
-    }
+    if wanted >= 0.99 * left { stop } else { now + wanted.min(0.5 * left) }
 }

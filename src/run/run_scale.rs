@@ -1,8 +1,7 @@
 //! The size of the loads and displacements of a run.
 
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
+use crate::contact::{Scene, State};
 use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 

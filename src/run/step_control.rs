@@ -1,15 +1,13 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::computation::Computation;
-use crate::contact::run::run_scale::RunScale;
-use crate::contact::scene::Scene;
-use crate::contact::state::State;
 use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
+use crate::contact::{Computation, Scene, State};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
+use crate::run::run_scale::RunScale;
 use crate::solver::Freedom;
 
 /// Chooses steps whose error stays below the tolerance. Two errors count: the error of the displacement within the step
@@ -34,7 +32,7 @@ pub(super) struct StepControl {
     lasting: Option<[LastingError; 2]>,
     /// Number of accepted steps, and the time of the last jump or corner.
     steps: u64,
-    since: f64,
+    pub(super) since: f64,
     /// Number of rejected steps.
     pub(super) rejected: u64,
 }

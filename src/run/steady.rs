@@ -1,7 +1,8 @@
 //! Motion over the bodies to the steady state.
 
 use crate::axis::Axis;
-use crate::contact::{Frame, StepReport, ViscoelasticContact};
+use crate::contact::moving::shortfall::Approaching;
+use crate::contact::{Frame, StepReport, Unsteady, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
@@ -12,7 +13,7 @@ const STEPS_PER_CONTACT_LENGTH: usize = 8;
 /// this stride.
 const CONTACT_LENGTHS_PER_STRIDE: usize = 2;
 /// Grid lengths after which a motion that is not yet steady fails.
-const MAX_GRID_LENGTHS: usize = 10;
+const MAX_GRID_LENGTHS: f64 = 10.0;
 
 value! {
 /// A steady motion of the indenter over the bodies, and the tolerance of the steady state; made by
@@ -30,13 +31,15 @@ pub struct SteadyMotion {
     /// Σ |Δp| over Σ p. The noise of the solver is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
     tolerance: f64, with_tolerance;
+    /// Greatest distance to travel \[m\] (default: `None`, ten times the length of the grid).
+    max_distance: Option<f64>, with_max_distance;
 }
 }
 
 impl SteadyMotion {
     /// A motion along `axis`, with a `velocity` \[m/s\] of either sign, under a `load`.
     pub const fn new(axis: Axis, velocity: f64, load: Load) -> SteadyMotion {
-        SteadyMotion { axis, velocity, load, tolerance: 1e-3 }
+        SteadyMotion { axis, velocity, load, tolerance: 1e-3, max_distance: None }
     }
 }
 
@@ -45,6 +48,7 @@ impl SteadyMotion {
 pub struct SteadyRun<'a> {
     contact: &'a mut ViscoelasticContact,
     motion: SteadyMotion,
+    approaching: Approaching,
     /// Cells per step.
     stride: usize,
     /// Cells still to travel with this stride.
@@ -54,6 +58,7 @@ pub struct SteadyRun<'a> {
     /// Pressure one contact length ago.
     before: Vec<f64>,
     change: f64,
+    outstanding: f64,
     /// Whether a step in place was taken for the indenter to touch.
     tried_to_touch: bool,
     arrived: bool,
@@ -95,16 +100,25 @@ impl ViscoelasticContact {
         within("velocity", velocity, velocity != 0.0, "finite and not 0")?;
         let tolerance = motion.tolerance;
         within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
+        let creep = self.scene.material.contact_spectrum()?.ok_or_else(|| self.scene.material.no_series("a motion"))?;
+        if creep.fluidity() > 0.0 {
+            let reason = Unsteady::Flows { fluidity: creep.fluidity() };
+            return Err(Error::Step(StepError::NotSteady { distance: 0.0, tolerance, reason }));
+        }
+        let mut stride = [0; 2];
+        stride[motion.axis.index()] = velocity.signum() as isize;
         let before = self.pressure().to_vec();
-        let change = f64::INFINITY;
+        let (change, outstanding) = (f64::INFINITY, f64::INFINITY);
         Ok(SteadyRun {
             contact: self,
             motion,
+            approaching: Approaching { creep, stride },
             stride: 0,
             left: 0,
             travelled: 0,
             before,
             change,
+            outstanding,
             tried_to_touch: false,
             arrived: false,
         })
@@ -132,8 +146,7 @@ impl SteadyRun<'_> {
         let axis = self.motion.axis.index();
         // bodies that are apart touch in place, within the time for one cell
         let (stride, lasts) = if apart { (0, 1) } else { (self.stride, self.stride) };
-        let mut cells = [0; 2];
-        cells[axis] = velocity.signum() as isize * stride as isize;
+        let cells = self.approaching.stride.map(|cell| cell * stride as isize);
         let dt = lasts as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
         let report = self.contact.step_over(cells, dt, load)?;
         self.travelled += stride;
@@ -160,6 +173,12 @@ impl SteadyRun<'_> {
         self.change
     }
 
+    /// What slow terms of creep still have to change of approach or lateral force, relative to its value; infinite before the first
+    /// full length of the contact.
+    pub fn outstanding(&self) -> f64 {
+        self.outstanding
+    }
+
     /// Distance travelled by the indenter \[m\].
     pub fn distance(&self) -> f64 {
         self.travelled as f64 * self.contact.grid().spacing()[self.motion.axis.index()]
@@ -169,7 +188,6 @@ impl SteadyRun<'_> {
     fn next_stride(&mut self) -> Result<bool> {
         let (axis, grid) = (self.motion.axis.index(), self.contact.grid());
         let (cells, contact) = (grid.cells()[axis], self.length_of_contact());
-        let limit = self.motion.tolerance;
         (self.stride, self.left) = match self.stride {
             // the largest power of two within an eighth of the contact
             0 => (1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2(), cells),
@@ -177,13 +195,10 @@ impl SteadyRun<'_> {
                 let pairs = self.contact.pressure().iter().zip(&self.before);
                 let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
                 self.change = change / self.contact.pressure().iter().sum::<f64>();
-                self.arrived = self.change <= limit;
+                self.outstanding = self.approaching.outstanding(self.contact);
+                self.arrived = self.arrives()?;
                 if self.arrived {
                     return Ok(false);
-                }
-                if self.travelled > MAX_GRID_LENGTHS * cells {
-                    let (change, distance) = (self.change, self.distance());
-                    return Err(Error::Step(StepError::NotSteady { distance, change, tolerance: limit }));
                 }
                 (1, contact)
             }
@@ -191,6 +206,28 @@ impl SteadyRun<'_> {
         };
         self.before.copy_from_slice(self.contact.pressure());
         Ok(true)
+    }
+
+    /// Whether the motion is steady; an error if it cannot be within the distance that it may travel.
+    fn arrives(&self) -> Result<bool> {
+        let SteadyMotion { axis, tolerance, max_distance, .. } = self.motion;
+        let (distance, outstanding) = (self.distance(), self.outstanding);
+        let most = max_distance.unwrap_or(MAX_GRID_LENGTHS * self.contact.grid().lengths()[axis.index()]);
+        let reason = if outstanding <= tolerance && self.change <= tolerance {
+            self.approaching.lost(self.contact, tolerance)
+        } else {
+            let (time, reach) = self.approaching.slowest(self.contact, distance);
+            let farther = reach * (outstanding / tolerance).max(1.0).ln();
+            if distance + farther <= most {
+                return Ok(false);
+            }
+            Some(if outstanding > tolerance {
+                Unsteady::SlowTerm { time, remaining: outstanding, farther }
+            } else {
+                Unsteady::Changing { change: self.change }
+            })
+        };
+        reason.map_or(Ok(true), |reason| Err(Error::Step(StepError::NotSteady { distance, tolerance, reason })))
     }
 
     /// Cells between the ends of the contact along the axis of the motion.

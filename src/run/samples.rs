@@ -2,24 +2,23 @@
 
 use std::borrow::Cow;
 
-use crate::ascending::Times;
-use crate::contact::read::report::StepReport;
-use crate::contact::run::follow::{Run, SAME_TIME};
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::run::RunContact;
+use crate::run::follow::{Run, SAME_TIME, history_of};
 
 /// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
 #[derive(Debug)]
-pub struct Sample<'a> {
-    contact: Cow<'a, ViscoelasticContact>,
+pub struct Sample<'a, C: RunContact = ViscoelasticContact> {
+    contact: Cow<'a, C>,
     report: StepReport,
     at_end: bool,
     is_asked_for: bool,
 }
 
-impl Sample<'_> {
+impl<C: RunContact> Sample<'_, C> {
     /// The contact at this time.
-    pub fn contact(&self) -> &ViscoelasticContact {
+    pub fn contact(&self) -> &C {
         &self.contact
     }
 
@@ -40,28 +39,7 @@ impl Sample<'_> {
     }
 }
 
-/// Steps that end at times of your choice, and states between the ends of steps. Stops shorten steps, so that an adaptive run takes
-/// more of them; samples leave the steps as they are, bitwise, and cost a contact problem for each time inside a step.
-impl<'a> Run<'a> {
-    /// Makes steps end exactly at these [`Times`] too.
-    ///
-    /// # Errors
-    /// If a time is not finite, an interval or the first time in decades not finite and positive, or there are not 1 to 1000
-    /// times per decade.
-    pub fn stop_at(mut self, times: impl Into<Times>) -> Result<Run<'a>> {
-        self.stops.add(times.into(), self.progress.start)?;
-        Ok(self)
-    }
-
-    /// Samples the states at these [`Times`] ([`Run::samples`]).
-    ///
-    /// # Errors
-    /// As [`Run::stop_at`].
-    pub fn sample_at(mut self, times: impl Into<Times>) -> Result<Run<'a>> {
-        self.sampled.add(times.into(), self.progress.start)?;
-        Ok(self)
-    }
-
+impl<C: RunContact> Run<'_, C> {
     /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and at its
     /// end. Each is as exact as the end of the step
     /// ([`Run::within_step`]). So a run of few long steps is drawn as a curve, and the steps stay as they are.
@@ -93,25 +71,58 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// Each sample as [`Run::within_step`].
-    pub fn samples(&self) -> impl Iterator<Item = Result<Sample<'_>>> {
+    pub fn samples(&self) -> impl Iterator<Item = Result<Sample<'_, C>>> {
         let (start, end) = self.last.map_or((0.0, 0.0), |(start, report)| (start, report.time));
         let same = SAME_TIME * (end - start);
         let (mut time, mut left) = (start + same, self.last);
         std::iter::from_fn(move || {
-            let (_, report) = left?;
+            let (_, whole) = left?;
             let next = self.sampled.after(time).filter(|next| *next < end - same);
             let Some(next) = next else {
                 left = None;
                 let is_asked_for = self.sampled.after((end - same).next_down()).is_some_and(|next| next <= end + same);
                 let contact = Cow::Borrowed(self.contact());
-                return Some(Ok(Sample { contact, report, at_end: true, is_asked_for }));
+                return Some(Ok(Sample { contact, report: whole, at_end: true, is_asked_for }));
             };
             // times of two rules that agree but for rounding are one
             time = next + same;
-            Some(self.reached_within_step(next).map(|(contact, reach)| {
-                let report = contact.report(report.time_error, reach);
+            Some(self.sample_within_step(next).map(|(contact, report)| {
+                let report = StepReport { time_error: whole.time_error, ..report };
                 Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true }
             }))
         })
+    }
+
+    /// The contact at a time within the last step of the run, its ends included, under the load of the history at that time:
+    /// as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0)?))
+    ///     .build()?;
+    /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0)?;
+    /// let mut run = contact.follow(&ramp, Stepping::adaptive(1.0e-3), 100.0);
+    /// let mut forces = Vec::new(); // at 25 times a decade, however long the steps are
+    /// let mut times = (-50..=50).map(|k| 10f64.powf(0.04 * f64::from(k))).peekable();
+    /// while let Some(report) = run.next_step()? {
+    ///     while let Some(time) = times.next_if(|&time| time <= report.time) {
+    ///         forces.push((time, run.within_step(time)?.force()));
+    ///     }
+    /// }
+    /// assert_eq!(forces.len(), 101);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
+    pub fn within_step(&self, time: f64) -> Result<C> {
+        Ok(self.sample_within_step(time)?.0)
+    }
+
+    fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
+        self.contact.within(&self.progress.control, history_of(&self.history), time)
     }
 }

@@ -1,0 +1,302 @@
+//! Drives a contact along a load history.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::ascending::{Schedule, Times};
+use crate::contact::{StepReport, ViscoelasticContact};
+use crate::error::{LoadError, Result};
+use crate::load::LoadHistory;
+use crate::run::driven::{Course, Next};
+use crate::run::progress::{Progress, RunProgress, Stepping};
+#[cfg(feature = "checkpoint")]
+use crate::run::saving::Autosave;
+use crate::run::{OwnedOrBorrowed, RunContact};
+
+/// Two times closer than this fraction of a step are the same time.
+pub(crate) const SAME_TIME: f64 = 1e-6;
+
+/// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
+/// the run is dropped.
+type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
+
+pub(super) fn history_of<'h>(history: &'h RunHistory<'_>) -> &'h dyn LoadHistory {
+    match history {
+        OwnedOrBorrowed::Borrowed(history) => *history,
+        OwnedOrBorrowed::Owned(history) => &**history,
+    }
+}
+
+/// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
+/// [`Run::next_step`] takes one step.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0)?))
+///     .build()?;
+/// let ramp = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
+/// let mut run = contact.follow(&ramp, Stepping::fixed(0.25), 2.0);
+/// let mut steps = 0;
+/// while let Some(report) = run.next_step()? {
+///     steps += 1;
+///     assert_eq!(report.time, 0.25 * steps as f64);
+///     assert!(run.contact().contact_cells() > 0);
+/// }
+/// assert_eq!(steps, 8);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+///
+/// With [`Stepping::adaptive`] the step length follows the creep, here over nine decades of time.
+/// [`Run::within_step`] gives the state between the ends of a step:
+///
+/// ```
+/// # use viscocontact::prelude::*;
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &[(1.0e-6, 1.0e-3), (1.0e-6, 1.0e3)])?))
+///     .build()?;
+/// let load = StepLoad::new(Load::force(0.5))?;
+/// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0e5);
+/// let mut steps = 0;
+/// while let Some(report) = run.next_step()? {
+///     assert!(report.time_error <= Some(1.0e-3));
+///     steps += 1;
+/// }
+/// assert!(steps < 60);
+/// println!("{}", run.error_budget());
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug)]
+#[must_use = "a run takes no step until next_step is called"]
+pub struct Run<'a, C: RunContact = ViscoelasticContact> {
+    pub(super) contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
+    pub(super) history: RunHistory<'a>,
+    stepping: Stepping,
+    until: f64,
+    pub(super) progress: Progress<C::Control>,
+    /// Times at which steps end, and at which states within steps are sampled.
+    stops: Schedule,
+    pub(super) sampled: Schedule,
+    /// Set by another thread to end the step under way.
+    cancelled: Option<Arc<AtomicBool>>,
+    /// Start and report of the last step of this run.
+    pub(super) last: Option<(f64, StepReport)>,
+    #[cfg(feature = "checkpoint")]
+    pub(super) autosave: Option<Autosave>,
+    /// Report of a step after which the file could not be written.
+    #[cfg(feature = "checkpoint")]
+    unreported: Option<Option<StepReport>>,
+}
+
+impl ViscoelasticContact {
+    /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
+    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Run<'a> {
+        Run::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
+    }
+
+    /// Like [`ViscoelasticContact::follow`], for a run that owns the contact and its history. Such a run can be stored
+    /// or sent to another thread.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// struct Simulation {
+    ///     run: Run<'static>,
+    /// }
+    ///
+    /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let load = StepLoad::new(Load::force(0.5))?;
+    /// let mut simulation = Simulation { run: contact.into_follow(load, Stepping::fixed(0.5), 1.0) };
+    /// while simulation.run.next_step()?.is_some() {}
+    /// let contact = simulation.run.into_contact();
+    /// assert_eq!(contact.time(), 1.0);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static> {
+        Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
+    }
+}
+
+impl<'a, C: RunContact> Run<'a, C> {
+    pub(crate) fn new(
+        mut contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
+        history: RunHistory<'a>,
+        stepping: Stepping,
+        until: f64,
+    ) -> Run<'a, C> {
+        let (now, saved) = (contact.time(), contact.saved_progress());
+        let saved = saved.filter(|saved| until >= now && saved.continues(now, stepping));
+        let progress = match saved {
+            Some(saved) => Progress::clone(&saved),
+            None => Progress::begin(now, stepping, contact.control(stepping, until)),
+        };
+        Run {
+            contact,
+            history,
+            stepping,
+            until,
+            progress,
+            stops: Schedule::default(),
+            sampled: Schedule::default(),
+            cancelled: None,
+            last: None,
+            #[cfg(feature = "checkpoint")]
+            autosave: None,
+            #[cfg(feature = "checkpoint")]
+            unreported: None,
+        }
+    }
+
+    /// Makes steps end exactly at these [`Times`] too. Stops shorten steps, so that an adaptive run takes more of them.
+    ///
+    /// # Errors
+    /// If a time is not finite, an interval or the first time in decades not finite and positive, or there are not 1 to 1000
+    /// times per decade.
+    pub fn stop_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
+        self.stops.add(times.into(), self.progress.start)?;
+        Ok(self)
+    }
+
+    /// Samples the states at these [`Times`] ([`Run::samples`]). Samples leave the steps as they are, bitwise.
+    ///
+    /// # Errors
+    /// As [`Run::stop_at`].
+    pub fn sample_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
+        self.sampled.add(times.into(), self.progress.start)?;
+        Ok(self)
+    }
+
+    /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
+    /// [`Error::Cancelled`] within an iteration of the solver, and leaves the contact as it was. While the flag is set no step is
+    /// taken; once it is cleared the run goes on, with the same steps. Where ranks share out the contact they look at their flags
+    /// when a step begins.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    ///
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let (load, cancel) = (StepLoad::new(Load::force(0.5))?, Arc::new(AtomicBool::new(false)));
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0).cancelled_by(Arc::clone(&cancel));
+    /// run.next_step()?;
+    /// cancel.store(true, Ordering::Relaxed); // by the handler of Ctrl-C, or of a button
+    /// assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
+    /// assert_eq!(run.contact().time(), 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> Run<'a, C> {
+        self.cancelled = Some(flag);
+        self
+    }
+
+    /// Takes the next step and returns its report, or `None` at the end of the run.
+    ///
+    /// At the start, and wherever the history jumps or changes its kind, a step of length zero applies the new load.
+    /// [`ViscoelasticContact::step`] states which jumps a body without elastic response can follow. Steps end exactly
+    /// at corners and jumps of the history.
+    ///
+    /// # Errors
+    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too
+    /// short to change the time, the tolerance is out of range or requires steps too short to change the time, the
+    /// history returns an invalid load at any time that is evaluated
+    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run evaluates the whole history when it
+    /// begins, for the greatest loads, and adaptive steps evaluate it between their ends and ahead), or a step fails.
+    /// The contact then keeps its state after the last successful step, and the call may be repeated.
+    ///
+    /// If the file of `Run::autosave_to` cannot be written. The step is then taken nevertheless; the next call
+    /// writes the file and returns the report of the step.
+    pub fn next_step(&mut self) -> Result<Option<StepReport>> {
+        #[cfg(feature = "checkpoint")]
+        {
+            let report = match self.unreported.take() {
+                Some(report) => report,
+                None => self.take_next()?,
+            };
+            if let Err(error) = C::autosave(self, report.is_none()) {
+                self.unreported = Some(report);
+                return Err(error);
+            }
+            Ok(report)
+        }
+        #[cfg(not(feature = "checkpoint"))]
+        self.take_next()
+    }
+
+    /// Takes the next step and keeps its report for [`Run::samples`].
+    fn take_next(&mut self) -> Result<Option<StepReport>> {
+        self.last = None;
+        let start = self.contact.time();
+        let report = self.take_step()?;
+        self.last = report.map(|report| (start, report));
+        report.iter().for_each(|report| self.progress.count(report));
+        Ok(report)
+    }
+
+    fn take_step(&mut self) -> Result<Option<StepReport>> {
+        self.stepping.validate_run(self.progress.start, self.until)?;
+        let Run { contact, history, until, progress, cancelled, .. } = self;
+        let (now, until, history) = (contact.time(), *until, history_of(history));
+        let attracts = contact.in_space().is_some_and(|contact| contact.scene.attraction.is_some());
+        let load = history.at(now).validated_at(now, attracts)?;
+        let jumps = contact.load(&progress.control) != Some(load);
+        if !jumps && now >= until {
+            return Ok(None);
+        }
+        let corner = if jumps { None } else { history.next_breakpoint(now) }.unwrap_or(f64::INFINITY);
+        if corner <= now || corner.is_nan() {
+            return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: corner }.into());
+        }
+        let temperature = contact.temperature().and_then(|history| Some((history, history.next_corner(now)?)));
+        let turn = temperature.map_or(f64::INFINITY, |(_, turn)| turn);
+        let kink =
+            if temperature.is_some_and(|(history, turn)| history.jumps_at(turn)) { corner.min(turn) } else { corner };
+        let corner = corner.min(turn);
+        let stop = corner.min(until).min(self.stops.after(now).unwrap_or(f64::INFINITY));
+        let next = match self.stepping {
+            _ if jumps => Next::Given { time: now, load },
+            Stepping::Fixed { dt } => {
+                let time = progress.next_time(now, dt, stop)?;
+                Next::Given { time, load: history.before(time).validated_at(time, attracts)? }
+            }
+            Stepping::Adaptive { tolerance } => Next::Adaptive { tolerance },
+        };
+        let course = Course { history, next, until, stop, corner, kink, cancelled: cancelled.as_deref() };
+        contact.advance(&mut progress.control, &course).map(Some)
+    }
+
+    /// How far the run has come.
+    pub fn progress(&self) -> RunProgress {
+        self.progress.report(self.contact.time(), self.until)
+    }
+
+    /// Number of steps rejected for their error, with [`Stepping::adaptive`].
+    pub fn rejected_steps(&self) -> u64 {
+        C::rejected(&self.progress.control)
+    }
+
+    /// The contact after the last step.
+    pub fn contact(&self) -> &C {
+        &self.contact
+    }
+}
+
+impl<C: RunContact> Run<'static, C> {
+    /// The contact of a run that owns it ([`ViscoelasticContact::into_follow`]), after the last step.
+    pub fn into_contact(self) -> C {
+        match self.contact {
+            OwnedOrBorrowed::Borrowed(contact) => contact.clone(), // of a leaked contact
+            OwnedOrBorrowed::Owned(contact) => *contact,
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Runs along a load history, of every contact.
+//!
+//! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)) or on elastic states
+//! ([`StatesContact`](crate::states::StatesContact)); [`SteadyRun`] moves one in space to its steady state.
+
+// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space (`in_space`) an
+// adaptive step is proposed, tried, judged by its error, and accepted or tried again shorter (`adaptive_step`); `step_control` holds the
+// error, the past steps and the length of the next one, `run_scale` the greatest loads and displacements of the run.
+
+mod adaptive_step;
+pub(crate) mod driven;
+mod error_budget;
+mod follow;
+mod in_space;
+mod progress;
+mod run_scale;
+mod samples;
+#[cfg(feature = "checkpoint")]
+mod saving;
+mod steady;
+mod step_control;
+
+pub use crate::ascending::Times;
+pub use error_budget::ErrorBudget;
+pub use follow::Run;
+pub(crate) use follow::SAME_TIME;
+pub use progress::{RunProgress, Stepping};
+pub use samples::Sample;
+pub use steady::{SteadyMotion, SteadyRun};
+
+use std::ops::{Deref, DerefMut};
+
+/// A contact that a [`Run`] leads: [`ViscoelasticContact`](crate::ViscoelasticContact) or
+/// [`StatesContact`](crate::states::StatesContact). What a run asks of it is private.
+pub trait RunContact: driven::Driven {}
+
+impl<C: driven::Driven> RunContact for C {}
+
+/// A value that a run borrows as `B` or owns as `O`.
+#[derive(Debug)]
+pub(crate) enum OwnedOrBorrowed<B, O> {
+    Borrowed(B),
+    Owned(O),
+}
+
+impl<B: Deref, O: Deref<Target = B::Target>> Deref for OwnedOrBorrowed<B, O> {
+    type Target = B::Target;
+
+    fn deref(&self) -> &B::Target {
+        match self {
+            OwnedOrBorrowed::Borrowed(value) => value,
+            OwnedOrBorrowed::Owned(value) => value,
+        }
+    }
+}
+
+impl<B: DerefMut, O: DerefMut<Target = B::Target>> DerefMut for OwnedOrBorrowed<B, O> {
+    fn deref_mut(&mut self) -> &mut B::Target {
+        match self {
+            OwnedOrBorrowed::Borrowed(value) => value,
+            OwnedOrBorrowed::Owned(value) => value,
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! How far a sweep has to go for a run.
+
+use std::sync::Arc;
+
+use crate::ascending::Times;
+use crate::error::{Result, positive};
+use crate::load::{Load, LoadHistory, Tilt};
+use crate::rheology::{Material, TemperatureHistory};
+use crate::run::Stepping;
+use crate::states::contact::StatesContact;
+use crate::states::curve::ElasticStates;
+
+/// Number of even parts of a run at whose ends the load is sampled, and most corners of the load sampled.
+const PARTS: u32 = 4096;
+const MAX_CORNERS: usize = 1000;
+/// Number of even parts of a run at whose ends its level is sampled, and the tolerance of its steps.
+const LEVELS: u32 = 64;
+const TOLERANCE: f64 = 1e-4;
+/// Factor by which a sweep goes beyond the level that a run is found to need: the load may be greater between two samples, and steps err.
+pub(super) const MARGIN: f64 = 1.01;
+
+/// How far a sweep goes.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Reach {
+    /// To a level \[m²\]: force times compliance. A force F held on a body of the contact creep compliance C(t) reaches F C(t).
+    Level(f64),
+    /// To an approach of the load point \[m\].
+    Approach(f64),
+    /// To the largest contact of an elastic body of unit compliance under one of these loads, and 1 % of the level beyond: a force is a
+    /// level \[m²\], and the stiffness of a spring is given over the contact modulus \[m\]. The loads have the tilts of the sweep.
+    Loads(Vec<Load>),
+}
+
+impl Reach {
+    /// What a run of this material along a load history to the time `until` \[s\] needs.
+    ///
+    /// Under forces that is the greatest level of the run, which does not depend on the shape, and under approaches the greatest approach.
+    /// Springs, and histories of several kinds of load, take the greatest load of each kind on an elastic body of the last contact
+    /// compliance. A spring, or a force among other loads, may need more than that; a step beyond the sweep is refused then. Loads are
+    /// sampled at 4097 even times and at both sides of the corners.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let rubber = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?);
+    /// let load = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
+    /// let sweep = Sweep::new(Grid::square(32, 4.0e-3)?, &Sphere::new(10.0e-3)?).accuracy(1.0e-3);
+    /// let states = sweep.run(Reach::of(&rubber, &load, 10.0)?)?;
+    /// let mut contact = StatesContact::new(&states, &rubber)?;
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 10.0);
+    /// while run.next_step()?.is_some() {}
+    /// assert!(run.contact().level() > 0.9 * states.states()[states.states().len() - 1].level);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `until` is not finite and positive, a load of the history is invalid, the material has no exponential series
+    /// ([`Material::fitted`]) or is not known until then, or the load jumps on a body without elastic response.
+    pub fn of(material: &Material, history: &dyn LoadHistory, until: f64) -> Result<Reach> {
+        Reach::at_temperature(material, None, history, until)
+    }
+
+    /// As [`Reach::of`], at a temperature that changes.
+    ///
+    /// # Errors
+    /// As [`Reach::of`].
+    pub fn at_temperature(
+        material: &Material,
+        temperature: Option<&TemperatureHistory>,
+        history: &dyn LoadHistory,
+        until: f64,
+    ) -> Result<Reach> {
+        positive("end of the run", until)?;
+        let all = sampled(history, until, PARTS)?;
+        if all.iter().all(is_force) {
+            let contact = on_any_shape(material, temperature, all[0].tilt())?;
+            return Ok(Reach::Level(MARGIN * greatest_level(contact, history, until)?));
+        }
+        let compliance = softest_compliance(material, temperature, until)?;
+        Ok(Reach::Loads(greatest(&all, compliance).collect()))
+    }
+}
+
+/// Whether the force is given.
+pub(crate) fn is_force(load: &Load) -> bool {
+    matches!(load, Load::Force { .. })
+}
+
+/// Loads at the ends of so many even parts of a run, and at the corners and jumps of its history.
+pub(crate) fn sampled(history: &dyn LoadHistory, until: f64, parts: u32) -> Result<Vec<Load>> {
+    let mut all = Vec::new();
+    for k in 0..=parts {
+        let time = until * f64::from(k) / f64::from(parts);
+        all.push(history.at(time).validated_at(time, false)?);
+    }
+    let mut corner = 0.0;
+    for _ in 0..MAX_CORNERS {
+        match history.next_breakpoint(corner) {
+            Some(next) if next > corner && next <= until => corner = next,
+            _ => break,
+        }
+        all.extend([
+            history.before(corner).validated_at(corner, false)?,
+            history.at(corner).validated_at(corner, false)?,
+        ]);
+    }
+    Ok(all)
+}
+
+/// The greatest force, approach and drive of a spring among some loads, as loads of an elastic body of unit compliance.
+pub(crate) fn greatest(all: &[Load], compliance: f64) -> impl Iterator<Item = Load> {
+    let kind = |load: &Load| match *load {
+        Load::Force { normal, .. } => (0, normal),
+        Load::Approach { approach, .. } => (1, approach),
+        Load::Spring { drive, .. } => (2, drive),
+    };
+    let of_kind = move |which| all.iter().filter(move |load| kind(load).0 == which);
+    let greatest = (0..3).filter_map(move |which| of_kind(which).max_by(|a, b| kind(a).1.total_cmp(&kind(b).1)));
+    greatest.map(move |load| as_elastic(*load, compliance))
+}
+
+/// A load of a body of this compliance as a load of a body of unit compliance.
+pub(crate) fn as_elastic(load: Load, compliance: f64) -> Load {
+    match load {
+        Load::Force { normal, tilt } => Load::Force { normal: normal * compliance, tilt },
+        Load::Spring { stiffness, drive, tilt } => Load::Spring { stiffness: stiffness * compliance, drive, tilt },
+        approach => approach,
+    }
+}
+
+/// The compliance at the end of a run, at its start where it is infinite then.
+pub(crate) fn softest_compliance(
+    material: &Material,
+    temperature: Option<&TemperatureHistory>,
+    until: f64,
+) -> Result<f64> {
+    let creeping = temperature.map_or(Ok(until), |history| history.reduced_time(0.0, until))?;
+    let softest = material.contact_compliance(creeping.min(material.known_until()));
+    Ok(if softest.is_finite() { softest } else { material.contact_compliance(0.0) })
+}
+
+/// A contact whose levels under given forces are those of any shape.
+pub(crate) fn on_any_shape(
+    material: &Material,
+    temperature: Option<&TemperatureHistory>,
+    tilt: [Tilt; 2],
+) -> Result<StatesContact> {
+    let mut states = ElasticStates::sphere(1.0)?;
+    Arc::make_mut(&mut states).tilt = tilt;
+    let contact = StatesContact::new(&states, material)?;
+    Ok(match temperature {
+        Some(temperature) => contact.with_temperature(temperature.clone()),
+        None => contact,
+    })
+}
+
+/// The greatest level of a contact under given forces.
+pub(crate) fn greatest_level(mut contact: StatesContact, history: &dyn LoadHistory, until: f64) -> Result<f64> {
+    let run = contact.follow(history, Stepping::adaptive(TOLERANCE), until);
+    let mut run = run.sample_at(Times::every(until / f64::from(LEVELS)))?;
+    let mut greatest = 0.0_f64;
+    while run.next_step()?.is_some() {
+        for sample in run.samples() {
+            greatest = greatest.max(sample?.contact().level());
+        }
+    }
+    Ok(greatest)
+}

@@ -1,0 +1,68 @@
+//! When are bodies that attract each other apart? Random laws and bodies, pulled off under a given approach. `ADHESION_PULLS` (12) chooses how many.
+
+use super::adhesion_population::law;
+use crate::common::{Draws, from_environment};
+use viscocontact::contact::Contact;
+use viscocontact::prelude::*;
+
+/// Whether the bodies are apart, from the fields and the law.
+fn is_apart(contact: &ViscoelasticContact, energy: impl Fn(f64) -> f64) -> bool {
+    let mut gap = vec![0.0; contact.grid().len()];
+    contact.gap_into(&mut gap).unwrap();
+    let narrowest = gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0);
+    contact.pressure().iter().all(|p| *p == 0.0) && energy(narrowest) <= 0.01 * energy(0.0)
+}
+
+#[test]
+fn bodies_are_apart_when_no_attraction_is_left_to_overcome() {
+    let (count, mut pulling) = (from_environment("ADHESION_PULLS", 12), 0);
+    for number in 0..count {
+        let mut draws = Draws::new(number);
+        let (range, stiff) = (draws.between(0.8, 1.6), draws.between(0.0, 1.0));
+        let law = law(&mut draws, range);
+        let energy = |gap: f64| law.energy(gap);
+        let mut contact = ViscoelasticContact::builder(Grid::square(30, 8.0).unwrap())
+            .geometry(&Sphere::new(1.0).unwrap())
+            .material(Material::incompressible(GeneralizedMaxwell::new(0.25, &[(0.25 * stiff, 1.0)]).unwrap()))
+            .attraction(law.clone())
+            .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(draws.chance(0.5)))
+            .build()
+            .unwrap();
+        let dt = draws.power_of_ten(-2.0, 1.0);
+        contact.step(10.0, Load::approach(0.5)).unwrap();
+        let (mut greatest, mut parted) = (0.0_f64, None);
+        for k in 1.. {
+            let report = contact.step(dt, Load::approach(0.5 - 0.25 * f64::from(k))).unwrap();
+            assert_eq!(contact.is_separated(), is_apart(&contact, energy), "{number}: {law:?} {report}");
+            greatest = greatest.max(-report.force);
+            if report.contact_cells == 0 {
+                parted.get_or_insert(-report.force);
+            }
+            if contact.is_separated() {
+                break;
+            }
+        }
+        // of a ball the force that is left is 2π R times the energy at the narrowest gap
+        assert!(contact.force().abs() <= 0.02 * greatest, "{number}: {} of {greatest}", contact.force());
+        pulling += u64::from(parted.unwrap() > 0.1 * greatest);
+    }
+    println!("{pulling} of {count} pull when the last cell has left the wall");
+    assert!(2 * pulling > count, "{pulling} of {count}");
+}
+
+/// Bodies without attraction are apart without a cell in contact, on states without level.
+#[test]
+fn bodies_without_attraction_are_apart_at_once() {
+    fn parted(mut contact: impl Contact) -> [bool; 3] {
+        [1.0e-5, -1.0e-5, 2.0e-5].map(|approach| {
+            contact.step(1.0, Load::approach(approach)).unwrap();
+            contact.is_separated()
+        })
+    }
+    let (sphere, body) =
+        (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()));
+    let builder = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap()).geometry(&sphere);
+    assert_eq!(parted(builder.material(body.clone()).build().unwrap()), [false, true, false]);
+    let states = ElasticStates::sphere(10.0e-3).unwrap();
+    assert_eq!(parted(StatesContact::new(&states, &body).unwrap()), [false, true, false]);
+}
