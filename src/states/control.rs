@@ -29,7 +29,7 @@ const OF_HALVES: f64 = 1.0 / 3.0;
 /// Where there is no order, in a first step and one in which the force ends, halves may be no better than the whole.
 const WITHOUT_ORDER: f64 = 2.0;
 /// Number of equal parts of a run, and of a step, at which the load is looked at.
-const PARTS_OF_RUN: u32 = 1024;
+const PARTS_OF_RUN: u32 = 4096;
 const PARTS: usize = 8;
 /// Greatest deviation of the load from a parabola within a step, over the greatest load.
 const BEND: f64 = 0.03;
@@ -295,7 +295,6 @@ impl StepControl {
                 (0..2).for_each(|k| see(one[k] - two[k], scales[k]));
             }
         }
-        if std::env::var("DBG").is_ok() { eprintln!("t {now:.4e} dt {:.2e} n {} levels {:?} ends {:.2e} {:.2e} surf {:.2e} {:.2e} worst {worst:.2e} F {:.2e}/{:.2e} y {:.2e}/{:.2e}", end-now, contact.groups(), levels, (found[0][0]-found[0][1]).abs()/scales[0], (found[1][0]-found[1][1]).abs()/scales[1], of_surface[0]/greatest[0], of_surface[1]/greatest[1], report.force, greatest[1], self.halves.depth(), greatest[0]); }
         Ok((report, worst))
     }
 

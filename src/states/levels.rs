@@ -16,7 +16,6 @@ const MORE: [usize; 2] = [8, 8];
 const LEAST: f64 = 1e-4;
 /// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, and counts so much.
 const SWEPT: f64 = 0.05;
-#[allow(dead_code)]
 /// Strains of levels that were swept count as far as they last for so many halves of the step.
 const LASTING: i32 = 8;
 
@@ -78,11 +77,6 @@ impl Clone for Levels {
     }
 }
 
-pub(super) fn par(k: usize) -> f64 {
-    static P: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
-    P.get_or_init(|| std::env::var("PAR").unwrap_or_default().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect()).get(k).copied().unwrap_or(f64::NAN)
-}
-fn or(k: usize, d: f64) -> f64 { let x = par(k); if x.is_nan() { d } else { x } }
 impl Levels {
     pub(super) fn new(rule: ExponentialRule) -> Levels {
         Levels {
@@ -401,9 +395,7 @@ impl Levels {
         let [from, to] = [all.into_iter().fold(start, f64::min), all.into_iter().fold(start, f64::max)];
         let mut worst = [0.0f64; 2];
         for ((_, own), ([weight, decay], others)) in self.history.strains().zip(other.history.strains()) {
-            let swept = or(0, SWEPT) * decay.powf(or(1, 8.0));
-            let unswept = decay.powf(or(2, 0.0));
-            let before = worst;
+            let swept = SWEPT * decay.powi(LASTING);
             let (mut k, mut sums) = (0, [0.0f64; 2]);
             // least and greatest sum over the depth below a level, of levels that were swept and of others
             let mut range = [[0.0f64; 2]; 2];
@@ -415,15 +407,14 @@ impl Levels {
                 let difference = weight * (own(group) - if k < other.groups.len() { others(k) } else { 0.0 });
                 sums[0] += difference * (motions.depth - lower.depth);
                 sums[1] += difference * (top - bottom);
-                let is_swept = from * (1.0 + ROUNDING) < *top && if or(4, 0.0) == 1.0 { *top <= to * (1.0 + ROUNDING) } else { *top < to * (1.0 - ROUNDING) };
-                worst[1] = worst[1].max(or(3, 1.0) * if is_swept { swept } else { unswept } * sums[1].abs());
+                let is_swept = from * (1.0 + ROUNDING) < *top && *top < to * (1.0 - ROUNDING);
+                worst[1] = worst[1].max(if is_swept { swept } else { 1.0 } * sums[1].abs());
                 let [least, most] = &mut range[usize::from(is_swept)];
                 (*least, *most) = (least.min(sums[0]), most.max(sums[0]));
             }
-            for ([least, most], weight) in range.into_iter().zip([unswept, swept]) {
+            for ([least, most], weight) in range.into_iter().zip([1.0, swept]) {
                 worst[0] = worst[0].max(weight * (sums[0] - least).max(most - sums[0]));
             }
-            if worst != before && std::env::var("DBG").is_ok() { eprintln!("   w {weight:.2} decay {decay:.3e} worst {:.2e} {:.2e} total {sums:?}", worst[0], worst[1]); }
         }
         [worst[0], worst[1] * other.history.stiffness_over(steps)]
     }

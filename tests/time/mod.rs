@@ -15,6 +15,7 @@ mod states;
 mod states_accuracy;
 mod states_kept;
 mod states_limits;
+mod states_merging;
 mod states_outside;
 mod states_population;
 mod temperature;
