@@ -76,7 +76,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
     let relaxed = scene.hertz(scene.glassy + scene.delayed).0;
     let side = glassy / cells as f64;
     // behind the contact the body recovers over v τ; ahead nothing happened yet
-    let behind = (5.0 * scene.reach).clamp(4.0 * relaxed, 300.0 * glassy);
+    let behind = (5.0 * scene.reach).clamp(4.0 * relaxed, 500.0 * glassy);
     let count = ((behind + 3.0 * relaxed) / side) as usize;
     let grid = Grid::new([count, 1], [count as f64 * side, 1.0])?;
     let axis = 0.5 * grid.lengths()[0] - 2.0 * relaxed;
@@ -87,7 +87,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
         .kernel(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?)
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
-    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
+    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(5e-3);
     let mut run = contact.toward_steady(motion)?;
     let (mut steps, mut convolutions) = (0, 0);
     while let Some(report) = run.next_step()? {

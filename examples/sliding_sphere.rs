@@ -76,7 +76,7 @@ impl Bodies {
     /// The steady state at a speed, cells of a given side, and the sphere where it is on the grid.
     fn slide(&self, velocity: f64, side: f64) -> Result<(ViscoelasticContact, Shifted)> {
         // behind, the solid recovers over v τ; displacements farther away matter little
-        let behind = (4.0 * velocity * self.tau).clamp(3.0 * self.relaxed, 20.0 * self.relaxed);
+        let behind = (4.0 * velocity * self.tau).clamp(3.0 * self.relaxed, 32.0 * self.relaxed);
         let cells = [behind + 2.0 * self.relaxed, 2.6 * self.relaxed].map(|length| (length / side).ceil() as usize);
         let grid = Grid::new(cells, cells.map(|count| count as f64 * side))?;
         let sphere = Shifted::new(Sphere::new(self.radius)?, [0.5 * grid.lengths()[0] - 1.4 * self.relaxed, 0.0])?;
@@ -85,7 +85,7 @@ impl Bodies {
             .material(self.material.clone())
             .settings(Settings::default().with_frame(Frame::Indenter))
             .build()?;
-        contact.toward_steady(SteadyMotion::new(Axis::X1, velocity, self.load))?.run()?;
+        contact.toward_steady(SteadyMotion::new(Axis::X1, velocity, self.load).with_tolerance(5e-3))?.run()?;
         Ok((contact, sphere))
     }
 }

@@ -101,7 +101,7 @@
 //! computed cell and further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory for it is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
 //! first two of a run, along a path, under a tilting load or an attraction; one in which a window grows; and one in which a changing
-//! temperature alters the rate of creep by decades. `docs/performance.md` has the threads.
+//! temperature alters the rate of creep by many decades. `docs/performance.md` has the threads.
 //!
 //! # Co-simulation and long runs
 //!
@@ -134,7 +134,7 @@
 //! # Limitations
 //!
 //! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes ([`contact::Warnings::STEEP`] reports slopes beyond 0.5). Surfaces may
+//! at small strains and slopes: steps warn beyond ([`guide::accuracy`] lists the warnings). Surfaces may
 //! attract each other ([`contact::Builder::attraction`]): one body on the whole grid ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on one
 //! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).

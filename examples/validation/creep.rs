@@ -241,7 +241,7 @@ pub fn rolling() -> Outcome {
     let (glassy, relaxed) = (scene.hertz(scene.glassy).0, scene.hertz(scene.glassy + scene.delayed).0);
     scene.reach = 2.0 * glassy;
     let (side, exact) = (glassy / 32.0, scene.steady(500));
-    let cells = ((5.0 * scene.reach + 3.0 * relaxed) / side) as usize;
+    let cells = ((10.0 * scene.reach + 3.0 * relaxed) / side) as usize;
     let grid = Grid::new([cells, 1], [cells as f64 * side, 1.0])?;
     let cylinder = Shifted::new(Cylinder::new(scene.radius)?, [0.5 * grid.lengths()[0] - 2.0 * relaxed, 0.0])?;
     let mut contact = ViscoelasticContact::builder(grid.clone())

@@ -120,7 +120,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let deviations = found.map(|estimate| format!("{:.1}", 100.0 * estimate.deviation));
     println!("{:<24} {:>9} {:>9} {:>9}", "  its standard deviation", deviations[0], deviations[1], deviations[2]);
     for warning in fit.warnings() {
-        println!("warning: {warning:?}");
+        println!("warning: {warning}");
     }
     fit.picture(0)?.save(args.output.join("fit.png"))?;
 

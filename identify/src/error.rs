@@ -1,7 +1,9 @@
 //! The error type of the crate.
 
 /// Everything that can go wrong, with the numbers needed to correct it.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+///
+/// `Debug` prints the message, so that a program whose `main` returns [`Result`] ends with what to do.
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A value is outside the allowed range.
@@ -118,6 +120,12 @@ pub enum Error {
     /// An error of the contact, its tip or a file.
     #[error(transparent)]
     Contact(#[from] viscocontact::Error),
+}
+
+impl std::fmt::Debug for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
+    }
 }
 
 /// Result with the crate's [`Error`].

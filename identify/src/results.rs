@@ -101,7 +101,7 @@ impl Summary {
         let mut table = csv::Writer::from_writer(to);
         table.write_record(COLUMNS).map_err(unwritable)?;
         for summary in summaries {
-            let warnings: Vec<String> = summary.warnings.iter().map(|warning| format!("{warning:?}")).collect();
+            let warnings: Vec<String> = summary.warnings.iter().map(|warning| warning.to_string()).collect();
             for Estimate { name, value, scale, deviation, robust_deviation, interval, .. } in &summary.estimates {
                 let [low, high] = interval.map(|limit| limit.to_string());
                 table

@@ -2,7 +2,8 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use viscocontact::states::ElasticStates;
+use viscocontact::prelude::*;
+use viscocontact::states::{ElasticStates, Reach, Sweep};
 use viscocontact_identify::{
     Curve, Error, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, ranked,
 };
@@ -55,7 +56,9 @@ fn curves_are_fitted_together() {
         assert!(each.iter().all(|fit| deviation < fit.estimate(name).unwrap().deviation), "{name}");
     }
     assert!(both.estimate("contact point 1").is_some() && both.estimate("contact point").is_none());
-    assert!(both.warnings().is_empty(), "{:?}", both.warnings());
+    // the scene has no units: only its slope of 1.3 and its modulus of 1 Pa are warned of
+    let of_contact = |warning: &FitWarning| matches!(warning, FitWarning::Contact { .. });
+    assert!(both.warnings().iter().all(of_contact), "{:?}", both.warnings());
 }
 
 /// A given covariance of independent noise is white noise of known size; one of autoregressive noise is autoregressive noise.
@@ -104,4 +107,54 @@ fn data_that_do_not_contain_a_time_are_named() {
         }
         Err(error) => assert!(matches!(error, Error::NotConverged { .. }), "{error}"),
     }
+}
+
+/// A fit warns of what is outside the model at the deepest contact of a curve, as a step there does: a pyramid of 35 degrees, a ball pressed
+/// in by half its radius, a thin gel, a modulus in MPa; and of nothing else.
+#[test]
+fn fits_warn_of_contacts_outside_the_model() {
+    let (depth, cells) = (1.0e-6, 48);
+    let gel = |thickness: f64, cells: usize| {
+        let grid = Grid::square(cells, 16.0e-6).unwrap();
+        let layer = Layer::bonded_to_rigid(thickness, 0.45).unwrap();
+        let sweep = Sweep::new(grid.clone(), &Sphere::new(20.0e-6).unwrap());
+        sweep
+            .kernel(InfluenceKernel::layer(&grid, layer).unwrap())
+            .accuracy(1e-3)
+            .run(Reach::Approach(1.1 * depth))
+            .unwrap()
+    };
+    let tips = [
+        (
+            "steeper than 0.5 in contact",
+            ElasticStates::cone(1.0 / 35.0_f64.to_radians().tan()).unwrap(),
+            2.0e3,
+            "(greatest slope 1.428)",
+        ),
+        ("steeper than 0.5 in contact", ElasticStates::sphere(2.0e-6).unwrap(), 2.0e3, "(greatest slope 0.707)"),
+        ("pressed in by over a fifth of its thickness", gel(4.0e-6, cells), 2.0e3, "(depth over thickness 0.2"),
+        ("fewer than 8 cells across", gel(100.0e-6, 10), 2.0e3, "(cells in contact: "),
+        ("no solid has such a modulus", ElasticStates::sphere(20.0e-6).unwrap(), 2.0e-3, "(E* in Pa: 0.002)"),
+        ("", gel(100.0e-6, cells), 2.0e3, ""),
+        ("", ElasticStates::sphere(20.0e-6).unwrap(), 2.0e3, ""),
+    ];
+    for (expected, tip, modulus, number) in tips {
+        let protocol = Protocol::trapezoid(depth, [0.2, 1.0, 0.2], 0.02).unwrap();
+        let experiment = Experiment::new(protocol, tip);
+        let zener = Identification::new(Model::Zener);
+        let body = [("E0", modulus), ("Einf", 0.25 * modulus), ("tau", 0.3)];
+        let force = zener.respond(&experiment, &body).unwrap().iter().map(|sample| sample.force).collect();
+        let fit = zener.fit(&[Curve::new(experiment, force).unwrap()]).unwrap();
+        let texts: Vec<String> =
+            fit.warnings().iter().map(ToString::to_string).filter(|text| text.starts_with("curve 0")).collect();
+        if expected.is_empty() {
+            assert!(texts.is_empty(), "{texts:?}");
+        } else {
+            assert!(texts.iter().any(|text| text.contains(expected) && text.contains(number)), "{expected}: {texts:?}");
+            assert!(texts.len() == 1, "{texts:?}");
+        }
+    }
+    // an error that ends a program says what to do
+    let error = Error::BeyondStates { curve: 0, depth: 1.0e-6 };
+    assert_eq!(format!("{error:?}"), error.to_string());
 }

@@ -49,11 +49,14 @@ pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use read::energies::{Energies, EnergyBalance};
-pub use read::report::{BodyState, Estimated, StepReport, Warnings};
+pub(crate) use read::limits::{DEEP, Limits, STEEP};
+pub use read::report::{BodyState, Estimated, Figures, StepReport};
 pub use read::stress::StressHistory;
+pub use read::warnings::Warnings;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
+pub(crate) use step::constraints::depth_of_power;
 pub(crate) use stepper::impl_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 

@@ -6,6 +6,7 @@ use crate::Grid;
 use crate::adhesion::Attraction;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
+use crate::contact::read::limits::Limits;
 use crate::contact::{Clock, Settings};
 use crate::error::Result;
 use crate::hereditary::HistoryInputs;
@@ -18,6 +19,7 @@ pub(crate) struct Scene {
     pub(crate) grid: Grid,
     pub(crate) kernel: Arc<InfluenceKernel>,
     pub(crate) material: Material,
+    pub(crate) limits: Limits,
     pub(crate) settings: Settings,
     pub(crate) temperature: Option<TemperatureHistory>,
     /// The attraction between the surfaces.

@@ -7,6 +7,7 @@ use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
 use crate::contact::{Computation, Scene, StepReport};
 use crate::error::Result;
+use crate::geometry::Missed;
 use crate::load::Load;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
@@ -48,6 +49,8 @@ pub struct ViscoelasticContact {
     pub(crate) scene: Arc<Scene>,
     /// The state, and the window and the trial that compute steps.
     pub(crate) computation: Computation,
+    /// What the grid misses of the waves of the shapes.
+    pub(crate) missed: Missed,
     /// Fields on the whole grid, for users to read.
     pub(crate) view: View,
     /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which use contacts.
@@ -57,12 +60,13 @@ pub struct ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    pub(crate) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
+    pub(crate) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state);
         ViscoelasticContact {
             scene: Arc::new(scene),
             computation,
+            missed,
             view,
             saved_run: None,
             indenter_buffer: IndenterBuffer::default(),

@@ -40,7 +40,9 @@ pub enum KernelError {
 
     /// The material of a contact on a [`Layer`](crate::Layer) is not the material of the layer. Kernel and material must have
     /// the same Poisson's ratio at all times; a layer on a creeping body, or against one, is not modelled.
-    #[error("the layer was made for a Poisson's ratio of {layer} at all times, and {what}")]
+    #[error(
+        "the layer was made for a Poisson's ratio of {layer} at all times, and {what}: give both one ratio (a layer takes its thickness first, then the ratio), and no body that deforms against it"
+    )]
     LayerMaterial {
         /// Poisson's ratio of the layer.
         layer: f64,

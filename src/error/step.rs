@@ -55,6 +55,19 @@ pub enum StepError {
         greatest: f64,
     },
 
+    /// The bodies are pressed into a layer on a rigid base by its whole thickness or more: the base would be touched, and strains are far
+    /// from small. Press less, or check that lengths are in m, and that the thickness of the [`Layer`](crate::Layer) comes before Poisson's ratio.
+    #[error(
+        "at t = {time} s the bodies are pressed {:e} m deep into a layer {:e} m thick, through its base: press less (a fifth of the thickness is warned of), or check the thickness, which is in m", rounded(*.depth, 4), rounded(*.thickness, 5), time = rounded(*.time, TIME))]
+    ThroughLayer {
+        /// End of the step \[s\].
+        time: f64,
+        /// Greatest displacement in contact \[m\].
+        depth: f64,
+        /// Thickness of the layer \[m\].
+        thickness: f64,
+    },
+
     /// The loading time exceeds the range in which the material is known: the data of a table, or the times that a
     /// series was fitted over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or extrapolate
     /// the table.

@@ -4,9 +4,9 @@ use crate::rounded::{TIME, rounded};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unsteady {
-    /// The pressure still changes, as contact does that comes and goes on a rough track.
+    /// The pressure still changes: the track was too short, or contact comes and goes, as on a rough track.
     #[error(
-        "the pressure changes by {change:.1e} over a contact length; contact that comes and goes has no steady state"
+        "the pressure still changes by {change:.1e} over a contact length: travel farther (SteadyMotion::with_max_distance); contact that comes and goes has no steady state"
     )]
     Changing {
         /// Change of the pressure over a contact length, Σ |Δp| over Σ p.
@@ -37,14 +37,5 @@ pub enum Unsteady {
         behind: f64,
         /// Distance that is enough \[m\].
         needed: f64,
-    },
-
-    /// The bodies flow under any load (a free dashpot, as of a Maxwell body).
-    #[error(
-        "the bodies flow (fluidity {fluidity:e} 1/(Pa s)): approach or slope grow without end; follow them with step_over for a given time"
-    )]
-    Flows {
-        /// Fluidity of the contact compliance \[1/(Pa·s)\].
-        fluidity: f64,
     },
 }

@@ -30,6 +30,7 @@ mod shifted;
 mod sphere;
 mod statistics;
 mod sum;
+mod waves;
 mod wavy;
 
 pub use crate::error::MapError;
@@ -45,6 +46,8 @@ pub use shifted::Shifted;
 pub use sphere::Sphere;
 pub use statistics::SurfaceStatistics;
 pub use sum::Sum;
+pub(crate) use waves::Missed;
+pub use waves::Waves;
 pub use wavy::Wavy;
 
 use std::fmt::Debug;
@@ -101,6 +104,13 @@ pub trait Geometry: Debug + Send + Sync {
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         fill_by_points(self, grid, by, gap);
     }
+
+    /// Periods and shortest waves of the shape and of its parts, for the warnings of contacts whose grid does not hold them
+    /// ([`Warnings::OTHER_PERIOD`](crate::contact::Warnings::OTHER_PERIOD), [`Warnings::SHORT_WAVES`](crate::contact::Warnings::SHORT_WAVES)).
+    /// By default none are told.
+    fn waves(&self) -> Vec<Waves> {
+        Vec::new()
+    }
 }
 
 /// Writes the gap of the shifted shape at the cell centres, one by one.
@@ -129,6 +139,10 @@ macro_rules! forward_geometry {
 
             fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
                 (**self).fill_gap_at(grid, by, gap);
+            }
+
+            fn waves(&self) -> Vec<Waves> {
+                (**self).waves()
             }
         }
     )*};

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Waves};
 
 /// Another shape repeated periodically, for periodic domains: its part within half a period of the origin is repeated.
 ///
@@ -43,6 +43,14 @@ impl Repeated {
 impl Geometry for Repeated {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         self.shape.initial_gap(self.wrapped(0, x1), self.wrapped(1, x2))
+    }
+
+    fn waves(&self) -> Vec<Waves> {
+        let period = |own: [f64; 2]| {
+            [0, 1].map(|axis| if self.period[axis].is_finite() { self.period[axis] } else { own[axis] })
+        };
+        let none = Waves { period: [f64::INFINITY; 2], shortest: [f64::INFINITY; 2] };
+        self.shape.waves().into_iter().chain([none]).map(|own| Waves { period: period(own.period), ..own }).collect()
     }
 }
 

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::error::{Result, finite};
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Waves};
 
 /// Another geometry shifted in the plane of contact.
 ///
@@ -42,5 +42,9 @@ impl Geometry for Shifted {
 
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         self.shape.fill_gap_at(grid, [self.by[0] + by[0], self.by[1] + by[1]], gap);
+    }
+
+    fn waves(&self) -> Vec<Waves> {
+        self.shape.waves()
     }
 }

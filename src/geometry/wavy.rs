@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{Result, length, positive};
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Waves};
 
 /// A wavy surface, A (1 − cos 2πx1/λ), or the sum of a wave along x1 and one along x2. A crest touches at the origin.
 ///
@@ -51,6 +51,10 @@ impl Geometry for Wavy {
             2.0 * self.amplitude[axis] * (PI * (periods - periods.round())).sin().powi(2)
         };
         wave(0, x1) + wave(1, x2)
+    }
+
+    fn waves(&self) -> Vec<Waves> {
+        vec![Waves { period: self.wavelength, shortest: self.wavelength }]
     }
 }
 

@@ -35,6 +35,7 @@ mod moving_frame;
 mod remembered_field;
 #[cfg(test)]
 mod rule_tests;
+mod step_context;
 mod time_error;
 
 pub(crate) use branch_energies::BranchEnergies;
@@ -47,4 +48,5 @@ pub(crate) use group_history::GroupHistory;
 pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
 pub(crate) use lasting_error::LastingError;
+pub(crate) use step_context::{Meeting, StepContext};
 pub(crate) use time_error::{ErrorMeasure, TimeError};

@@ -107,8 +107,8 @@ impl MovingFrame {
     /// How much U would still change if `pressure` stayed on its cells and steps like the last one, of a `stride` of one cell along
     /// an axis, went on for ever. Of elastic bodies nothing.
     ///
-    /// U is carried through the cells of a line, one in each step. Where it no longer changes, the rule makes of it, line by line,
-    /// the pressure that holds it; what the pressure has above that still deforms the bodies, by the steady response of their creep.
+    /// The bodies carry U through the cells of a line, one in each step. Where U no longer changed, the rule would give the pressure
+    /// that holds it. What the pressure has above that still deforms the bodies, by the steady response of their creep.
     pub(super) fn outstanding(
         &self,
         rule: &ExponentialRule,
@@ -116,31 +116,37 @@ impl MovingFrame {
         stride: [isize; 2],
         pressure: &[f64],
     ) -> Vec<f64> {
-        let (axis, forward) = (usize::from(stride[0] == 0), stride[0] + stride[1] > 0);
-        let ([n1, n2], periodic, weights) = (self.cells, self.periodic[axis], &rule.committed);
-        let mut change = vec![0.0; if rule.has_memory() { n1 * n2 } else { 0 }];
-        let (count, unit) = [(n1, n2), (n2, 1)][axis];
-        // γ_k of all branches and the dashpot
+        let (axis, weights, n2) = (usize::from(stride[0] == 0), &rule.committed, self.cells[1]);
+        let (periodic, count) = (self.periodic[axis], self.cells[axis]);
+        let mut change = vec![0.0; if rule.has_memory() { pressure.len() } else { 0 }];
+        // γ_k of all branches and the dashpot, which has the rest
         let gains = [0, 1, 2].map(|k| (weights.past[k] - weights.past.get(k + 1).unwrap_or(&0.0)) / weights.c);
+        let rest = |k: usize| gains[k - 1] - weights.branches.iter().map(|branch| branch[k]).sum::<f64>();
+        let dashpot = [0.0, rest(1), rest(2), rest(3)];
         for line in 0..change.len() / count {
-            let start = if axis == 0 { line } else { line * n2 };
-            // in the order in which a point of the bodies passes them
-            let cells = (0..count).map(|m| start + unit * if forward { count - 1 - m } else { m });
-            let u: Vec<f64> = cells.clone().map(|k| self.source.now[k]).collect();
-            let mut steps = [differences(&u, periodic), Vec::new(), Vec::new()];
-            (1..3).for_each(|k| steps[k] = differences(&steps[k - 1], periodic));
-            let sum = |gains: &[f64], m: usize| gains.iter().zip(&steps).map(|(gain, d)| gain * d[m]).sum::<f64>();
-            let held = |(m, k): (usize, usize)| pressure[k] - rule.equilibrium() * u[m] - sum(&gains, m);
-            let mut excess: Vec<f64> = cells.clone().enumerate().map(held).collect();
-            for &[decay, ref gains @ ..] in &weights.branches {
-                let carried = carried((0..count).map(|m| sum(gains, m)), decay, periodic);
-                (0..count).for_each(|m| excess[m] -= carried[m] - sum(gains, m));
+            // in the order in which a point of the bodies passes the cells
+            let place = |m: usize| if stride[axis] > 0 { count - 1 - m } else { m };
+            let cell = |m: usize| if axis == 0 { line + n2 * place(m) } else { line * n2 + place(m) };
+            // U so many cells before
+            let before = |m: usize, cells: usize| match m.checked_sub(cells) {
+                Some(m) => self.source.now[cell(m)],
+                None if periodic => self.source.now[cell((m + 3 * count - cells) % count)],
+                None => 0.0,
+            };
+            let mut excess: Vec<f64> =
+                (0..count).map(|m| pressure[cell(m)] - rule.equilibrium() * before(m, 0)).collect();
+            for &[decay, first, second, third] in weights.branches.iter().chain([&dashpot]) {
+                // of the differences of U
+                let of = [first + second + third, -first - 2.0 * second - 3.0 * third, second + 3.0 * third, -third];
+                let gain = |m: usize| (0..4).map(|cells| of[cells] * before(m, cells)).sum::<f64>();
+                let carried = carried((0..count).map(gain), decay, periodic);
+                excess.iter_mut().zip(carried).for_each(|(excess, carried)| *excess -= carried);
             }
-            cells.clone().zip(&excess).for_each(|(k, excess)| change[k] = creep.glassy() * excess);
-            for &(compliance, time) in creep.terms() {
-                let (decay, gain) = ((-weights.dt / time).exp(), -compliance * (-weights.dt / time).exp_m1());
-                let carried = carried(excess.iter().map(|excess| gain * excess), decay, periodic);
-                cells.clone().zip(carried).for_each(|(k, carried)| change[k] += carried);
+            let decays = creep.terms().iter().map(|&(compliance, time)| (compliance, -weights.dt / time));
+            for (compliance, exponent) in decays.chain([(creep.glassy(), f64::NEG_INFINITY)]) {
+                let gains = excess.iter().map(|excess| -compliance * exponent.exp_m1() * excess);
+                let carried = carried(gains, exponent.exp(), periodic);
+                (0..count).for_each(|m| change[cell(m)] += carried[m]);
             }
         }
         change
@@ -151,21 +157,15 @@ impl MovingFrame {
     }
 }
 
-/// What each value has above the one before it.
-fn differences(line: &[f64], periodic: bool) -> Vec<f64> {
-    let before = if periodic { line[line.len() - 1] } else { 0.0 };
-    [before].iter().chain(line).zip(line).map(|(before, value)| value - before).collect()
-}
-
-/// The sum of all gains so far, each multiplied by `decay` since in every step; along a periodic line they came round for ever.
+/// The sum of all gains so far, each multiplied by `decay` in every step since; along a periodic line they come round for ever.
 fn carried(gains: impl ExactSizeIterator<Item = f64> + Clone, decay: f64, periodic: bool) -> Vec<f64> {
-    let round = || gains.clone().fold(0.0, |sum, gain| decay * sum + gain);
-    let mut sum = if periodic { round() / (1.0 - decay.powi(gains.len() as i32)) } else { 0.0 };
-    let add = |gain| {
-        sum = decay * sum + gain;
-        sum
+    let round = gains.clone().fold(0.0, |sum, gain| decay * sum + gain);
+    let before = if periodic { round / (1.0 - decay.powi(gains.len() as i32)) } else { 0.0 };
+    let add = |sum: &mut f64, gain: f64| {
+        *sum = decay * *sum + gain;
+        Some(*sum)
     };
-    gains.map(add).collect()
+    gains.scan(before, add).collect()
 }
 
 /// Replaces the value of each cell `[i, j]` by the value of `[i, j] + by`, which along periodic axes comes round, and is else zero

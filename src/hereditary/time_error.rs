@@ -6,6 +6,7 @@ use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::hereditary::kink::Kinks;
+use crate::hereditary::step_context::{Meeting, StepContext};
 use crate::parallel::Rows;
 use crate::sum::{add, greatest, named_sums};
 
@@ -18,9 +19,9 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) pressure: [&'a [f64]; 3],
     /// v = K p at the end of the step tried.
     pub(crate) potential: &'a [f64],
-    /// Which errors matter: the error of the displacement where a force is given, the error of v where a motion is, which leaves the
-    /// displacement in contact no error.
-    pub(crate) matters: [bool; 2],
+    /// By what share the error of the displacement counts, which is 1 where a force is given, and the error of v, which is 1 where a motion is:
+    /// that leaves the displacement in contact no error.
+    pub(crate) matters: [f64; 2],
     /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
     pub(crate) greatest: [f64; 2],
     pub(crate) least: [f64; 2],
@@ -28,13 +29,6 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) gap: &'a [f64],
     /// Whether a free body was pressed by nothing before the step.
     pub(crate) from_rest: bool,
-    /// The depth below first touch to which bodies may come back, to a surface that recovers; 0 if they do not.
-    pub(crate) coming_back: f64,
-    /// The response of v to a unit of u soon after bodies meet.
-    pub(crate) stiffness: f64,
-    /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
-    pub(crate) lasting: [f64; 2],
-    pub(crate) tolerance: f64,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
     /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect of v
@@ -43,19 +37,8 @@ pub(crate) struct ErrorMeasure<'a> {
     /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
     /// moment, to which bodies respond as glass. 0 where no such switch is to come.
     pub(crate) on_switch: f64,
-    /// The mean v of the greatest loads, to which that error is relative; 0 where no such switch is to come.
-    pub(crate) greatest_on_switch: f64,
-    /// The response of v to a unit of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
-    pub(crate) on_jump: f64,
-    /// Whether no step puts this one right: the load has a corner or jumps at its end.
-    pub(crate) is_last: bool,
-    /// How far the defects so far agree in sign, 0 … 1.
-    pub(crate) agreement: f64,
-    /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
-    /// in steps longer than this.
-    pub(crate) resolution: f64,
-    /// In steps shorter than this, a body with an immediate dashpot hardly moves.
-    pub(crate) beginning: f64,
+    /// The run that the step belongs to.
+    pub(crate) context: &'a StepContext,
 }
 
 /// What is known of the error in time of a step.
@@ -83,6 +66,8 @@ const CORRECTED_OF_DASHPOT: f64 = 1.2;
 const NOT_CORRECTED: f64 = 0.25;
 /// Rounding of a difference of displacements, relative to these.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Cells that leave do so in this part of the step at least.
+const SOON_LEFT: f64 = 0.05;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
 /// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body presses hardest
@@ -119,8 +104,8 @@ impl History {
     /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.has_memory()) else { return TimeError::default() };
-        let dt = rule.tried.dt;
-        if rule.has_dashpot() && dt <= measure.beginning {
+        let (dt, context) = (rule.tried.dt, measure.context);
+        if rule.has_dashpot() && dt <= context.beginning {
             return TimeError::default();
         }
         let weight = Weight::new(measure.rows, measure.pressure, rule.has_dashpot());
@@ -128,8 +113,8 @@ impl History {
         // the contact opened in a step without an error estimate: shorten the step until the opening is resolved
         if weight == Weight::PressureBefore
             && rule.missing().is_none()
-            && measure.resolution > 0.0
-            && dt > measure.resolution
+            && context.resolution > 0.0
+            && dt > context.resolution
         {
             return TimeError { relative: f64::INFINITY, ..TimeError::default() };
         }
@@ -139,49 +124,54 @@ impl History {
         }
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
-        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
-            sums.defect(rule, measure.resolution, measure.is_last);
+        let Defect { signed, smooth, kinks, of_leaving, greatest, surface: [surface, of_surface], peak } =
+            sums.defect(rule, context.resolution, context.is_last);
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
-        let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
+        let matters = if pressed { measure.matters } else { [1.0, 0.0] };
         let whole = [
             scales[0].max(LASTING_PART * measure.greatest[0]),
-            scales[1].max(measure.greatest[1]).max(measure.greatest_on_switch),
+            scales[1].max(measure.greatest[1]).max(context.greatest_on_switch),
         ];
-        let [in_contact, outside] = measure.lasting;
-        let lasting = match (measure.matters[0], pressed) {
+        let [in_contact, outside] = context.lasting;
+        let lasting = match (measure.matters[0] > 0.0, pressed) {
             (true, true) => relative(in_contact, whole[0]),
             (true, false) => relative(outside, whole[0]),
             (false, _) => 0.0,
         };
-        let growth = (1.0 + measure.agreement * (measure.amplification - 1.0))
-            * (1.0 + LASTING_WEIGHT * (lasting / measure.tolerance - TOLERATED).max(0.0));
-        let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
+        let growth = (1.0 + context.agreement * (measure.amplification - 1.0))
+            * (1.0 + LASTING_WEIGHT * (lasting / context.tolerance - TOLERATED).max(0.0));
+        let kinks_of_u = (edge * kinks).max(of_leaving);
+        let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
         let of_v = (EDGE * kinks).max(smooth);
-        let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };
-        let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
-        // without an elastic response the force is unbounded at short times
-        let stiffness = match (measure.matters[1], rule.has_dashpot()) {
-            (false, _) => measure.on_switch / rule.compliance(),
-            (true, false) => measure.stiffness,
-            (true, true) => measure.stiffness.min(1.0 / rule.compliance()),
+        let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
+        let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
+        // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives way by their approach
+        let Meeting { stiffness, give, .. } = context.meeting;
+        let [of_force, of_approach] = if give.is_finite() {
+            // without an elastic response the force is unbounded at short times
+            let glassy = if rule.has_dashpot() { stiffness.min(1.0 / rule.compliance()) } else { stiffness };
+            let series = glassy / (1.0 + give * glassy);
+            [series, give * series]
+        } else {
+            [measure.on_switch / rule.compliance(), 0.0]
         };
-        let on_return = relative(stiffness * outside, whole[1]);
-        let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
-        let error_on_return =
-            RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
+        let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
+        let on_return = on_meeting(outside);
+        let left = (on_return / context.tolerance).min(MOST_OF_SURFACE);
+        let error_on_return = RECOVERING * on_meeting(rule.compliance() * of_surface) * (1.0 + SURFACE_WEIGHT * left);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
-        let on_meeting = relative(peak, of_surface) * (on_return + error_on_return);
-        let on_jump = relative(measure.on_jump * (outside + rule.compliance() * peak), scales[1]);
-        let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
+        let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
+        let on_jump = relative(context.on_jump * (outside + rule.compliance() * peak), scales[1]);
+        let error_on_switch = if matters[0] > 0.0 { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
                 && error > error_on_switch
-                && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
-            greatest: relative(greatest, scales[1]).max(on_meeting).max(on_jump),
+                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { EDGE * kinks > smooth },
+            greatest: relative(greatest, scales[1]).max(of_cells).max(on_jump),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,
@@ -204,7 +194,7 @@ impl History {
                 let pressure = [tried[k], now[k], before[k]];
                 let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
                 let leaves = !touches && (touched || had_touched);
-                let depth = (measure.coming_back - measure.gap[k]).max(0.0);
+                let depth = (measure.context.meeting.depth - measure.gap[k]).max(0.0);
                 sums.depth += depth;
                 if w == 0.0 && !touches && !leaves && depth == 0.0 {
                     continue;
@@ -240,6 +230,7 @@ impl History {
                 if touches {
                     sums.steepest = sums.steepest.max(size);
                 } else if leaves {
+                    (sums.released, sums.fallen) = (sums.released + now[k], sums.fallen + before[k] - now[k]);
                     sums.left = sums.left.max(size);
                 }
             }
@@ -271,6 +262,9 @@ named_sums! {
         steepest: max,
         /// The greatest |d| of cells that left the contact.
         left: max,
+        /// Pressure of the cells that leave in this step, at its start, and by how much it fell in the step before.
+        released: +,
+        fallen: +,
         /// Number of cells in contact.
         touching: +,
         /// Number of cells in contact before the step.
@@ -301,6 +295,8 @@ struct Defect {
     smooth: f64,
     /// By cells that joined.
     kinks: f64,
+    /// By the kink of u where cells leave.
+    of_leaving: f64,
     /// The greatest of a cell.
     greatest: f64,
     /// Of a surface that bodies may come back to, and of its absolute value.
@@ -310,6 +306,19 @@ struct Defect {
 }
 
 impl Sums {
+    /// The error of v by the kink that u has where cells leave: those that stay answer a force with a greater compliance, those that leave
+    /// follow the body no longer. The pressure of the cells that leave falls as in the step before, which tells when they do. A dashpot
+    /// has no kink in u as long as v has no jump.
+    fn of_leaving(&self, rule: &ExponentialRule) -> f64 {
+        if self.released == 0.0 || rule.has_dashpot() || rule.missing().is_none() {
+            return 0.0;
+        }
+        let fallen = rule.tried.ratios[0] * self.fallen;
+        let since = if fallen > 0.0 { 1.0 - self.released / fallen } else { 0.0 };
+        let bend = self.signed / self.weight;
+        greatest(&Kinks::of(rule).at_end(bend / since.max(SOON_LEFT), bend))
+    }
+
     fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
@@ -329,6 +338,7 @@ impl Sums {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1.0),
+            of_leaving: self.of_leaving(rule),
             greatest: (EDGE * self.sharpest).max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),

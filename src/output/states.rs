@@ -9,12 +9,44 @@ use std::sync::Arc;
 use zip::ZipArchive;
 
 use crate::Grid;
+use crate::contact::Warnings;
 use crate::error::{Error, FileError, Result};
 use crate::file::{npy, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
 use crate::output::npz::Archive;
 use crate::states::{ElasticState, ElasticStates, Pressed, Rest};
+
+/// An array with a number for each state: its name, and how the number is read from the state and put into it.
+type Column = (&'static str, fn(&ElasticState) -> f64, fn(&mut ElasticState, f64));
+
+const COLUMNS: [Column; 12] = [
+    ("level", |state| state.level, |state, x| state.level = x),
+    ("approach", |state| state.approach, |state, x| state.approach = x),
+    ("stiffness", |state| state.stiffness, |state, x| state.stiffness = x),
+    ("load_stiffness", |state| state.load_stiffness, |state, x| state.load_stiffness = x),
+    ("area", |state| state.area, |state, x| state.area = x),
+    ("cells", |state| state.cells as f64, |state, x| state.cells = x as usize),
+    ("patches", |state| state.patches as f64, |state, x| state.patches = x as usize),
+    (
+        "warnings",
+        |state| state.warnings.bits().into(),
+        |state, x| state.warnings = Warnings::from_bits_truncate(x as u32),
+    ),
+    ("max_slope", |state| number(state.figures.max_slope), |state, x| state.figures.max_slope = figure(x)),
+    ("compression", |state| number(state.figures.compression), |state, x| state.figures.compression = figure(x)),
+    ("cells_in_wave", |state| number(state.figures.cells_in_wave), |state, x| state.figures.cells_in_wave = figure(x)),
+    ("periods", |state| number(state.figures.periods), |state, x| state.figures.periods = figure(x)),
+];
+
+/// A figure of a state as a number: NaN where there is none.
+fn number(figure: Option<f64>) -> f64 {
+    figure.unwrap_or(f64::NAN)
+}
+
+fn figure(number: f64) -> Option<f64> {
+    Some(number).filter(|number| !number.is_nan())
+}
 
 /// Writes elastic states as an NPZ archive, so that a [`Sweep`](crate::states::Sweep) is made once:
 /// `numpy.load(path)["level"]` and so on, arrays named as the fields of an [`ElasticState`], and the pressures if they
@@ -40,16 +72,6 @@ use crate::states::{ElasticState, ElasticStates, Pressed, Rest};
 pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &Metadata) -> Result<()> {
     let table = states.states();
     let count = table.len();
-    let column = |of: fn(&ElasticState) -> f64| table.iter().map(of).collect::<Vec<f64>>();
-    let scalars = [
-        ("level", column(|state| state.level)),
-        ("approach", column(|state| state.approach)),
-        ("stiffness", column(|state| state.stiffness)),
-        ("load_stiffness", column(|state| state.load_stiffness)),
-        ("area", column(|state| state.area)),
-        ("cells", column(|state| state.cells as f64)),
-        ("patches", column(|state| state.patches as f64)),
-    ];
     let [tilts, tilt_rates] = [|state: &ElasticState| state.tilt, |state: &ElasticState| state.tilt_rate]
         .map(|of| table.iter().flat_map(of).collect::<Vec<f64>>());
     let Rest { approach, tilt: [tilt1, tilt2] } = states.rest;
@@ -60,8 +82,8 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
     let sizes = [states.error, states.first_level, states.poisson.unwrap_or(f64::NAN)];
     replace(path.as_ref(), |out| {
         let mut archive = Archive::empty(out);
-        for (name, values) in &scalars {
-            archive.add(name, &[count], values)?;
+        for (name, value, _) in COLUMNS {
+            archive.add(name, &[count], &table.iter().map(value).collect::<Vec<f64>>())?;
         }
         archive.add("tilt", &[count, 2], &tilts)?;
         archive.add("tilt_rate", &[count, 2], &tilt_rates)?;
@@ -104,28 +126,21 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
         None => Err(refused(format!("there is no array {name}"))),
     };
     let count = arrays.get("level").map_or(0, Vec::len);
-    let [levels, approaches, stiffnesses] =
-        [array("level", count)?, array("approach", count)?, array("stiffness", count)?];
-    let [load_stiffnesses, areas] = [array("load_stiffness", count)?, array("area", count)?];
-    let [cells, patches] = [array("cells", count)?, array("patches", count)?];
+    let mut table = vec![ElasticState::default(); count];
+    for (name, _, set) in COLUMNS {
+        table.iter_mut().zip(array(name, count)?).for_each(|(state, &value)| set(state, value));
+    }
     let [tilts, tilt_rates] = [array("tilt", 2 * count)?, array("tilt_rate", 2 * count)?];
-    let states = (0..count).map(|k| ElasticState {
-        level: levels[k],
-        approach: approaches[k],
-        tilt: [tilts[2 * k], tilts[2 * k + 1]],
-        stiffness: stiffnesses[k],
-        load_stiffness: load_stiffnesses[k],
-        tilt_rate: [tilt_rates[2 * k], tilt_rates[2 * k + 1]],
-        area: areas[k],
-        cells: cells[k] as usize,
-        patches: patches[k] as usize,
-    });
+    for (k, state) in table.iter_mut().enumerate() {
+        state.tilt.copy_from_slice(&tilts[2 * k..][..2]);
+        state.tilt_rate.copy_from_slice(&tilt_rates[2 * k..][..2]);
+    }
     let rest = array("rest", 3)?;
     let rest = Rest { approach: rest[0], tilt: [rest[1], rest[2]] };
     let given = array("given_tilt", 4)?;
     let tilt =
         [0, 2].map(|k| if given[k] == 1.0 { Tilt::Free { at: given[k + 1] } } else { Tilt::Fixed(given[k + 1]) });
-    let mut states = ElasticStates::new(states.collect(), rest, tilt);
+    let mut states = ElasticStates::new(table, rest, tilt);
     let sizes = array("error_first_level_poisson", 3)?;
     (states.error, states.first_level) = (sizes[0], sizes[1]);
     states.poisson = Some(sizes[2]).filter(|poisson| !poisson.is_nan());

@@ -202,7 +202,8 @@ impl<'a> PlanBuilder<'a> {
             area: 2.0 * radius.at(across),
             singular: singular.at(across),
         };
-        let builder = scene.builder(grid.clone())?.material(material.clone()).times_of(history, until);
+        let mut builder = scene.builder(grid.clone())?.material(material.clone()).times_of(history, until);
+        builder.planned = true;
         let memory = builder.memory()?;
         let excess = steps.trace.map_or(0.0, |trace| trace.excess);
         Ok(Plan {

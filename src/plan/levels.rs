@@ -10,7 +10,7 @@ use crate::error::{Error, Result, StepError};
 use crate::load::{Load, Tilt};
 use crate::plan::steps::{Differences, relative, unseen};
 use crate::plan::trial_runs::{Run, StepState, TrialScene};
-use crate::states::{ElasticState, ElasticStates, Rest, StatesContact};
+use crate::states::{ElasticStates, Rest, StatesContact};
 
 /// Number of parts of a step of the run that is taken as exact, fewer where all parts would be more than so many: their
 /// groups of levels are as many.
@@ -45,22 +45,12 @@ impl Curve {
             (next[1] / before[1]).ln() / (next[0] / before[0]).ln()
         };
         // dl/dδ of a power l ∝ δ^(1/n)
-        let stiffness = |k: usize, level: f64, depth: f64| level / (depth * exponent(k));
-        let state = |(k, &[level, depth, area]): (usize, &[f64; 3])| ElasticState {
-            level,
-            approach: rest + depth,
-            tilt: [0.0; 2],
-            stiffness: stiffness(k, level, depth),
-            load_stiffness: stiffness(k, level, depth),
-            tilt_rate: [0.0; 2],
-            area,
-            cells: 0,
-            patches: 0,
-        };
-        let states = points.iter().enumerate().map(state).collect();
-        let states = ElasticStates::new(states, Rest { approach: rest, tilt: [0.0; 2] }, tilt).validated()?;
+        let row =
+            |(k, &[level, depth, area]): (usize, &[f64; 3])| (level, rest + depth, level / (depth * exponent(k)), area);
+        let at_rest = Rest { approach: rest, tilt: [0.0; 2] };
+        let states = ElasticStates::from_rows(points.iter().enumerate().map(row), at_rest, tilt)?;
         let areas = points.iter().map(|[level, _, area]| [level.ln(), area.ln()]).collect();
-        Ok(Curve { states: Arc::new(states), line, areas })
+        Ok(Curve { states, line, areas })
     }
 
     /// Through the elastic states of a scene.
@@ -86,12 +76,7 @@ impl Curve {
 
     /// The contact of a scene on this curve, by the rule of adaptive steps.
     pub(super) fn contact(&self, scene: &TrialScene<'_>) -> Result<StatesContact> {
-        let interpolant = scene.accuracy.settings().adaptive_interpolant();
-        let contact = StatesContact::new(&self.states, scene.material)?.with_interpolant(interpolant);
-        Ok(match scene.temperature {
-            Some(temperature) => contact.with_temperature(temperature.clone()),
-            None => contact,
-        })
+        scene.course().contact(&self.states, scene.accuracy.settings().adaptive_interpolant())
     }
 
     /// Approach of the load point at a level [m].

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::plan::domain::Side;
 use crate::plan::trial_runs::TrialScene;
-use crate::states::{as_elastic, greatest, greatest_level, is_force, on_any_shape, sampled, softest_compliance};
+use crate::states::{as_elastic, greatest};
 
 /// Number of even parts of the run at whose ends the load is sampled.
 const PARTS: u32 = 64;
@@ -24,19 +24,18 @@ impl Loads {
     /// Under a given approach the largest contact is the elastic one at the greatest approach. Where the tilt changes,
     /// and the force is given at some times only, the compliance at the end of the run gives an upper bound.
     pub(super) fn of(scene: &TrialScene<'_>) -> Result<Loads> {
-        let &TrialScene { material, temperature, history, until, .. } = scene;
-        let all = sampled(history, until, PARTS)?;
+        let course = scene.course();
+        let all = course.sampled(PARTS)?;
         let tilt = all[0].tilt();
         let on_states = all.iter().all(|load| load.tilt() == tilt);
         let interpolant = scene.accuracy.settings().adaptive_interpolant();
         if on_states
-            && all.iter().all(is_force)
-            && let Ok(contact) = on_any_shape(material, temperature, tilt)
-            && let Ok(normal) = greatest_level(contact.with_interpolant(interpolant), history, until)
+            && all.iter().all(|load| matches!(load, Load::Force { .. }))
+            && let Ok(normal) = course.greatest_level(tilt, interpolant)
         {
             return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
         }
-        let compliance = softest_compliance(material, temperature, until)?;
+        let compliance = course.softest_compliance()?;
         let thinned = all.iter().step_by(if on_states { all.len() } else { THINNED });
         let elastic = greatest(&all, compliance).chain(thinned.map(|load| as_elastic(*load, compliance)));
         Ok(Loads { largest: elastic.collect(), on_states })

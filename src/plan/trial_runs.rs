@@ -12,7 +12,7 @@ use crate::plan::domain::{Body, ContactSize, Side};
 use crate::plan::loads::Loads;
 use crate::rheology::{Elastic, Material, TemperatureHistory};
 use crate::run::Stepping;
-use crate::states::Pressed;
+use crate::states::{Course, Pressed};
 use crate::{Grid, InfluenceKernel};
 
 /// Cells along a side of the runs that find the domain.
@@ -129,6 +129,11 @@ impl Run {
 }
 
 impl TrialScene<'_> {
+    pub(super) fn course(&self) -> Course<'_> {
+        let TrialScene { material, temperature, history, until, .. } = *self;
+        Course { material, temperature, history, until }
+    }
+
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
         let builder = self.builder_of(grid, self.material.clone())?;
         Ok(match self.temperature {

@@ -34,6 +34,8 @@ pub struct Material {
 pub(super) struct Body {
     pub(super) rheology: Arc<dyn Rheology>,
     pub(super) volume: Volume,
+    /// Whether the rheology is the creep of a rod in tension.
+    in_tension: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -56,7 +58,7 @@ pub(crate) struct Compressibility {
 impl Material {
     /// An incompressible body (ν = ½): C = J/4.
     pub fn incompressible(rheology: impl Rheology + 'static) -> Material {
-        Material::with_volume(rheology, Volume::Proportional { factor: 0.25, poisson: 0.5 })
+        Material::with_volume(rheology, Volume::Proportional { factor: 0.25, poisson: 0.5 }, false)
     }
 
     /// A body with constant Poisson's ratio `nu`: C = (1 − ν) J/2.
@@ -65,7 +67,7 @@ impl Material {
     /// If `nu` is outside (−1, ½].
     pub fn constant_poisson(rheology: impl Rheology + 'static, nu: f64) -> Result<Material> {
         let poisson = poisson_ratio(nu)?;
-        Ok(Material::with_volume(rheology, Volume::Proportional { factor: 0.5 * (1.0 - nu), poisson }))
+        Ok(Material::with_volume(rheology, Volume::Proportional { factor: 0.5 * (1.0 - nu), poisson }, false))
     }
 
     /// A body whose creep was measured in tension: the rheology's J(t) is here the strain D(t) of a rod under unit tension,
@@ -99,7 +101,8 @@ impl Material {
     /// If `nu` is outside (−1, ½].
     pub fn from_tension(tensile: impl Rheology + 'static, nu: f64) -> Result<Material> {
         let poisson = poisson_ratio(nu)?;
-        Ok(Material::with_volume(tensile, Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson }))
+        let volume = Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson };
+        Ok(Material::with_volume(tensile, volume, true))
     }
 
     /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers approximately
@@ -123,7 +126,7 @@ impl Material {
     pub fn elastic_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
         positive("bulk modulus", bulk_modulus)?;
         let creep = rheology.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &rheology))?;
-        Material::of_shear_and_bulk(rheology, &creep, bulk_modulus)
+        Material::of_shear_and_bulk(rheology, &creep, bulk_modulus, false)
     }
 
     /// A body whose creep was measured in tension ([`Material::from_tension`]) and that is elastic in bulk, with
@@ -150,26 +153,25 @@ impl Material {
         within("bulk modulus", bulk_modulus, glassy > of_bulk, allowed)?;
         let terms: Vec<_> = tension.terms().iter().map(|&(compliance, time)| (3.0 * compliance, time)).collect();
         let shear = CreepSpectrum::new(glassy - of_bulk, 3.0 * tension.fluidity(), &terms)?;
-        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus)
+        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus, true)
     }
 
     fn of_shear_and_bulk(
         rheology: impl Rheology + 'static,
         creep: &CreepSpectrum,
         bulk_modulus: f64,
+        in_tension: bool,
     ) -> Result<Material> {
         let shear = creep.relaxation();
         let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
         let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
-        Ok(Material::with_volume(
-            rheology,
-            Volume::Elastic(bulk_modulus, contact, Compressibility::new(bulk_modulus, &stiffened)),
-        ))
+        let volume = Volume::Elastic(bulk_modulus, contact, Compressibility::new(bulk_modulus, &stiffened));
+        Ok(Material::with_volume(rheology, volume, in_tension))
     }
 
-    fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
-        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume }] }
+    fn with_volume(rheology: impl Rheology + 'static, volume: Volume, in_tension: bool) -> Material {
+        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume, in_tension }] }
     }
 
     /// This body pressed against `other`: both deform, C = C₁ + C₂.
@@ -260,7 +262,7 @@ impl Material {
                 return Ok(body.clone());
             }
             let series = body.rheology.series(times.clone(), tolerance)?;
-            Ok(Body { rheology: Arc::new(series), volume: body.volume.clone() })
+            Ok(Body { rheology: Arc::new(series), ..body.clone() })
         };
         Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
     }
@@ -270,8 +272,12 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
-    /// Accepts rheologies whose times are not NaN.
+    /// Accepts rheologies whose times are not NaN, and series of tension in materials of tension.
     pub(crate) fn validate(&self) -> Result<()> {
+        let is_rod = |body: &Body| body.rheology.fit_report().is_some_and(|report| report.in_tension);
+        if self.bodies.iter().any(|body| is_rod(body) && !body.in_tension) {
+            return Err(MaterialError::TakenForShear.into());
+        }
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
             let refused = |field, value, allowed| Err(Error::OutOfRange { field, value, allowed });
             let (until, measured) = (rheology.known_until(), rheology.measured());

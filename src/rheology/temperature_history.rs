@@ -1,5 +1,5 @@
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use crate::ascending::{Ascending, TimeTable};
 use crate::error::{MaterialError, Result, finite, positive, within};
@@ -44,7 +44,12 @@ pub struct TemperatureHistory {
     course: Course,
     ageing: Option<Ageing>,
     rule: GaussLegendre,
+    /// Room for the pieces of a quadrature, kept so that steps allocate none.
+    pieces: Arc<Mutex<[Vec<Piece>; 2]>>,
 }
+
+/// Start and end \[s\] of a piece, and the quadrature over it.
+type Piece = (f64, f64, f64);
 
 /// Times grow as a power of the age.
 #[derive(Debug, Clone, Copy)]
@@ -72,6 +77,8 @@ const POINTS: usize = 12;
 const AGREEMENT: f64 = 1e-13;
 /// Upper limit of pieces computed in a quadrature, and the agreement required of their sum at this limit.
 const MAX_PIECES: usize = 1 << 14;
+/// Pieces for which there is room from the start.
+const ROOM: usize = 32;
 const LEAST_AGREEMENT: f64 = 1e-5;
 /// Noise in the temperature limits the agreement: from `NOISY_PIECES` pieces on, the refinement ends when halving leaves
 /// more than the part `NOISE` of the difference.
@@ -121,7 +128,8 @@ impl TemperatureHistory {
     }
 
     fn new(law: TimeTemperature, course: Course) -> TemperatureHistory {
-        TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS) }
+        let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(ROOM))));
+        TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS), pieces }
     }
 
     /// With physical ageing: a glass that was quenched an age t_e ago has times that grow as (t_e/t_ref)^μ, so that dξ
@@ -245,19 +253,20 @@ impl TemperatureHistory {
         self.halved(from, to)
     }
 
-    /// The quadrature over a piece, which is halved where halves do not agree with it. Nothing is allocated where they do.
+    /// The quadrature over a piece, which is halved where halves do not agree with it.
     fn halved(&self, from: f64, to: f64) -> Result<f64> {
         let whole = finite("reduced time", self.quadrature(from, to)?)?;
-        let (mut first, mut pieces, mut finer) = (Some((from, to, whole)), Vec::new(), Vec::new());
+        // a second thread takes room of its own
+        let (mut shared, mut own) = (self.pieces.try_lock(), Default::default());
+        let [pieces, finer] = shared.as_deref_mut().unwrap_or(&mut own);
+        pieces.clear();
+        pieces.push((from, to, whole));
         let (mut sum, mut all, mut computed) = (0.0, whole, 0);
         let (mut apart, mut before) = (0.0, f64::INFINITY);
-        while (first.is_some() || !pieces.is_empty())
-            && computed < MAX_PIECES
-            && (pieces.len() < NOISY_PIECES || apart <= NOISE * before)
-        {
-            computed += pieces.len().max(1);
+        while !pieces.is_empty() && computed < MAX_PIECES && (pieces.len() < NOISY_PIECES || apart <= NOISE * before) {
+            computed += pieces.len();
             (apart, before) = (0.0, apart);
-            for (from, to, whole) in first.take().into_iter().chain(pieces.drain(..)) {
+            for (from, to, whole) in pieces.drain(..) {
                 let middle = from + 0.5 * (to - from);
                 if middle <= from || middle >= to {
                     sum += whole; // as short as the resolution of a time
@@ -273,7 +282,7 @@ impl TemperatureHistory {
                     finer.extend([(from, middle, first), (middle, to, second)]);
                 }
             }
-            std::mem::swap(&mut pieces, &mut finer);
+            std::mem::swap(pieces, finer);
         }
         let sum = sum + pieces.iter().map(|(_, _, part)| part).sum::<f64>();
         if !pieces.is_empty() && apart > LEAST_AGREEMENT * sum {

@@ -1,4 +1,4 @@
-use crate::error::{Result, finite, positive, within};
+use crate::error::{Result, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 
 /// The gas constant \[J/(mol K)\] (exact since 2019).
@@ -85,8 +85,8 @@ impl TimeTemperature {
             }
             Law::Arrhenius { energy } => (energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference)).exp(),
         };
-        finite("shift factor", factor)?;
-        within("shift factor", factor, (1e-60..=1e60).contains(&factor), "in [1e-60, 1e60]")
+        let allowed = "in [1e-60, 1e60]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
+        within("shift factor", factor, (1e-60..=1e60).contains(&factor), allowed)
     }
 
     /// A `rheology` known at the reference temperature, at another `temperature` \[K\]: J(t/a_T).

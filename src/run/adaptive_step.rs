@@ -1,9 +1,10 @@
 //! Steps as long as their error allows.
 
-use crate::contact::step::error_in_time::{StepContext, error_in_time};
+use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Computation, Scene, Settings, State, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
+use crate::hereditary::StepContext;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::run::driven::Course;
 use crate::run::error_budget::StepErrors;
@@ -49,10 +50,18 @@ pub(super) fn adaptive_step(
         let (state, clock) = (&computation.state, &computation.state.clock);
         let [wanted, reduced] = control.length(scene, state, history, until - now)?;
         let (order, dashpot) = order_of(state, &scene.settings);
+        // a jump may come so late that the creep after it is faster than times are resolved
+        let is_late = || {
+            let rounding = scene.reduced_time(clock, now.next_up())? - clock.reduced_time;
+            Ok::<_, Error>(clock.reduced_time - control.since <= ROUNDINGS * rounding)
+        };
+        let mut time = towards(now, stop, wanted);
+        if (time <= now || time >= tried) && is_late()? {
+            time = tried.next_down().min(time.max(now.next_up()));
+        }
+        let (dt, unresolved) = (time - now, time == now.next_up() && is_late()?);
         // near the resolution of the time, a shortened step may round to the same end again and again
-        let time = towards(now, stop, wanted).max(now.next_up()).min(tried.next_down());
-        let dt = time - now;
-        if time <= now {
+        if time <= now || time >= tried {
             return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance: control.tolerance }));
         }
         tried = time;
@@ -108,10 +117,8 @@ pub(super) fn adaptive_step(
         }
         let by_kinks = error.by_kinks && error.relative > control.tolerance;
         let order = if by_kinks || excess > 1.0 { ORDER_OF_KINKS } else { order };
-        // no step resolves creep that follows a late jump within the rounding of times: the report gives its error
-        let unresolved = time == now.next_up()
-            && step.interval.reduced - control.since <= ROUNDINGS * step.interval.dt
-            && error.relative.is_finite();
+        // the report gives the error of a step that cannot be shorter
+        let unresolved = unresolved && error.relative.is_finite();
         if !control.judge(step.interval.dt, error.relative, order, dashpot) && !unresolved {
             events::rejected(time, dt, error.relative, control.tolerance);
             add_work(&mut wasted, computed);

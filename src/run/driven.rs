@@ -56,6 +56,9 @@ pub trait Driven: Contact + Debug {
 
     fn temperature(&self) -> Option<&TemperatureHistory>;
 
+    /// The approach at which the upright bodies touch \[m\], if they never have.
+    fn untouched(&self) -> Option<f64>;
+
     /// Takes the next step. Differences of steps start anew where it ends at a corner.
     fn advance(&mut self, control: &mut Self::Control, course: &Course<'_>) -> Result<StepReport>;
 

@@ -237,7 +237,10 @@ impl<'a, C: RunContact> Run<'a, C> {
     fn take_next(&mut self) -> Result<Option<StepReport>> {
         self.last = None;
         let start = self.contact.time();
-        let report = self.take_step()?;
+        let mut report = self.take_step()?;
+        if let Some(report) = report.as_mut().filter(|report| report.time >= self.until) {
+            self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
+        }
         self.last = report.map(|report| (start, report));
         report.iter().for_each(|report| self.progress.count(report));
         Ok(report)

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::contact::step::error_in_time::StepContext;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::hereditary::StepContext;
 use crate::load::{Load, LoadHistory};
 use crate::observe::MeshError;
 use crate::rheology::TemperatureHistory;
@@ -65,6 +65,11 @@ impl Driven for ViscoelasticContact {
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
         self.scene.temperature.as_ref()
+    }
+
+    fn untouched(&self) -> Option<f64> {
+        let state = &self.computation.state;
+        state.is_undisturbed().then(|| state.indenter.gap().datum)
     }
 
     fn advance(&mut self, control: &mut SpaceControl, course: &Course<'_>) -> Result<StepReport> {

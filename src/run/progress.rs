@@ -58,7 +58,8 @@ impl Stepping {
             }
         };
         finite("end of the run", until)?;
-        within("end of the run", until, until >= start, "at or after the time of the contact").map(drop)
+        let allowed = "no earlier than the time of the contact: give the time at which the run ends, not its length";
+        within("end of the run", until, until >= start, allowed).map(drop)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::contact::window::placement::resting_depth;
 use crate::contact::{Scene, State};
 use crate::error::{Error, Result, within};
+use crate::hereditary::Meeting;
 use crate::load::{Load, LoadHistory};
 
 /// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
@@ -17,6 +18,8 @@ const BREAKPOINTS: usize = 1000;
 /// Lower limit of the greatest force \[N\] and depth \[m\] of a run. Fractions of smaller values underflow, so that no
 /// step would be short enough.
 const LEAST: f64 = 1e-290;
+/// The force of a circular contact over its depth is this part of its response to a small change of the depth.
+const SECANT: f64 = 2.0 / 3.0;
 
 /// Scale of small values in a run: the greatest loads of its history, and an estimate of the displacement that they
 /// cause. At first touch, when bodies part, or under a load that starts like a power of time, errors relative to the
@@ -30,9 +33,12 @@ pub(super) struct RunScale {
     pub(super) attracts: bool,
     /// Greatest force.
     force: f64,
-    /// Greatest prescribed depth below first touch, and an estimate of the greatest v that it requires.
+    /// Greatest prescribed depth below first touch, of the far end of a spring where there is one, and an estimate of the greatest v
+    /// that it requires.
     depth: f64,
     stress: f64,
+    /// Estimated diameter of the contact under the spring that is driven deepest.
+    width: f64,
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
     rises: Rises,
@@ -65,20 +71,24 @@ impl RunScale {
         scale.rises = Rises::new(scene, history, touch, &times)?;
         let mut times: Vec<f64> = times.into_iter().chain(decades).collect();
         times.sort_by(f64::total_cmp);
-        let mut last = None;
+        let mut loads: Vec<(f64, Load)> = Vec::new();
         for time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let load = load(history, time).validated_at(time, scene.attraction.is_some())?;
                 scale.include(&load);
                 let is_force = |load: &Load| matches!(load, Load::Force { .. });
-                let before = last.replace(load);
-                if !is_force(&load) && before.is_some_and(|before| is_force(&before)) {
+                if !is_force(&load) && loads.last().is_some_and(|(_, before)| is_force(before)) {
                     scale.switches.push(time);
                 }
-                if !is_force(&load) && time > now {
-                    scale.stress = scale.stress.max(scale.magnitude(&load) / compliance_at(time)?);
-                }
+                loads.push((time, load));
             }
+        }
+        if compliance > 0.0 {
+            scale.include_spring(scene, state, compliance, &loads);
+        }
+        for (time, load) in loads.iter().filter(|(time, load)| !matches!(load, Load::Force { .. }) && *time > now) {
+            let compliance = compliance_at(*time)? + SECANT * scale.give(load);
+            scale.stress = scale.stress.max(scale.magnitude(load) / compliance);
         }
         let large_enough = |size: f64| size == 0.0 || size >= LEAST;
         let allowed = "0, or 1e-290 at least, for adaptive steps: choose other units, or Stepping::fixed";
@@ -93,7 +103,7 @@ impl RunScale {
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
-        let sizes = [self.force, self.depth, self.stress, self.depth_over_compliance];
+        let sizes = [self.force, self.depth, self.stress, self.width, self.depth_over_compliance];
         !self.touch.is_nan() && self.rises.fits() && sizes.iter().all(|&size| size >= 0.0)
     }
 
@@ -102,12 +112,35 @@ impl RunScale {
         let magnitude = self.magnitude(load);
         match load {
             Load::Force { .. } => self.force = self.force.max(magnitude),
-            Load::Approach { .. } => self.depth = self.depth.max(magnitude),
-            // the bounds of both
-            Load::Spring { stiffness, .. } => {
-                self.depth = self.depth.max(magnitude);
-                self.force = self.force.max(stiffness * magnitude);
-            }
+            Load::Approach { .. } | Load::Spring { .. } => self.depth = self.depth.max(magnitude),
+        }
+    }
+
+    /// Includes the force of the spring that is driven deepest, in bodies of this `compliance`: if k z, without the bodies' yielding, pressed them
+    /// down by h, the springs in series do by h z/(z + h), about. The force of a paraboloid grows with the power 3/2 of its depth, its width
+    /// with the root.
+    fn include_spring(&mut self, scene: &Scene, state: &State, compliance: f64, loads: &[(f64, Load)]) {
+        let springs = loads.iter().filter_map(|(_, load)| match load {
+            Load::Spring { stiffness, .. } => Some((self.magnitude(load), stiffness)),
+            _ => None,
+        });
+        let deepest = springs.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        if let Some((drive, stiffness)) = deepest.filter(|&(drive, _)| drive > 0.0) {
+            let force = stiffness * drive;
+            let depth = 2.0 * resting_depth(scene, state, force * compliance);
+            let part = drive / (drive + depth);
+            self.width = force * compliance / (SECANT * depth) * part.sqrt();
+            self.force = self.force.max(force * part.powf(1.5));
+        }
+    }
+
+    /// The compliance \[1/Pa\] that the spring of a load adds to the compliance of the bodies, as a circular contact answers a small change of
+    /// its depth; infinite for a given force.
+    fn give(&self, load: &Load) -> f64 {
+        match load {
+            Load::Force { .. } => f64::INFINITY,
+            Load::Approach { .. } => 0.0,
+            Load::Spring { stiffness, .. } => self.width / stiffness,
         }
     }
 
@@ -137,11 +170,15 @@ impl RunScale {
             }
             Load::Force { .. } => [0.0; 2],
             Load::Approach { .. } => [self.depth, self.stress],
-            Load::Spring { .. } => {
-                let sunk = self.depth_over_compliance;
-                [self.depth.min(sunk * scene.material.contact_compliance(age)), self.stress.min(sunk)]
-            }
+            Load::Spring { .. } => [0.5 * self.depth * self.share(scene, load, age), self.stress],
         }
+    }
+
+    /// The part of the drive of a spring by which it presses the bodies down, when they have been loaded for the time `age`.
+    fn share(&self, scene: &Scene, load: &Load, age: f64) -> f64 {
+        let compliance = scene.material.contact_compliance(age);
+        let whole = compliance + SECANT * self.give(load);
+        if whole > 0.0 { compliance / whole } else { 1.0 }
     }
 
     /// Estimated mean v under the greatest loads.
@@ -160,20 +197,20 @@ impl RunScale {
         self.rises.0.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
     }
 
-    /// The depth below first touch to which the bodies may return after `now`, when they have been loaded for the time
-    /// `age`, and the response of v to an error of u when they meet; 0 if they do not return.
-    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> [f64; 2] {
-        let [depth, stiffness] = self.rises.after(now, |rise| rise.again);
-        match load {
-            Load::Force { .. } => [self.expected(scene, load, age)[0], 0.0],
-            Load::Approach { .. } => [depth, stiffness],
-            Load::Spring { .. } => [depth.min(self.expected(scene, load, age)[0]), stiffness],
+    /// How bodies that have been loaded for the time `age` may meet again after `now`; to the depth 0 if they do not.
+    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> Meeting {
+        let own = self.give(load);
+        if let Load::Force { .. } = load {
+            return Meeting { depth: self.expected(scene, load, age)[0], stiffness: 0.0, give: own };
         }
+        let Meeting { depth, stiffness, give } = self.rises.after(now, self.width, |rise| rise.again);
+        Meeting { depth: depth * self.share(scene, load, age), stiffness, give: give.min(own) }
     }
 
     /// The response of v to an error of u when the bodies meet more cells after `now`; 0 if no approach is given then.
     pub(super) fn stiffness_after(&self, now: f64) -> f64 {
-        self.rises.after(now, |_| true)[1]
+        let Meeting { stiffness, give, .. } = self.rises.after(now, self.width, |_| true);
+        if stiffness > 0.0 { stiffness / (1.0 + give * stiffness) } else { 0.0 }
     }
 
     /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies into contact.
@@ -210,8 +247,10 @@ struct Rise {
     rate: f64,
     /// Whether the approach has receded before: the surface is still recovering.
     again: bool,
-    /// The response of v to an error of u when they meet.
+    /// The response of v to an error of u when they meet, if the approach is given.
     stiffness: f64,
+    /// Compliance of the spring \[m/N\]; 0 for a given approach.
+    spring: f64,
 }
 
 /// Fixed-point iterations for the error of u that changes v by the most allowed: compliances grow less than linearly.
@@ -238,8 +277,9 @@ impl Rises {
         let (mut rises, mut again, mut last) = (Rises::default(), false, None);
         for &time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let approach = match load(history, time).validated_at(time, scene.attraction.is_some())? {
-                    Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth,
+                let (approach, spring) = match load(history, time).validated_at(time, scene.attraction.is_some())? {
+                    Load::Approach { approach: depth, .. } => (depth, 0.0),
+                    Load::Spring { stiffness, drive: depth, .. } => (depth, 1.0 / stiffness),
                     Load::Force { .. } => {
                         // a force may have receded, too
                         (again, last) = (true, None);
@@ -251,7 +291,7 @@ impl Rises {
                     if approach > before.max(touch) {
                         let rate = (approach - before) / scene.reduced_length([start, time], time - start)?;
                         let depth = approach - touch;
-                        rises.0.push(Rise { end: time, depth, rate, again, stiffness: 0.0 });
+                        rises.0.push(Rise { end: time, depth, rate, again, stiffness: 0.0, spring });
                     }
                 }
             }
@@ -262,12 +302,17 @@ impl Rises {
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     fn fits(&self) -> bool {
-        self.0.iter().all(|rise| rise.depth >= 0.0 && rise.rate > 0.0 && rise.stiffness >= 0.0)
+        self.0.iter().all(|rise| rise.depth >= 0.0 && rise.rate > 0.0 && rise.stiffness >= 0.0 && rise.spring >= 0.0)
     }
 
-    /// Greatest depth and stiffness of such rises that end at `now` or later; 0 if there are none.
-    fn after(&self, now: f64, is_meant: impl Fn(&Rise) -> bool) -> [f64; 2] {
+    /// Greatest depth and stiffness, and least give, of such rises that end at `now` or later, of contacts of this `width`; the depth and the
+    /// stiffness are 0 if there are none.
+    fn after(&self, now: f64, width: f64, is_meant: impl Fn(&Rise) -> bool) -> Meeting {
         let rises = self.0.iter().filter(|rise| rise.end >= now && is_meant(rise));
-        rises.fold([0.0; 2], |[depth, stiffness], rise| [depth.max(rise.depth), stiffness.max(rise.stiffness)])
+        rises.fold(Meeting { depth: 0.0, stiffness: 0.0, give: f64::INFINITY }, |most, rise| Meeting {
+            depth: most.depth.max(rise.depth),
+            stiffness: most.stiffness.max(rise.stiffness),
+            give: most.give.min(width * rise.spring),
+        })
     }
 }

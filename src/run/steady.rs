@@ -1,11 +1,12 @@
 //! Motion over the bodies to the steady state.
 
 use crate::axis::Axis;
-use crate::contact::moving::shortfall::Approaching;
+use crate::contact::moving::shortfall::Shortfall;
 use crate::contact::{Frame, StepReport, Unsteady, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
+use crate::rheology::CreepSpectrum;
 
 /// Least number of the longest strides per contact length.
 const STEPS_PER_CONTACT_LENGTH: usize = 8;
@@ -27,8 +28,9 @@ pub struct SteadyMotion {
     velocity: f64;
     /// Load on the indenter.
     load: Load;
-    /// Greatest change of the pressure while the indenter travels by the length of the contact, in (0, 1) (default: 1e-3):
-    /// Σ |Δp| over Σ p. The noise of the solver is about a hundred times
+    /// Tolerance of the steady state, in (0, 1) (default: 1e-3): of the pressure's change while the indenter travels by the length of
+    /// the contact, Σ |Δp| over Σ p; of what slow creep has still to change of approach or lateral force, relative to its value; and
+    /// of what has left the grid. The noise of the solver is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
     tolerance: f64, with_tolerance;
     /// Greatest distance to travel \[m\] (default: `None`, ten times the length of the grid).
@@ -48,7 +50,9 @@ impl SteadyMotion {
 pub struct SteadyRun<'a> {
     contact: &'a mut ViscoelasticContact,
     motion: SteadyMotion,
-    approaching: Approaching,
+    creep: CreepSpectrum,
+    /// The cell of the grid by which the shortest stride goes.
+    cell: [isize; 2],
     /// Cells per step.
     stride: usize,
     /// Cells still to travel with this stride.
@@ -65,12 +69,19 @@ pub struct SteadyRun<'a> {
 }
 
 impl ViscoelasticContact {
-    /// Moves the indenter steadily over the bodies, by steps of whole cells, until the pressure no longer changes. Needs
+    /// Moves the indenter steadily over the bodies, by steps of whole cells, to the steady state. Needs
     /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
     /// Long strides come first, an eighth of the contact length each, until the bodies have passed the whole grid.
     /// Shorter strides follow, down to one cell, until the motion is steady. The early strides are cheap, and their
     /// error decays.
+    ///
+    /// The motion is steady where three things are below the [tolerance](SteadyMotion::tolerance). The pressure changes no more. Each
+    /// term of creep, of retardation time λ, is at its limit for each wave of the pressure. On bodies that are periodic along the
+    /// motion this takes a track of several v λ: a term is e^(−t/λ) short of its limit, and slow terms change slowly. On other
+    /// bodies, what lies behind the grid would change neither approach nor lateral force: the grid should reach several v λ behind
+    /// the contact, ten in line contact. Otherwise the run ends in [`StepError::NotSteady`], which names the term, and how far to
+    /// travel, or how long a grid to take. The contact is then where the run ended.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -84,14 +95,15 @@ impl ViscoelasticContact {
     ///     .kernel(InfluenceKernel::line(&grid, 1.0)?)
     ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;
-    /// let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(100.0)).with_tolerance(1.0e-4);
+    /// let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(100.0)).with_tolerance(1.0e-2);
     /// contact.toward_steady(motion)?.run()?;
     /// assert!(contact.lateral_force(&cylinder)[0] > 0.01 * contact.force());
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
-    /// If the grid is fixed to the bodies, the velocity zero or not finite, or the tolerance not in (0, 1).
+    /// If the grid is fixed to the bodies, the velocity zero or not finite, the tolerance not in (0, 1), or the bodies flow without end:
+    /// there is no steady state.
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<SteadyRun<'_>> {
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a motion to its steady state" });
@@ -101,24 +113,27 @@ impl ViscoelasticContact {
         let tolerance = motion.tolerance;
         within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
         let creep = self.scene.material.contact_spectrum()?.ok_or_else(|| self.scene.material.no_series("a motion"))?;
-        if creep.fluidity() > 0.0 {
-            let reason = Unsteady::Flows { fluidity: creep.fluidity() };
-            return Err(Error::Step(StepError::NotSteady { distance: 0.0, tolerance, reason }));
-        }
-        let mut stride = [0; 2];
-        stride[motion.axis.index()] = velocity.signum() as isize;
+        let flows = creep.fluidity();
+        within(
+            "fluidity of the contact",
+            flows,
+            flows == 0.0,
+            "0: under a body that flows approach or slope grow without end",
+        )?;
+        let mut cell = [0; 2];
+        cell[motion.axis.index()] = velocity.signum() as isize;
         let before = self.pressure().to_vec();
-        let (change, outstanding) = (f64::INFINITY, f64::INFINITY);
         Ok(SteadyRun {
             contact: self,
             motion,
-            approaching: Approaching { creep, stride },
+            creep,
+            cell,
             stride: 0,
             left: 0,
             travelled: 0,
             before,
-            change,
-            outstanding,
+            change: f64::INFINITY,
+            outstanding: f64::INFINITY,
             tried_to_touch: false,
             arrived: false,
         })
@@ -129,7 +144,8 @@ impl SteadyRun<'_> {
     /// Takes one step and returns its report, or `None` if the motion is steady.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step_over`], or if the load does not keep the bodies in touch, or the motion is not steady after ten times the length of the grid.
+    /// As [`ViscoelasticContact::step_over`], or if the load does not keep the bodies in touch, or
+    /// [`StepError::NotSteady`]. A run with a greater [distance](SteadyMotion::max_distance) goes on from there.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         if self.arrived {
             return Ok(None);
@@ -146,7 +162,7 @@ impl SteadyRun<'_> {
         let axis = self.motion.axis.index();
         // bodies that are apart touch in place, within the time for one cell
         let (stride, lasts) = if apart { (0, 1) } else { (self.stride, self.stride) };
-        let cells = self.approaching.stride.map(|cell| cell * stride as isize);
+        let cells = self.cell.map(|cell| cell * stride as isize);
         let dt = lasts as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
         let report = self.contact.step_over(cells, dt, load)?;
         self.travelled += stride;
@@ -173,7 +189,7 @@ impl SteadyRun<'_> {
         self.change
     }
 
-    /// What slow terms of creep still have to change of approach or lateral force, relative to its value; infinite before the first
+    /// What slow terms of creep have still to change of approach or lateral force, relative to its value; infinite before the first
     /// full length of the contact.
     pub fn outstanding(&self) -> f64 {
         self.outstanding
@@ -195,7 +211,6 @@ impl SteadyRun<'_> {
                 let pairs = self.contact.pressure().iter().zip(&self.before);
                 let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
                 self.change = change / self.contact.pressure().iter().sum::<f64>();
-                self.outstanding = self.approaching.outstanding(self.contact);
                 self.arrived = self.arrives()?;
                 if self.arrived {
                     return Ok(false);
@@ -209,23 +224,23 @@ impl SteadyRun<'_> {
     }
 
     /// Whether the motion is steady; an error if it cannot be within the distance that it may travel.
-    fn arrives(&self) -> Result<bool> {
+    fn arrives(&mut self) -> Result<bool> {
         let SteadyMotion { axis, tolerance, max_distance, .. } = self.motion;
-        let (distance, outstanding) = (self.distance(), self.outstanding);
+        let (change, distance) = (self.change, self.distance());
         let most = max_distance.unwrap_or(MAX_GRID_LENGTHS * self.contact.grid().lengths()[axis.index()]);
-        let reason = if outstanding <= tolerance && self.change <= tolerance {
-            self.approaching.lost(self.contact, tolerance)
+        let mut shortfall = Shortfall { contact: self.contact, creep: &self.creep, cell: self.cell };
+        let remaining = shortfall.outstanding();
+        self.outstanding = remaining;
+        let (time, reach) = shortfall.slowest(distance);
+        let farther = reach * (remaining / tolerance).max(1.0).ln();
+        let reason = if remaining <= tolerance && change <= tolerance {
+            shortfall.left_grid(tolerance)
+        } else if distance + farther <= most {
+            return Ok(false);
+        } else if remaining <= tolerance {
+            Some(Unsteady::Changing { change })
         } else {
-            let (time, reach) = self.approaching.slowest(self.contact, distance);
-            let farther = reach * (outstanding / tolerance).max(1.0).ln();
-            if distance + farther <= most {
-                return Ok(false);
-            }
-            Some(if outstanding > tolerance {
-                Unsteady::SlowTerm { time, remaining: outstanding, farther }
-            } else {
-                Unsteady::Changing { change: self.change }
-            })
+            Some(Unsteady::SlowTerm { time, remaining, farther })
         };
         reason.map_or(Ok(true), |reason| Err(Error::Step(StepError::NotSteady { distance, tolerance, reason })))
     }

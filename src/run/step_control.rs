@@ -1,10 +1,10 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
+use crate::contact::step::error_in_time::SHORTEST_TOUCH;
 use crate::contact::{Computation, Scene, State};
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{ExponentialRule, LastingError, TimeError};
+use crate::hereditary::{ExponentialRule, LastingError, Meeting, StepContext, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
 use crate::run::run_scale::RunScale;
@@ -213,11 +213,11 @@ impl StepControl {
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
         let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
-        let [depth, stiffness] =
-            self.scale.as_ref().map_or([0.0; 2], |scale| scale.coming_back(scene, load, [age, now]));
+        let meeting =
+            self.scale.as_ref().map_or(Meeting::default(), |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: [depth, stiffness.max(soon)],
+            meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
             lasting: self
                 .lasting
                 .as_ref()

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::contact::depth_of_power;
 use crate::error::{Result, positive, within};
 use crate::load::Tilt;
 use crate::states::curve::{ElasticState, ElasticStates, Rest};
@@ -66,8 +67,7 @@ impl ElasticStates {
     pub fn power(coefficient: f64, exponent: f64) -> Result<Arc<ElasticStates>> {
         positive("coefficient of the shape c r^n", coefficient)?;
         let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;
-        let factor = PI.sqrt() * libm::tgamma(0.5 * n + 1.0) / libm::tgamma(0.5 * n + 0.5);
-        let depth = factor * coefficient;
+        let depth = depth_of_power(n) * coefficient;
         ElasticStates::of_powers([(2.0 * n / (n + 1.0) * depth, n + 1.0), (depth, n), (2.0, 1.0), (PI, 2.0)])
     }
 
@@ -117,18 +117,24 @@ impl ElasticStates {
     /// # Errors
     /// If there are fewer than two states, a number is not finite and positive, or levels and approaches do not ascend.
     pub fn from_table(table: &[(f64, f64, f64, f64)]) -> Result<Arc<ElasticStates>> {
-        let states = table.iter().map(|&(level, approach, stiffness, area)| ElasticState {
+        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
+        ElasticStates::from_rows(table.iter().copied(), rest, [Tilt::Fixed(0.0); 2])
+    }
+
+    /// States of a body that does not turn, from rows of level, approach, stiffness and area.
+    pub(crate) fn from_rows(
+        rows: impl Iterator<Item = (f64, f64, f64, f64)>,
+        rest: Rest,
+        tilt: [Tilt; 2],
+    ) -> Result<Arc<ElasticStates>> {
+        let states = rows.map(|(level, approach, stiffness, area)| ElasticState {
             level,
             approach,
-            tilt: [0.0; 2],
             stiffness,
             load_stiffness: stiffness,
-            tilt_rate: [0.0; 2],
             area,
-            cells: 0,
-            patches: 0,
+            ..ElasticState::default()
         });
-        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
-        ElasticStates::new(states.collect(), rest, [Tilt::Fixed(0.0); 2]).validated().map(Arc::new)
+        ElasticStates::new(states.collect(), rest, tilt).validated().map(Arc::new)
     }
 }

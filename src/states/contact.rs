@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::contact::{Estimated, StepReport, Warnings, impl_contact};
+use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings, impl_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -36,7 +36,7 @@ pub(super) struct Scene {
     /// Solves the state of each step.
     elastic: Option<Arc<Mutex<ElasticContact>>>,
     pub(super) temperature: Option<TemperatureHistory>,
-    known_until: f64,
+    limits: Limits,
     pub(super) interpolant: Interpolant,
     /// Error by which groups of levels merge.
     merge_error: f64,
@@ -57,10 +57,9 @@ impl StatesContact {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
-        let (states, known_until, interpolant) =
-            (Arc::clone(states), material.known_until(), Interpolant::CorrectedLinear);
+        let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
         let (swept, merge_error) = (Arc::clone(&states), MERGE_ERROR);
-        let scene = Scene { swept, elastic: None, temperature: None, known_until, interpolant, merge_error };
+        let scene = Scene { swept, elastic: None, temperature: None, limits, interpolant, merge_error };
         let levels = Levels::new(ExponentialRule::new(&creep));
         Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
     }
@@ -139,12 +138,9 @@ impl StatesContact {
         non_negative("time step", dt)?;
         load.validate_in(false)?;
         let (length, reduced) = self.reduced(time, dt)?;
-        if !is_known(reduced, self.scene.known_until) {
-            return Err(Error::Step(StepError::BeyondMaterial {
-                time,
-                age: reduced,
-                known_until: self.scene.known_until,
-            }));
+        let known_until = self.scene.limits.known_until;
+        if !is_known(reduced, known_until) {
+            return Err(Error::Step(StepError::BeyondMaterial { time, age: reduced, known_until }));
         }
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
@@ -206,17 +202,24 @@ impl StatesContact {
 
     /// The report of a step of length `dt` to this state.
     pub(super) fn report(&self, dt: f64, load: Load) -> StepReport {
+        let limits = &self.scene.limits;
+        let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
+        if self.groups() > 0 {
+            let reduced = self.temperature().and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
+            warnings |= limits.warnings(self.reduced_time, reduced.unwrap_or(dt));
+        }
+        warnings.set(Warnings::MODULUS, limits.modulus.is_some());
         StepReport {
             time: self.time,
             force: self.force(),
             approach: self.approach(),
-            contact_cells: self.states.cells(self.level()),
+            contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
             tilt: self.tilt(),
             dt,
             time_error: (dt == 0.0).then_some(0.0),
             estimated: Estimated::under(&[load]),
-            warnings: Warnings::empty(),
-            max_slope: None,
+            warnings,
+            figures: Figures { modulus: limits.modulus, ..figures },
             iterations: 0,
             fallback_iterations: 0,
             convolutions: 0,

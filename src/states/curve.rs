@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use crate::Grid;
-use crate::contact::Builder;
+use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
 use crate::states::elastic::Solved;
@@ -17,7 +17,7 @@ const NEAREST: f64 = 1e-12;
 const LEAST_SLOPE: f64 = 0.01;
 
 /// An elastic contact of unit compliance at one level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ElasticState {
@@ -40,6 +40,10 @@ pub struct ElasticState {
     pub cells: usize,
     /// Number of contact patches.
     pub patches: usize,
+    /// What is outside the model in this contact: slopes, cells, edges, layers and waves.
+    pub warnings: Warnings,
+    /// The numbers of these warnings.
+    pub figures: Figures,
 }
 
 /// The elastic states of one contact, by ascending level, from a [`Sweep`](crate::states::Sweep).
@@ -193,7 +197,7 @@ impl ElasticStates {
     }
 
     /// Depth of the load point at a state.
-    fn depth_of(&self, state: &ElasticState) -> f64 {
+    pub(super) fn depth_of(&self, state: &ElasticState) -> f64 {
         approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach
     }
 
@@ -344,10 +348,10 @@ impl ElasticStates {
         self.power_law(level, |state| state.area, 2.0)
     }
 
-    /// Cells in contact at a level: the cells of the state there, or else of the state below it.
-    pub(super) fn cells(&self, level: f64) -> usize {
+    /// The state at a level, or else the state below it, or the first one; `None` without contact.
+    pub(super) fn state_at(&self, level: f64) -> Option<&ElasticState> {
         let above = self.states.partition_point(|state| state.level * (1.0 - NEAREST) <= level);
-        if level > 0.0 { self.states[above.saturating_sub(1)].cells } else { 0 }
+        (level > 0.0).then(|| &self.states[above.saturating_sub(1)])
     }
 
     /// Stiffness over the contact modulus at a level \[m\], see [`ElasticState::stiffness`].

@@ -1,7 +1,7 @@
 //! The elastic contact of unit compliance that states are solved with.
 
 use crate::Grid;
-use crate::contact::{Builder, ViscoelasticContact};
+use crate::contact::{Builder, Figures, ViscoelasticContact, Warnings};
 use crate::error::{Result, StatesError};
 use crate::load::{Load, Tilt};
 use crate::states::curve::{ElasticState, ElasticStates};
@@ -33,7 +33,8 @@ impl ElasticContact {
 
     /// The state under a load.
     pub(super) fn solve(&mut self, load: Load) -> Result<Solved> {
-        let contact = self.under(load)?;
+        let report = self.0.step(0.0, load)?;
+        let contact = &self.0;
         let level = if let Load::Force { normal, .. } = load { normal } else { contact.force() };
         let free = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None });
         let (stiffness, [compliance, tilt_rate @ ..]) = contact.stiffnesses(free)?;
@@ -47,6 +48,9 @@ impl ElasticContact {
             area: contact.contact_area(),
             cells: contact.contact_cells(),
             patches: contact.patches()?.all.len(),
+            // those of its own modulus and solver are none of the contacts that are made of it
+            warnings: report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING,
+            figures: Figures { modulus: None, ..report.figures },
         };
         Ok(Solved { state, pressure: Pressed::new(contact.pressure()) })
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::ascending::Times;
 use crate::error::{Result, positive};
+use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::rheology::{Material, TemperatureHistory};
 use crate::run::Stepping;
@@ -59,7 +60,7 @@ impl Reach {
     /// If `until` is not finite and positive, a load of the history is invalid, the material has no exponential series
     /// ([`Material::fitted`]) or is not known until then, or the load jumps on a body without elastic response.
     pub fn of(material: &Material, history: &dyn LoadHistory, until: f64) -> Result<Reach> {
-        Reach::at_temperature(material, None, history, until)
+        Course { material, temperature: None, history, until }.reach()
     }
 
     /// As [`Reach::of`], at a temperature that changes.
@@ -68,45 +69,85 @@ impl Reach {
     /// As [`Reach::of`].
     pub fn at_temperature(
         material: &Material,
-        temperature: Option<&TemperatureHistory>,
+        temperature: &TemperatureHistory,
         history: &dyn LoadHistory,
         until: f64,
     ) -> Result<Reach> {
-        positive("end of the run", until)?;
-        let all = sampled(history, until, PARTS)?;
-        if all.iter().all(is_force) {
-            let contact = on_any_shape(material, temperature, all[0].tilt())?;
-            return Ok(Reach::Level(MARGIN * greatest_level(contact, history, until)?));
-        }
-        let compliance = softest_compliance(material, temperature, until)?;
-        Ok(Reach::Loads(greatest(&all, compliance).collect()))
+        Course { material, temperature: Some(temperature), history, until }.reach()
     }
 }
 
-/// Whether the force is given.
-pub(crate) fn is_force(load: &Load) -> bool {
-    matches!(load, Load::Force { .. })
+/// A material along a load history.
+#[derive(Clone, Copy)]
+pub(crate) struct Course<'a> {
+    pub(crate) material: &'a Material,
+    pub(crate) temperature: Option<&'a TemperatureHistory>,
+    pub(crate) history: &'a dyn LoadHistory,
+    pub(crate) until: f64,
 }
 
-/// Loads at the ends of so many even parts of a run, and at the corners and jumps of its history.
-pub(crate) fn sampled(history: &dyn LoadHistory, until: f64, parts: u32) -> Result<Vec<Load>> {
-    let mut all = Vec::new();
-    for k in 0..=parts {
-        let time = until * f64::from(k) / f64::from(parts);
-        all.push(history.at(time).validated_at(time, false)?);
-    }
-    let mut corner = 0.0;
-    for _ in 0..MAX_CORNERS {
-        match history.next_breakpoint(corner) {
-            Some(next) if next > corner && next <= until => corner = next,
-            _ => break,
+impl Course<'_> {
+    fn reach(&self) -> Result<Reach> {
+        positive("end of the run", self.until)?;
+        let all = self.sampled(PARTS)?;
+        if all.iter().all(|load| matches!(load, Load::Force { .. })) {
+            return Ok(Reach::Level(MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear)?));
         }
-        all.extend([
-            history.before(corner).validated_at(corner, false)?,
-            history.at(corner).validated_at(corner, false)?,
-        ]);
+        Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
-    Ok(all)
+
+    /// Loads at the ends of so many even parts of the run, and at the corners and jumps of its history.
+    pub(crate) fn sampled(&self, parts: u32) -> Result<Vec<Load>> {
+        let Course { history, until, .. } = *self;
+        let mut all = Vec::new();
+        for k in 0..=parts {
+            let time = until * f64::from(k) / f64::from(parts);
+            all.push(history.at(time).validated_at(time, false)?);
+        }
+        let mut corner = 0.0;
+        for _ in 0..MAX_CORNERS {
+            match history.next_breakpoint(corner) {
+                Some(next) if next > corner && next <= until => corner = next,
+                _ => break,
+            }
+            for load in [history.before(corner), history.at(corner)] {
+                all.push(load.validated_at(corner, false)?);
+            }
+        }
+        Ok(all)
+    }
+
+    /// The compliance at the end of the run, at its start where it is infinite then.
+    pub(crate) fn softest_compliance(&self) -> Result<f64> {
+        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
+        let softest = self.material.contact_compliance(creeping.min(self.material.known_until()));
+        Ok(if softest.is_finite() { softest } else { self.material.contact_compliance(0.0) })
+    }
+
+    /// An undisturbed contact on these states.
+    pub(crate) fn contact(&self, states: &Arc<ElasticStates>, interpolant: Interpolant) -> Result<StatesContact> {
+        let contact = StatesContact::new(states, self.material)?.with_interpolant(interpolant);
+        Ok(match self.temperature {
+            Some(temperature) => contact.with_temperature(temperature.clone()),
+            None => contact,
+        })
+    }
+
+    /// The greatest level of a run under given forces, which does not depend on the shape.
+    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant) -> Result<f64> {
+        let mut states = ElasticStates::sphere(1.0)?;
+        Arc::make_mut(&mut states).tilt = tilt;
+        let mut contact = self.contact(&states, interpolant)?;
+        let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
+        let mut run = run.sample_at(Times::every(self.until / f64::from(LEVELS)))?;
+        let mut greatest = 0.0_f64;
+        while run.next_step()?.is_some() {
+            for sample in run.samples() {
+                greatest = greatest.max(sample?.contact().level());
+            }
+        }
+        Ok(greatest)
+    }
 }
 
 /// The greatest force, approach and drive of a spring among some loads, as loads of an elastic body of unit compliance.
@@ -128,43 +169,4 @@ pub(crate) fn as_elastic(load: Load, compliance: f64) -> Load {
         Load::Spring { stiffness, drive, tilt } => Load::Spring { stiffness: stiffness * compliance, drive, tilt },
         approach => approach,
     }
-}
-
-/// The compliance at the end of a run, at its start where it is infinite then.
-pub(crate) fn softest_compliance(
-    material: &Material,
-    temperature: Option<&TemperatureHistory>,
-    until: f64,
-) -> Result<f64> {
-    let creeping = temperature.map_or(Ok(until), |history| history.reduced_time(0.0, until))?;
-    let softest = material.contact_compliance(creeping.min(material.known_until()));
-    Ok(if softest.is_finite() { softest } else { material.contact_compliance(0.0) })
-}
-
-/// A contact whose levels under given forces are those of any shape.
-pub(crate) fn on_any_shape(
-    material: &Material,
-    temperature: Option<&TemperatureHistory>,
-    tilt: [Tilt; 2],
-) -> Result<StatesContact> {
-    let mut states = ElasticStates::sphere(1.0)?;
-    Arc::make_mut(&mut states).tilt = tilt;
-    let contact = StatesContact::new(&states, material)?;
-    Ok(match temperature {
-        Some(temperature) => contact.with_temperature(temperature.clone()),
-        None => contact,
-    })
-}
-
-/// The greatest level of a contact under given forces.
-pub(crate) fn greatest_level(mut contact: StatesContact, history: &dyn LoadHistory, until: f64) -> Result<f64> {
-    let run = contact.follow(history, Stepping::adaptive(TOLERANCE), until);
-    let mut run = run.sample_at(Times::every(until / f64::from(LEVELS)))?;
-    let mut greatest = 0.0_f64;
-    while run.next_step()?.is_some() {
-        for sample in run.samples() {
-            greatest = greatest.max(sample?.contact().level());
-        }
-    }
-    Ok(greatest)
 }

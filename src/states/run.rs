@@ -73,6 +73,10 @@ impl Driven for StatesContact {
         StatesContact::temperature(self)
     }
 
+    fn untouched(&self) -> Option<f64> {
+        (self.groups() == 0).then(|| self.states().approach(0.0))
+    }
+
     fn advance(&mut self, control: &mut StatesControl, course: &Course<'_>) -> Result<StepReport> {
         if course.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Error::Cancelled { what: "a step" });

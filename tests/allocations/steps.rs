@@ -180,7 +180,7 @@ pub fn steps_allocate_nothing() {
         });
     }
 
-    // nor do steps at a temperature that changes, unless it changes the rate of creep by decades within a step
+    // nor do steps at a temperature that changes, unless it changes the rate of creep by many decades within a step
     let law = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
     let courses = [
         TemperatureHistory::table(law, &[(0.0, 373.15), (30.0, 393.15), (40.0, 383.15)]),

@@ -49,6 +49,14 @@ fn fitted(rheology: impl Rheology + 'static, until: f64) -> Material {
     fit(1e-4).or_else(|_| fit(3e-4)).unwrap()
 }
 
+/// A body whose times span twenty decades, and a duration anywhere among them.
+pub fn body_of_twenty_decades(draws: &mut Draws) -> Body {
+    let terms: Vec<(f64, f64)> = (-10..=10).map(|k| (draws.power_of_ten(4.0, 5.0), 10f64.powi(k))).collect();
+    let equilibrium = if draws.chance(0.5) { 0.0 } else { 1.0e3 };
+    let material = Material::incompressible(GeneralizedMaxwell::new(equilibrium, &terms).unwrap());
+    Body { name: "twenty decades", material, until: draws.power_of_ten(-9.0, 9.0) }
+}
+
 pub fn random_body(draws: &mut Draws) -> Body {
     let (g, tau) = (draws.power_of_ten(5.0, 7.0), draws.power_of_ten(-3.0, 3.0));
     // how often J(0) is contained in J in the end, and in the part that creeps

@@ -15,11 +15,17 @@ pub enum Control {
     EccentricForce(f64, [f64; 2]),
     /// From the first touch \[m\], of the greatest depth \[m\].
     Approach { touch: f64, depth: f64 },
-    /// The same, of the greatest drive of a spring \[m\], and its stiffness \[N/m\].
-    Spring { touch: f64, depth: f64, stiffness: f64, is_stiff: bool },
+    /// The same, of the greatest drive of a spring \[m\], its stiffness \[N/m\], and how much stiffer it is than the bodies are in the end.
+    Spring { touch: f64, depth: f64, stiffness: f64, over: f64 },
 }
 
 impl Control {
+    /// A spring 1/20 to 20 times as stiff as the bodies are in the end, which presses them by about `force` to `depth`.
+    pub fn by_spring(draws: &mut Draws, touch: f64, depth: f64, force: f64) -> Control {
+        let over = draws.scale(0.05, 20.0);
+        Control::Spring { touch, depth: depth * (1.0 + 1.0 / over), stiffness: over * force / depth, over }
+    }
+
     pub fn load(&self, part: f64) -> Load {
         match *self {
             Control::Force(greatest) => Load::force(greatest * part.max(0.0)),
@@ -31,11 +37,6 @@ impl Control {
 
     pub fn is_approach(&self) -> bool {
         matches!(self, Control::Approach { .. } | Control::Spring { .. })
-    }
-
-    /// Whether the force is the answer, not the approach.
-    pub fn gives_the_approach(&self) -> bool {
-        matches!(self, Control::Approach { .. } | Control::Spring { is_stiff: true, .. })
     }
 
     fn table(&self, rows: &[(f64, f64)]) -> Box<dyn LoadHistory> {
@@ -158,6 +159,14 @@ pub fn random_history(draws: &mut Draws, control: Control, until: f64, jumps: bo
             tabled("late ramp".into(), rows)
         }
     }
+}
+
+/// Taps: arcs of a sine of `until` seconds, between which the bodies are apart.
+pub fn taps(draws: &mut Draws, control: Control, until: f64) -> RandomHistory {
+    let (low, cycles) = (-draws.between(0.1, 1.0), draws.power_of_ten(0.0, 0.8));
+    let part = move |t: f64| low + (1.0 - low) * 0.5 * (1.0 - (TAU * cycles * t / until).cos());
+    let history = control.function(part, &[]);
+    RandomHistory { name: format!("{cycles:.1} taps from {low:.2}"), history, corners: Vec::new() }
 }
 
 /// The same history, but never below a hundredth of its greatest load.

@@ -8,8 +8,8 @@ use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
 use super::draws::Draws;
-use super::random_bodies::{Body, random_body};
-use super::random_histories::{Control, RandomHistory, random_history};
+use super::random_bodies::{Body, body_of_twenty_decades, random_body};
+use super::random_histories::{Control, RandomHistory, random_history, taps};
 use super::random_returns::{returning_body, returning_history};
 
 pub struct RandomScene {
@@ -73,14 +73,15 @@ impl RandomScene {
         RandomScene::driven(seed, number, false)
     }
 
-    /// The scene of this number in the series of this seed, driven by a spring.
+    /// A scene of this number in the series of this seed, driven by a spring, which taps in some.
     pub fn sprung(seed: u64, number: u64) -> RandomScene {
         RandomScene::driven(seed, number, true)
     }
 
     fn driven(seed: u64, number: u64, by_spring: bool) -> RandomScene {
         let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
-        let body = random_body(&mut draws);
+        let is_wide = by_spring && draws.chance(0.15);
+        let body = if is_wide { body_of_twenty_decades(&mut draws) } else { random_body(&mut draws) };
         let grid = random_grid(&mut draws);
         let reach = random_reach(&mut draws);
         let (shape, geometry, depth) = random_shape(&mut draws, reach);
@@ -88,15 +89,7 @@ impl RandomScene {
         let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
         let (touch, force) = scene.answers(depth);
         scene.control = match draws.below(10) {
-            _ if by_spring => {
-                let over = draws.power_of_ten(-2.0, 2.0);
-                Control::Spring {
-                    touch,
-                    depth: depth * (1.0 + 1.0 / over),
-                    stiffness: over * force / depth,
-                    is_stiff: over > 1.0,
-                }
-            }
+            _ if by_spring => Control::by_spring(&mut draws, touch, depth, force),
             0..4 => Control::Approach { touch, depth },
             4 => {
                 let at = [draws.between(-0.15, 0.15) * reach, draws.between(-0.15, 0.15) * reach];
@@ -104,8 +97,11 @@ impl RandomScene {
             }
             _ => Control::Force(force),
         };
-        let until = scene.body.until;
-        scene.history = random_history(&mut draws, scene.control, until, scene.body.is_elastic_at_once());
+        let (until, tapping) = (scene.body.until, by_spring && draws.chance(0.15));
+        scene.history = match tapping {
+            true => taps(&mut draws, scene.control, until),
+            false => random_history(&mut draws, scene.control, until, scene.body.is_elastic_at_once()),
+        };
         let stops = (0..1 + draws.below(10)).map(|k| {
             let part = if k % 2 == 0 { draws.between(0.0, 1.0) } else { draws.power_of_ten(-4.0, 0.0) };
             part * until
@@ -117,6 +113,15 @@ impl RandomScene {
 
     /// A scene whose load goes back and returns, of this number in the series of this seed.
     pub fn returning(seed: u64, number: u64) -> RandomScene {
+        RandomScene::back_and_again(seed, number, false)
+    }
+
+    /// The same, driven by a spring.
+    pub fn returning_by_spring(seed: u64, number: u64) -> RandomScene {
+        RandomScene::back_and_again(seed, number, true)
+    }
+
+    fn back_and_again(seed: u64, number: u64, by_spring: bool) -> RandomScene {
         let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(1 << 40));
         let body = returning_body(&mut draws);
         let grid = random_grid(&mut draws);
@@ -133,7 +138,11 @@ impl RandomScene {
         };
         let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
         let (touch, force) = scene.answers(depth);
-        scene.control = if draws.chance(0.5) { Control::Approach { touch, depth } } else { Control::Force(force) };
+        scene.control = match by_spring {
+            true => Control::by_spring(&mut draws, touch, depth, force),
+            false if draws.chance(0.5) => Control::Approach { touch, depth },
+            false => Control::Force(force),
+        };
         let until = scene.body.until;
         scene.history = returning_history(&mut draws, scene.control, until);
         scene.stops = (0..8).map(|_| until * draws.between(0.0, 1.0)).chain([until]).collect();
@@ -169,8 +178,7 @@ impl RandomScene {
             Control::Force(_) => "force",
             Control::EccentricForce(..) => "eccentric force",
             Control::Approach { .. } => "approach",
-            Control::Spring { is_stiff: false, .. } => "soft spring",
-            Control::Spring { .. } => "stiff spring",
+            Control::Spring { over, .. } => &format!("spring of {over:.2}"),
         };
         let (body, history) = (&self.body, &self.history);
         self.name = format!(

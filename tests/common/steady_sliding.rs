@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use super::gauss::points;
 use super::rolling::eliminate;
+use viscocontact::rheology::CreepSpectrum;
 
 /// What lies below, on cells along the motion and across it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,13 +21,16 @@ pub enum Below {
     Line(f64),
 }
 
-/// How the response along the motion is found from its values at the centers of cells.
+/// How time is resolved.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Along {
+pub enum Time {
     /// Exactly.
     Exact,
-    /// As if V were linear from cell to cell.
-    Linear,
+    /// As by steps over one cell in which u is linear in time (`TimeRule::ExponentialLinear`).
+    Steps,
+    /// As by steps in which u is linear, and on all steps but the last quadratic, through the node after it too
+    /// (`TimeRule::Exponential`); of periodic bodies only.
+    Corrected,
 }
 
 /// The indenter moves along the first axis, towards greater indices.
@@ -57,11 +61,11 @@ pub struct SteadyState {
 
 impl SteadySliding {
     /// The steady state; `None` if the active set finds none.
-    pub fn solve(&self, along: Along) -> Option<SteadyState> {
+    pub fn solve(&self, time: Time) -> Option<SteadyState> {
         let [m, n] = self.cells;
         let table = match self.below {
-            Below::Periodic => self.of_waves(along),
-            _ => self.of_recursion(along),
+            Below::Periodic => self.of_waves(time),
+            _ => self.of_recursion(time),
         };
         // row after row of the distance across the motion, 2 m − 1 distances along it
         let influence = |k: usize, l: usize| {
@@ -116,40 +120,78 @@ impl SteadySliding {
         None
     }
 
-    /// For a term of length `l`: what is left over a cell, and the weights of the near and the far center where V is linear.
-    fn linear(&self, l: f64) -> [f64; 3] {
-        let z = self.spacing[0] / l;
-        let (decay, mean) = ((-z).exp(), -(-z).exp_m1() / z);
-        [decay, 1.0 - mean, mean - decay]
+    /// The response of steps over one cell to a pressure: at once, and a part of it that decays, for each term: its value one cell
+    /// behind, and 1 − ρ of the factor ρ of a cell.
+    ///
+    /// v = E∞ u + Σ E_i w_i (x − 1)/(x − a_i) u for a shift by x a cell, a_i = e^(−z_i), w_i = (1 − a_i)/z_i. The poles ρ of u/v lie
+    /// between the a_i, the last below 1.
+    fn steps(&self) -> (f64, Vec<(f64, f64)>) {
+        let relaxation = CreepSpectrum::new(self.glassy, 0.0, &self.terms).unwrap().relaxation();
+        // E_i w_i and 1 − a_i, slow terms first
+        let branch = |&(e, l): &(f64, f64)| {
+            let past = -(-self.spacing[0] / l).exp_m1();
+            (e * past * l / self.spacing[0], past)
+        };
+        let branches: Vec<(f64, f64)> = relaxation.terms().iter().rev().map(branch).collect();
+        let stiffness =
+            |y: f64| relaxation.equilibrium() + branches.iter().map(|(e, past)| -e * y / (past - y)).sum::<f64>();
+        let pole = |k: usize| {
+            // D falls from E∞ at y = 0, or +∞, to −∞ at the pole
+            let (mut low, mut high) = (if k == 0 { 1e-9 * branches[0].1 } else { branches[k - 1].1 }, branches[k].1);
+            for _ in 0..200 {
+                let middle = (low * high).sqrt();
+                if stiffness(middle) > 0.0 { low = middle } else { high = middle }
+            }
+            let y = (low * high).sqrt();
+            let slope: f64 = branches.iter().map(|(e, past)| e * past / (past - y).powi(2)).sum();
+            (1.0 / slope, y)
+        };
+        let at_once = 1.0 / (relaxation.equilibrium() + branches.iter().map(|(e, _)| e).sum::<f64>());
+        (at_once, (0..branches.len()).map(pole).collect())
     }
 
     /// Coefficients of periodic bodies: 2/q for each wave of the grid, times its creep.
-    fn of_waves(&self, along: Along) -> Vec<Vec<f64>> {
+    fn of_waves(&self, time: Time) -> Vec<Vec<f64>> {
         let [m, n] = self.cells;
         let wave = |k: usize, count: usize, axis: usize| {
             let k = if 2 * k > count { k as f64 - count as f64 } else { k as f64 };
             TAU * k / (count as f64 * self.spacing[axis])
         };
+        let (at_once, decaying) = self.steps();
+        let relaxation = CreepSpectrum::new(self.glassy, 0.0, &self.terms).unwrap().relaxation();
         // the indenter comes from the side of small indices: what is behind it was under it before
-        let creep = |q: f64| {
-            self.terms.iter().fold([self.glassy, 0.0], |[real, imaginary], &(c, l)| {
-                let (cos, sin) = ((q * self.spacing[0]).cos(), (q * self.spacing[0]).sin());
-                // (near + far ζ)/(1 − decay ζ), ζ the shift by a cell ahead
-                let ([up, up_i], [down, down_i]) = match along {
-                    Along::Exact => ([1.0, 0.0], [1.0, -q * l]),
-                    Along::Linear => {
-                        let [decay, near, far] = self.linear(l);
-                        ([near + far * cos, far * sin], [1.0 - decay * cos, -decay * sin])
-                    }
+        let creep = |q: f64| match time {
+            Time::Exact => self.terms.iter().fold(Complex([self.glassy, 0.0]), |sum, &(c, l)| {
+                sum.plus(c, Complex([1.0, 0.0]).over(Complex([1.0, -q * l])))
+            }),
+            Time::Steps => decaying.iter().fold(Complex([at_once, 0.0]), |sum, &(next, y)| {
+                // 1/(x − ρ), x the shift by a cell back
+                let Complex([cos, sin]) = Complex::from_angle(-q * self.spacing[0]);
+                sum.plus(next, Complex([1.0, 0.0]).over(Complex([cos - 1.0 + y, sin])))
+            }),
+            // v = E∞ u + Σ E_i [w_i (1 − ζ) + a_i k_i (1 − ζ)²]/(1 − a_i ζ) u, ζ the shift by a cell ahead
+            Time::Corrected => {
+                let ahead = Complex::from_angle(q * self.spacing[0]);
+                let one = Complex([1.0, 0.0]);
+                let change = one.plus(-1.0, ahead);
+                let stiffness = |sum: Complex, &(e, l): &(f64, f64)| {
+                    let z = self.spacing[0] / l;
+                    let (a, w) = ((-z).exp(), -(-z).exp_m1() / z);
+                    // ∫ e^(−σ/τ) (Δ − 2 σ) dσ/2Δ², in series where it cancels
+                    let series = z / 12.0 - z * z / 24.0 + z.powi(3) / 80.0;
+                    let k = if z < 1e-2 { series } else { 0.5 * w - (1.0 - a * (1.0 + z)) / (z * z) };
+                    let Complex([real, imaginary]) = change;
+                    let bend = Complex([real * real - imaginary * imaginary, 2.0 * real * imaginary]);
+                    let both = Complex([0.0; 2]).plus(w, change).plus(a * k, bend);
+                    sum.plus(e, both.over(one.plus(-a, ahead)))
                 };
-                let square = down * down + down_i * down_i;
-                [real + c * (up * down + up_i * down_i) / square, imaginary + c * (up_i * down - up * down_i) / square]
-            })
+                one.over(relaxation.terms().iter().fold(Complex([relaxation.equilibrium(), 0.0]), stiffness))
+            }
         };
         let symbols: Vec<Vec<[f64; 2]>> = (0..m)
             .map(|k| {
                 let q1 = wave(k, m, 0);
-                let [real, imaginary] = creep(q1);
+                let Complex([real, imaginary]) = creep(q1);
                 // the shortest wave along the motion is its own mirror image
                 let imaginary = if 2 * k == m { 0.0 } else { imaginary };
                 let each = |j: usize| {
@@ -175,32 +217,52 @@ impl SteadySliding {
         (0..n).map(|j| (1 - m..m).map(|i| coefficient(i, j)).collect()).collect()
     }
 
-    /// Coefficients of bodies that end: f(x) = ∫ e^(−s/l) K(x + s) ds/l = I(x) + e^(−d/l) f(x + d).
-    fn of_recursion(&self, along: Along) -> Vec<Vec<f64>> {
+    /// Coefficients of bodies that end: f(x) = ∫ e^(−s/l) K(x + s) ds/l = I(x) + e^(−d/l) f(x + d), and the like of sums for steps.
+    fn of_recursion(&self, time: Time) -> Vec<Vec<f64>> {
         let ([m, n], [d, _]) = (self.cells, self.spacing);
         let last = m as isize - 1;
+        let far = (last + 1) as f64 * d;
         let of_row = |j: usize| {
             let kernel = |x: f64| self.influence(x, j);
             let at = |i: isize| kernel(i as f64 * d);
-            let mut row: Vec<f64> = (-last..=last).map(|i| self.glassy * at(i)).collect();
-            for &(c, l) in &self.terms {
-                let weighted = |x: f64, s: f64| (-s / l).exp() / l * kernel(x + s);
-                let far = (last + 1) as f64 * d;
-                let (mut sum, mut from, mut width) = (0.0, 0.0, (0.5 * far).min(l));
+            // ∫ e^(−s/l) K(far + s) ds from `start`
+            let tail = |l: f64, start: f64| {
+                let (mut sum, mut from, mut width) = (0.0, start, (0.5 * far).min(l));
                 while from < 45.0 * l {
-                    sum += points(from, from + width, 1).map(|(s, w)| w * weighted(far, s)).sum::<f64>();
+                    sum +=
+                        points(from, from + width, 1).map(|(s, w)| w * (-s / l).exp() * kernel(far + s)).sum::<f64>();
                     (from, width) = (from + width, (2.0 * width).min(2.0 * l));
                 }
-                let [decay, near, next] = self.linear(l);
+                sum
+            };
+            let mut row = vec![0.0; (2 * last + 1) as usize];
+            let mut add = |weight: f64, mut sum: f64, decay: f64, own: &dyn Fn(isize) -> f64| {
                 for i in (-last..=last).rev() {
-                    let x = i as f64 * d;
-                    // the kernel has its kinks at the sides of its cell, half way
-                    let own = match along {
-                        Along::Exact => points(0.0, d, 4).map(|(s, w)| w * weighted(x, s)).sum::<f64>(),
-                        Along::Linear => near * at(i) + next * at(i + 1),
-                    };
-                    sum = own + decay * sum;
-                    row[(last + i) as usize] += c * sum;
+                    sum = own(i) + decay * sum;
+                    row[(last + i) as usize] += weight * sum;
+                }
+            };
+            match time {
+                Time::Exact => {
+                    add(self.glassy, 0.0, 0.0, &at);
+                    for &(c, l) in &self.terms {
+                        // the kernel has its kinks at the sides of its cell, half way
+                        let own = |i: isize| {
+                            let weighted = |s: f64| (-s / l).exp() / l * kernel(i as f64 * d + s);
+                            points(0.0, d, 4).map(|(s, w)| w * weighted(s)).sum::<f64>()
+                        };
+                        add(c, tail(l, 0.0) / l, (-d / l).exp(), &own);
+                    }
+                }
+                Time::Corrected => panic!("of periodic bodies only"),
+                Time::Steps => {
+                    let (at_once, decaying) = self.steps();
+                    add(at_once, 0.0, 0.0, &at);
+                    for (next, y) in decaying {
+                        // Σ ρ^(k − 1) K(far + k d) from k = 1, by the integral from 1/2 on
+                        let l = -d / (-y).ln_1p();
+                        add(next, tail(l, 0.5 * d) / d / (1.0 - y), 1.0 - y, &|i| at(i + 1));
+                    }
                 }
             }
             row
@@ -223,4 +285,54 @@ impl SteadySliding {
         }
         (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b)) / PI
     }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Complex([f64; 2]);
+
+impl Complex {
+    fn from_angle(angle: f64) -> Complex {
+        Complex([angle.cos(), angle.sin()])
+    }
+
+    /// This and a multiple of another.
+    fn plus(self, factor: f64, other: Complex) -> Complex {
+        Complex([self.0[0] + factor * other.0[0], self.0[1] + factor * other.0[1]])
+    }
+
+    fn over(self, Complex([a, b]): Complex) -> Complex {
+        let (Complex([x, y]), square) = (self, a * a + b * b);
+        Complex([(x * a + y * b) / square, (y * a - x * b) / square])
+    }
+}
+
+/// Lateral over normal force of a cylinder that rolls over C(t) = C0 + C1 (1 − e^(−t/λ)) with v λ = `reach` under a force per length
+/// (S. C. Hunter, J. Appl. Mech. 28, 1961). Where C∞ p − l C0 p′ = q, q is Hertz's problem with a tilt, in [c − w, c + w].
+pub fn hunter(radius: f64, force: f64, [c0, c1]: [f64; 2], reach: f64) -> f64 {
+    let relaxed = c0 + c1;
+    // e^(∓z) times the modified Bessel functions of orders 0 and 1, by their integrals
+    let of_first_kind = |z: f64| {
+        let integrand = |t: f64| (z * (t.cos() - 1.0)).exp();
+        let sum = |n: f64| points(0.0, PI, 200).map(|(t, w)| w * integrand(t) * (n * t).cos()).sum::<f64>();
+        sum(1.0) / sum(0.0)
+    };
+    let of_second_kind = |z: f64| {
+        let integrand = |t: f64| (z * (1.0 - t.cosh())).exp();
+        let most = (1.0 + 700.0 / z).acosh();
+        let sum = |n: f64| points(0.0, most, 200).map(|(t, w)| w * integrand(t) * (n * t).cosh()).sum::<f64>();
+        sum(1.0) / sum(0.0)
+    };
+    let parts = |w: f64| {
+        let (k, i) = (of_second_kind(w / reach), of_first_kind(relaxed * w / (reach * c0)));
+        let c = reach * c1 / relaxed * i / (i + k);
+        (c, PI / (4.0 * radius * relaxed) * (w * w + 2.0 * c * w * k))
+    };
+    let (mut low, mut high) = (0.0, (4.0 * radius * relaxed * force / PI).sqrt());
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if parts(middle).1 < force { low = middle } else { high = middle }
+    }
+    let (w, c) = (low, parts(low).0);
+    let moment = ((reach - c) * PI * w * w / (4.0 * radius) - reach * c0 * force) / relaxed;
+    (c + moment / force) / radius
 }

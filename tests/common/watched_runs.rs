@@ -5,13 +5,15 @@ use std::fmt;
 use viscocontact::Error;
 use viscocontact::prelude::*;
 
+use super::random_histories::Control;
 use super::random_scenes::RandomScene;
 
 /// States of a run at the times to look at, and what it took.
 #[derive(Debug, Clone, Default)]
 pub struct Watched {
     pub times: Vec<f64>,
-    /// Force where the approach is given, otherwise the approach.
+    /// Force where the approach is given, otherwise the approach. The greatest approach by a spring is at most the greatest compression of
+    /// the spring, so that errors relative to it are those of approach or force, whichever is greater.
     pub answer: Vec<f64>,
     pub pressure: Vec<Vec<f64>>,
     /// Greatest answer and pressure of the whole run.
@@ -83,7 +85,8 @@ pub fn watch(
     most_steps: u64,
 ) -> Result<Watched, Stopped> {
     let moments = scene.moments();
-    let by_approach = scene.control.gives_the_approach();
+    let by_approach = matches!(scene.control, Control::Approach { .. });
+    let (mut deepest, mut compressed) = (0.0_f64, 0.0_f64);
     let mut run = contact.follow(history, stepping, scene.body.until).stop_at(stops).unwrap();
     let mut seen = Watched::default();
     loop {
@@ -96,7 +99,15 @@ pub fn watch(
         seen.equivalents += report.convolution_equivalents();
         let answer = if by_approach { report.force } else { report.approach };
         let pressure = run.contact().pressure().iter().copied().fold(0.0, f64::max);
-        seen.greatest = [seen.greatest[0].max(answer.abs()), seen.greatest[1].max(pressure)];
+        let greatest = match scene.control {
+            Control::Spring { touch, stiffness, .. } => {
+                deepest = deepest.max(answer - touch);
+                compressed = compressed.max(report.force / stiffness);
+                deepest.min(compressed)
+            }
+            _ => seen.greatest[0].max(answer.abs()),
+        };
+        seen.greatest = [greatest, seen.greatest[1].max(pressure)];
         if report.time > 0.0 && moments.binary_search_by(|time| time.total_cmp(&report.time)).is_ok() {
             seen.times.push(report.time);
             seen.answer.push(answer);

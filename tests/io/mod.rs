@@ -14,6 +14,7 @@ mod mistakes;
 mod output;
 #[cfg(feature = "npy")]
 mod output_of_ranks;
+mod outside;
 mod paper;
 #[cfg(feature = "plot")]
 mod plot;

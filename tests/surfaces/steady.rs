@@ -1,247 +1,371 @@
-//! Runs towards a steady state: those that arrive are there, and those that do not say why. `STEADY_SCENES` (24) random sliders and
+//! Runs towards a steady state: those that arrive are there, and those that do not say why. `STEADY_SCENES` (40) random sliders and
 //! rollers, `STEADY_SEED` (1).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
-use crate::common::steady_sliding::{Along, Below, SteadySliding, SteadyState};
+use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time, hunter};
 use crate::common::{Draws, from_environment};
-use viscocontact::contact::Unsteady;
+use viscocontact::contact::{Edge, Unsteady};
 use viscocontact::prelude::*;
 
 /// Glassy compliance of the contact \[1/Pa\].
 const GLASSY: f64 = 0.25e-6;
 
-/// A slider or roller, in units of its cells along the motion. It moves by 1 m in 1 s.
+/// What a run lacks of its steady state.
+#[derive(Debug, PartialEq)]
+enum Lacks {
+    Nothing,
+    /// Under bodies that flow there is no steady state.
+    AnyLimit,
+    Told(Unsteady),
+}
+
+/// A slider or roller on cells with sides of 1 m. It moves by one cell in 1 s.
+#[derive(Debug, Clone)]
 struct Scene {
-    about: String,
     below: Below,
-    grid: Grid,
+    /// Whether u is linear in time within all steps.
+    linear: bool,
     axis: Axis,
     velocity: f64,
-    shape: Box<dyn Geometry>,
-    /// Share of the compliance, relative to the glassy one, and v τ of each term.
+    /// Waves under a periodic slider: periods along the motion and across it, phase, height. Else it is a ball or a cylinder.
+    waves: Vec<[f64; 4]>,
+    /// Half the length of the relaxed contact of a ball or a cylinder.
+    half: f64,
+    /// Cells behind the middle of the contact and ahead of it, and across the motion.
+    behind: usize,
+    ahead: usize,
+    across: usize,
+    /// Compliance relative to the glassy one, and v τ, of each term.
     terms: Vec<(f64, f64)>,
     fluidity: f64,
     force: f64,
     tolerance: f64,
     max_distance: Option<f64>,
-    /// The cell along the motion in the middle of the cells that may touch, and their number; all of periodic bodies.
-    touching: [isize; 2],
 }
 
 impl Scene {
-    /// `easy`: without a free dashpot, travelling by twenty times the longest v τ, on grids that reach by ten times as much behind.
+    /// `easy`: no free dashpot, a track of twenty times the longest v τ, and a grid that reaches by ten times as much behind.
     fn draw(draws: &mut Draws, easy: bool) -> Scene {
         let below = match draws.below(4) {
             0 | 1 => Below::Periodic,
             2 => Below::HalfSpace,
             _ => Below::Line(draws.scale(1e3, 1e5)),
         };
-        let flat = below != Below::HalfSpace && (below != Below::Periodic || draws.chance(0.3));
-        let compliances: Vec<f64> = (0..1 + draws.below(3)).map(|_| draws.scale(0.2, 4.0)).collect();
-        let relaxed: f64 = 1.0 + compliances.iter().sum::<f64>();
-        let half = draws.between(5.0, if flat { 10.0 } else { 7.0 });
-        let across = if flat { 1 } else { (2.5 * half) as usize };
-        let period = if flat { 32 } else { 16 };
-        let (mut reach, mut length) = (0.0, period as f64);
-        if below != Below::Periodic {
-            length = if easy { half * draws.scale(2.0, 20.0) } else { half * draws.scale(1.0, 16.0) };
-        }
-        let longest = match (below, easy) {
-            (Below::Periodic, true) => 2.0 * length,
-            (_, true) => 0.1 * length,
+        let periodic = below == Below::Periodic;
+        let plane = if periodic { draws.chance(0.3) } else { below != Below::HalfSpace };
+        let (linear, half) = (!periodic || draws.chance(0.5), draws.between(5.0, if plane { 10.0 } else { 7.0 }));
+        let length = match (periodic, easy) {
+            (true, _) => {
+                if plane {
+                    32.0
+                } else {
+                    16.0
+                }
+            }
+            (_, true) => half * draws.scale(6.0, 20.0),
+            _ => half * draws.scale(1.0, 16.0),
+        };
+        let longest = match (easy, periodic) {
+            (true, true) => 2.0 * length,
+            (true, false) => 0.1 * length,
             _ => 1e6 * length,
         };
-        let terms: Vec<(f64, f64)> = compliances
-            .iter()
-            .map(|&c| {
-                let l = if easy {
-                    draws.scale(0.02 * longest, longest)
-                } else if draws.chance(0.4) {
-                    draws.scale(2.0, length)
-                } else {
-                    draws.scale(length, longest)
+        let least = 0.3;
+        let terms: Vec<(f64, f64)> = (0..1 + draws.below(3))
+            .map(|_| {
+                let reach = match easy {
+                    true => draws.scale(f64::min(least, 0.5 * longest), longest),
+                    _ if draws.chance(0.5) => draws.scale(least, length.max(2.0 * least)),
+                    _ => draws.scale(length, longest),
                 };
-                reach = f64::max(reach, l);
-                (c, l)
+                (draws.scale(0.2, 4.0), reach)
             })
             .collect();
-        let axis = if flat && below != Below::Periodic { Axis::X1 } else { draws_axis(draws) };
-        let velocity = if draws.chance(0.5) { 1.0 } else { -1.0 };
-        let along = move |x1: f64, x2: f64| if axis == Axis::X1 { [x1, x2] } else { [x2, x1] };
-        let (cells, touching, force): ([usize; 2], _, f64);
-        let shape: Box<dyn Geometry>;
-        if below == Below::Periodic {
-            cells = [period, if flat { 1 } else { period }];
-            touching = [period as isize / 2, period as isize];
-            let waves: Vec<[f64; 4]> = (0..1 + draws.below(5))
-                .map(|k| {
-                    let [a, b] = [draws.below(4) as f64, if flat { 0.0 } else { draws.below(4) as f64 }];
-                    // a wave along the motion at least
-                    let a = if k == 0 { a.max(1.0) } else { a };
-                    [a, b, draws.between(0.0, TAU), draws.between(0.3, 1.0)]
-                })
-                .collect();
-            let unit = TAU / length;
-            let most: f64 = waves.iter().map(|w| w[3]).sum();
-            let stiff: f64 = waves.iter().map(|w| w[3] * w[0].hypot(w[1]) * unit).sum();
-            force = draws.scale(0.02, 0.6) * stiff * 0.5 * 1e-2 / (GLASSY * relaxed) * (cells[0] * cells[1]) as f64;
-            shape = Box::new(FnGeometry::new(move |x1, x2| {
-                let [x, y] = along(x1, x2);
-                1e-2 * (most - waves.iter().map(|w| w[3] * (unit * (w[0] * x + w[1] * y) + w[2]).cos()).sum::<f64>())
-            }));
-        } else {
-            let ahead = (2.0 * half) as usize;
-            let behind = if easy { length.max(2.0 * half) } else { length };
-            let count = (behind + half) as usize + ahead;
-            cells = [count, across];
-            let at = velocity * (0.5 * count as f64 - ahead as f64);
-            let radius = 100.0 * half;
-            let center = if velocity > 0.0 { count - ahead } else { ahead } as isize;
-            touching = [center, (4.0 * half) as isize];
-            if flat {
-                force = 0.25 * std::f64::consts::PI * half * half / (radius * GLASSY * relaxed);
-            } else {
-                force = 4.0 / 3.0 * half.powi(3) / (radius * GLASSY * relaxed);
-            }
-            shape = Box::new(FnGeometry::new(move |x1, x2| {
-                let [x, y] = along(x1, x2);
-                ((x - at).powi(2) + if flat { 0.0 } else { y * y }) / (2.0 * radius)
-            }));
+        let relaxed = GLASSY * terms.iter().fold(1.0, |sum, (c, _)| sum + c);
+        let mut periods = |least: usize| [draws.below(4).max(least), if plane { 0 } else { draws.below(4) }];
+        let mut waves: Vec<[usize; 2]> = Vec::new();
+        if periodic {
+            waves.push(periods(1));
+            (0..4).for_each(|_| waves.push(periods(0)));
         }
-        let cells = if axis == Axis::X1 { cells } else { [cells[1], cells[0]] };
-        let fluidity = if !easy && draws.chance(0.1) { draws.scale(1e-10, 1e-5) } else { 0.0 };
-        let tolerance = if easy { 1e-3 } else { draws.scale(1e-5, 1e-3) };
-        let lengths = cells.map(|count| count as f64);
-        let longest = 20.0 * reach;
-        let far = longest.max(4.0 * length);
-        let max_distance = if easy || longest < 20.0 * length && draws.chance(0.5) { Some(far) } else { None };
-        let about = format!(
-            "{below:?} {cells:?} {axis:?} v {velocity} length {length:.1} half {half:.1} terms {terms:.2?} fluidity {fluidity:.1e} tolerance {tolerance:.1e} within {max_distance:?}"
-        );
-        let grid = Grid::new(cells, lengths).unwrap();
-        Scene { about, below, grid, axis, velocity, shape, terms, fluidity, force, tolerance, max_distance, touching }
+        waves.truncate(1 + draws.below(5));
+        let waves: Vec<[f64; 4]> = waves
+            .into_iter()
+            .map(|[a, b]| [a as f64, b as f64, draws.between(0.0, TAU), 1e-2 * draws.between(0.3, 1.0)])
+            .collect();
+        let force = if periodic {
+            // up to what closes all waves at once
+            let stiff: f64 = waves.iter().map(|[a, b, _, height]| PI * a.hypot(*b) / length * height / relaxed).sum();
+            draws.scale(0.02, 0.6) * stiff * length * if plane { 1.0 } else { length }
+        } else if plane {
+            0.25 * PI * half / (100.0 * relaxed)
+        } else {
+            half.powi(2) / (75.0 * relaxed)
+        };
+        let longest = terms.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
+        let behind = if periodic { 0.5 * length } else { half + if easy { 10.0 * longest } else { length } };
+        let far = (20.0 * longest).max(4.0 * length);
+        Scene {
+            below,
+            linear,
+            axis: if draws.chance(0.5) && (periodic || !plane) { Axis::X2 } else { Axis::X1 },
+            velocity: if draws.chance(0.5) { 1.0 } else { -1.0 },
+            waves,
+            half,
+            behind: behind.ceil() as usize,
+            ahead: if periodic { behind as usize } else { (2.0 * half) as usize },
+            across: if plane {
+                1
+            } else if periodic {
+                length as usize
+            } else {
+                (2.5 * half) as usize
+            },
+            terms,
+            fluidity: if !easy && draws.chance(0.1) { draws.scale(1e-10, 1e-5) } else { 0.0 },
+            force,
+            tolerance: if easy { 1e-3 } else { draws.scale(1e-5, 1e-3) },
+            max_distance: (easy || far < 30.0 * length && draws.chance(0.5)).then_some(far),
+        }
     }
 
-    fn run(&self) -> (ViscoelasticContact, std::result::Result<(), Unsteady>) {
+    fn length(&self) -> usize {
+        self.behind + self.ahead
+    }
+
+    /// In the order of x1 and x2, from along and across the motion.
+    fn by_axis<T>(&self, along: T, across: T) -> [T; 2] {
+        if self.axis == Axis::X1 { [along, across] } else { [across, along] }
+    }
+
+    /// The gap at a distance ahead of the middle of the contact, and aside.
+    fn gap(&self, ahead: f64, aside: f64) -> f64 {
+        if self.waves.is_empty() {
+            return (ahead * ahead + if self.across == 1 { 0.0 } else { aside * aside }) / (200.0 * self.half);
+        }
+        let unit = TAU / self.length() as f64;
+        let wave = |[a, b, phase, height]: &[f64; 4]| height * (1.0 - (unit * (a * ahead + b * aside) + phase).cos());
+        self.waves.iter().map(wave).sum()
+    }
+
+    fn shape(&self) -> impl Geometry + 'static {
+        let scene = self.clone();
+        let middle = 0.5 * (self.behind as f64 - self.ahead as f64);
+        FnGeometry::new(move |x1: f64, x2: f64| {
+            let [along, aside] = scene.by_axis(x1, x2);
+            scene.gap(scene.velocity * along - middle, aside)
+        })
+    }
+
+    /// Runs to the steady state; returns the contact, and what it lacks.
+    fn run(&self) -> (ViscoelasticContact, Lacks) {
+        let cells = self.by_axis(self.length(), self.across);
+        let grid = Grid::new(cells, cells.map(|count| count as f64)).unwrap();
         let kernel = match self.below {
-            Below::Periodic => InfluenceKernel::periodic(&self.grid),
-            Below::HalfSpace => InfluenceKernel::half_space(&self.grid),
-            Below::Line(datum) => InfluenceKernel::line(&self.grid, datum),
+            Below::Periodic => InfluenceKernel::periodic(&grid),
+            Below::HalfSpace => InfluenceKernel::half_space(&grid),
+            Below::Line(datum) => InfluenceKernel::line(&grid, datum),
         };
-        let terms: Vec<(f64, f64)> = self.terms.iter().map(|&(c, l)| (4.0 * GLASSY * c, l)).collect();
-        let body = GeneralizedKelvin::new(4.0 * GLASSY, self.fluidity, &terms).unwrap();
-        let settings = Settings::default()
-            .with_frame(Frame::Indenter)
-            .with_tolerance(1e-3 * self.tolerance)
-            .with_edge(viscocontact::contact::Edge::Allow);
-        let mut contact = ViscoelasticContact::builder(self.grid.clone())
-            .geometry(&*self.shape)
-            .material(Material::incompressible(body))
-            .kernel(std::sync::Arc::new(kernel.unwrap()))
-            .settings(settings)
+        let terms: Vec<(f64, f64)> = self.terms.iter().map(|&(c, reach)| (4.0 * GLASSY * c, reach)).collect();
+        let rule = if self.linear { TimeRule::ExponentialLinear } else { TimeRule::Exponential };
+        let settings = Settings::default().with_frame(Frame::Indenter).with_time_rule(rule).with_edge(Edge::Allow);
+        let mut contact = ViscoelasticContact::builder(grid)
+            .geometry(&self.shape())
+            .material(Material::incompressible(GeneralizedKelvin::new(4.0 * GLASSY, self.fluidity, &terms).unwrap()))
+            .kernel(Arc::new(kernel.unwrap()))
+            .settings(settings.with_tolerance(1e-3 * self.tolerance))
             .build()
             .unwrap();
         let motion = SteadyMotion::new(self.axis, self.velocity, Load::force(self.force))
             .with_tolerance(self.tolerance)
             .with_max_distance(self.max_distance);
-        let ended = contact.toward_steady(motion).and_then(|run| run.run());
-        let ended = match ended {
-            Ok(()) => Ok(()),
-            Err(Error::Step(StepError::NotSteady { reason, .. })) => Err(reason),
-            Err(error) => panic!("{}: {error}", self.about),
+        let lacks = match contact.toward_steady(motion).and_then(|run| run.run()) {
+            Ok(()) => Lacks::Nothing,
+            Err(Error::Step(StepError::NotSteady { reason, .. })) => Lacks::Told(reason),
+            Err(Error::OutOfRange { field: "fluidity of the contact", .. }) => Lacks::AnyLimit,
+            Err(error) => panic!("{self:?}: {error}"),
         };
-        (contact, ended)
+        (contact, lacks)
     }
 
-    fn reference(&self, along: Along) -> Option<SteadyState> {
-        let axis = self.axis.index();
-        let [count, across] = [self.grid.cells()[axis], self.grid.cells()[1 - axis]];
-        let cells = [self.touching[1] as usize, across];
-        let gap = |offset: f64| -> Vec<f64> {
-            let cell = |i: usize, j: usize| {
-                let ahead = (i as f64 + 0.5 - 0.5 * cells[0] as f64) + offset;
-                let x = self.touching[0] as f64 - 0.5 * count as f64 + self.velocity * ahead;
-                let y = j as f64 + 0.5 - 0.5 * across as f64;
-                let [x1, x2] = if axis == 0 { [x, y] } else { [y, x] };
-                self.shape.initial_gap(x1, x2)
-            };
-            (0..cells[0]).flat_map(|i| (0..across).map(move |j| (i, j))).map(|(i, j)| cell(i, j)).collect()
+    fn reference(&self, time: Time) -> Option<SteadyState> {
+        // cells about the middle of the contact that it may touch, of which there is one behind for each ahead
+        let count = if self.waves.is_empty() { 2 * (2.0 * self.half) as usize } else { self.length() };
+        let at = |k: usize, shift: f64| {
+            let [x, y] = [(k / self.across, count), (k % self.across, self.across)].map(from_middle);
+            self.gap(x + shift, y)
         };
-        let rise = gap(0.5).iter().zip(gap(-0.5)).map(|(ahead, behind)| ahead - behind).collect();
-        let terms = self.terms.iter().map(|&(c, l)| (GLASSY * c, l)).collect();
+        let all = 0..count * self.across;
         let sliding = SteadySliding {
             below: self.below,
-            cells,
+            cells: [count, self.across],
             spacing: [1.0; 2],
             glassy: GLASSY,
-            terms,
-            gap: gap(0.0),
-            rise,
+            terms: self.terms.iter().map(|&(c, reach)| (GLASSY * c, reach)).collect(),
+            gap: all.clone().map(|k| at(k, 0.0)).collect(),
+            rise: all.clone().map(|k| at(k, 0.5) - at(k, -0.5)).collect(),
             force: self.force,
         };
-        sliding.solve(along)
+        sliding.solve(time)
+    }
+
+    /// Relative errors of friction and approach, of the same cells and steps. Friction is relative to the greater of two that the mesh
+    /// cannot tell apart: from the slope of the shape over each cell, and over two.
+    fn errors(&self, contact: &ViscoelasticContact) -> [f64; 2] {
+        let lateral = self.velocity * contact.lateral_force(&self.shape())[self.axis.index()];
+        let exact = self.reference(if self.linear { Time::Steps } else { Time::Corrected });
+        let exact = exact.expect("the dense problem has a solution");
+        let count = exact.pressure.len() / self.across;
+        let rise = |k: usize| {
+            let [x, y] = [(k / self.across, count), (k % self.across, self.across)].map(from_middle);
+            0.5 * (self.gap(x + 1.0, y) - self.gap(x - 1.0, y))
+        };
+        let wide: f64 = exact.pressure.iter().enumerate().map(|(k, p)| p * rise(k)).sum::<f64>() / self.force;
+        let scale = exact.friction.abs().max(wide.abs());
+        [(lateral / contact.force() - exact.friction).abs() / scale, (contact.approach() / exact.approach - 1.0).abs()]
     }
 }
 
-fn draws_axis(draws: &mut Draws) -> Axis {
-    if draws.chance(0.5) { Axis::X1 } else { Axis::X2 }
+/// The position of a cell from the middle of so many.
+fn from_middle((cell, count): (usize, usize)) -> f64 {
+    cell as f64 + 0.5 - 0.5 * count as f64
+}
+
+fn scenes(easy: bool) -> impl Iterator<Item = Scene> {
+    let (scenes, seed) = (from_environment("STEADY_SCENES", 40), from_environment("STEADY_SEED", 1));
+    (0..scenes).map(move |k| Scene::draw(&mut Draws::new(seed * 1_000_000 + k), easy))
+}
+
+/// Runs the scenes; of all, how many arrived, end on too short a track, on too short a grid, flow, or come to no rest. Those that
+/// arrived are where the reference is.
+fn population(easy: bool) -> [usize; 5] {
+    let (mut counts, mut worst) = ([0; 5], [0.0_f64; 2]);
+    for (k, scene) in scenes(easy).enumerate() {
+        let (contact, lacks) = scene.run();
+        assert_eq!(scene.fluidity > 0.0, lacks == Lacks::AnyLimit, "{k}: {lacks:?} {scene:?}");
+        let which = match lacks {
+            Lacks::Nothing => {
+                let errors = scene.errors(&contact);
+                assert!(errors.iter().all(|error| *error < 0.01), "{k}: {errors:?} {scene:?}");
+                worst = [0, 1].map(|k| worst[k].max(errors[k]));
+                0
+            }
+            Lacks::Told(Unsteady::SlowTerm { .. }) => 1,
+            Lacks::Told(Unsteady::LeftGrid { .. }) => 2,
+            Lacks::AnyLimit => 3,
+            Lacks::Told(_) => 4,
+        };
+        counts[which] += 1;
+    }
+    println!(
+        "{counts:?} arrived, slow, left the grid, flow, come to no rest; friction and approach off by at most {worst:?}"
+    );
+    counts
 }
 
 #[test]
 fn random_motions_that_arrive_are_steady() {
-    let (scenes, seed) = (from_environment("STEADY_SCENES", 24), from_environment("STEADY_SEED", 1));
-    let (mut arrived, mut compared, mut sharp) = (0, 0, 0);
-    for k in 0..scenes {
-        let mut draws = Draws::new(seed * 1_000_000 + k);
-        let scene = Scene::draw(&mut draws, false);
-        let started = std::time::Instant::now();
-        let (contact, ended) = scene.run();
-        let took = started.elapsed().as_secs_f64();
-        let friction = scene.velocity * contact.lateral_force(&*scene.shape)[scene.axis.index()] / contact.force();
-        let (Some(exact), Some(linear)) = (scene.reference(Along::Exact), scene.reference(Along::Linear)) else {
-            println!("{k}: no reference: {}", scene.about);
-            continue;
-        };
-        let error = |value: f64, of: fn(&SteadyState) -> f64| {
-            let [mesh, error] = [of(&linear), value].map(|value| (value / of(&exact) - 1.0).abs());
-            [error, mesh]
-        };
-        let [of_friction, of_approach] = [error(friction, |s| s.friction), error(contact.approach(), |s| s.approach)];
-        println!(
-            "{k}: {took:.2} s {ended:?} friction {friction:.3e} off {:.1e} {:.1e} approach {:.1e} {:.1e} | {}",
-            of_friction[0], of_friction[1], of_approach[0], of_approach[1], scene.about
-        );
-        arrived += usize::from(ended.is_ok());
-    }
-    println!("{arrived} of {scenes} arrived");
-    let _ = (&mut compared, &mut sharp);
+    let [arrived, slow, left, ..] = population(false);
+    assert!(arrived > 0 && slow > 0 && left > 0, "{arrived} {slow} {left}");
 }
 
 #[test]
-fn random_easy_motions_arrive() {
-    let (scenes, seed) = (from_environment("STEADY_SCENES", 24), from_environment("STEADY_SEED", 1));
-    let mut arrived = 0;
-    for k in 0..scenes {
-        let mut draws = Draws::new(seed * 2_000_000 + k);
-        let scene = Scene::draw(&mut draws, true);
-        let started = std::time::Instant::now();
-        let (contact, ended) = scene.run();
-        let took = started.elapsed().as_secs_f64();
-        let friction = scene.velocity * contact.lateral_force(&*scene.shape)[scene.axis.index()] / contact.force();
-        let (Some(exact), Some(linear)) = (scene.reference(Along::Exact), scene.reference(Along::Linear)) else {
-            println!("{k}: no reference: {}", scene.about);
-            continue;
-        };
-        let error = |value: f64, of: fn(&SteadyState) -> f64| {
-            [value, of(&linear)].map(|value| (value / of(&exact) - 1.0).abs())
-        };
-        let [of_friction, of_approach] = [error(friction, |s| s.friction), error(contact.approach(), |s| s.approach)];
-        println!(
-            "{k}: {took:.2} s {ended:?} friction {friction:.3e} off {:.1e} {:.1e} approach {:.1e} {:.1e} | {}",
-            of_friction[0], of_friction[1], of_approach[0], of_approach[1], scene.about
-        );
-        arrived += usize::from(ended.is_ok());
+fn random_motions_with_track_and_grid_enough_arrive() {
+    let counts = population(true);
+    assert!(100 * counts[0] >= 95 * counts.iter().sum::<usize>(), "{counts:?}");
+}
+
+/// Does as a run says that does not arrive, up to four times: travels farther, or takes a longer grid. Returns how often, and what
+/// the last run lacks; `None` where that takes more than a test may.
+fn follow_advice(mut scene: Scene) -> Option<(usize, Lacks)> {
+    let length = scene.length() as f64;
+    for told in 0..4 {
+        match scene.run().1 {
+            Lacks::Told(Unsteady::SlowTerm { farther, .. }) if farther < 100.0 * length => {
+                scene.max_distance = Some(scene.max_distance.unwrap_or(10.0 * scene.length() as f64) + farther);
+            }
+            Lacks::Told(Unsteady::LeftGrid { needed, behind, .. }) if needed < 500.0 => {
+                scene.behind += (needed - behind).ceil() as usize;
+            }
+            Lacks::Told(Unsteady::SlowTerm { .. } | Unsteady::LeftGrid { .. }) => return None,
+            lacks => return Some((told, lacks)),
+        }
     }
-    println!("{arrived} of {scenes} arrived");
+    Some((4, scene.run().1))
+}
+
+#[test]
+fn random_motions_that_do_as_told_arrive() {
+    let (mut arrived, mut told) = (0, 0);
+    for (k, scene) in scenes(false).enumerate() {
+        let Some((times @ 1.., lacks)) = follow_advice(scene.clone()) else { continue };
+        told += 1;
+        arrived += usize::from(lacks == Lacks::Nothing);
+        if lacks != Lacks::Nothing {
+            println!("{k}: told {times} times, {lacks:?} {scene:?}");
+        }
+    }
+    println!("{arrived} of {told} arrived as told");
+    assert!(told > 0 && 10 * arrived >= 9 * told, "{arrived} of {told}");
+}
+
+/// A body without elastic response has a dashpot beside its springs: its limit counts it, too.
+#[test]
+fn a_body_without_elastic_response_arrives() {
+    let grid = Grid::new([256, 1], [8.0e-3, 1.0]).unwrap();
+    let (radius, at, force) = (10.0e-3, 2.0e-3, 100.0);
+    let cylinder = Shifted::new(Cylinder::new(radius).unwrap(), [at, 0.0]).unwrap();
+    let terms = [(1.0e-6, 1.0e-3), (2.0e-6, 3.0e-3)];
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&cylinder)
+        .material(Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &terms).unwrap()))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+        .settings(Settings::default().with_frame(Frame::Indenter))
+        .build()
+        .unwrap();
+    let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(force));
+    contact.toward_steady(motion).unwrap().run().unwrap();
+    let (side, x) = (grid.spacing()[0], |k: usize| (k as f64 + 0.5 - 64.0) * grid.spacing()[0]);
+    let sliding = SteadySliding {
+        below: Below::Line(1.0),
+        cells: [128, 1],
+        spacing: grid.spacing(),
+        glassy: 0.0,
+        terms: terms.iter().map(|&(compliance, time)| (0.25 * compliance, 0.1 * time)).collect(),
+        gap: (0..128).map(|k| 0.5 * x(k).powi(2) / radius).collect(),
+        rise: (0..128).map(|k| x(k) * side / radius).collect(),
+        force,
+    };
+    let exact = sliding.solve(Time::Exact).unwrap();
+    let friction = contact.lateral_force(&cylinder)[0] / contact.force();
+    let errors = [friction / exact.friction - 1.0, contact.approach() / exact.approach - 1.0];
+    println!("{errors:?}");
+    assert!(errors[0].abs() < 0.02 && errors[1].abs() < 2e-3, "{errors:?}");
+}
+
+/// The reference itself, against the closed form of a rolling cylinder.
+#[test]
+fn the_reference_is_hunters() {
+    let (radius, c0, c1, force) = (1.0, 0.25e-6, 2.25e-6, 5.0e3);
+    for reach in [0.01, 0.1, 1.0, 10.0] {
+        let exact = hunter(radius, force, [c0, c1], reach);
+        let half = (4.0 * radius * (c0 + c1) * force / PI).sqrt();
+        let side = 3.0 * half / 128.0;
+        let x = |k: usize| (k as f64 + 0.5 - 64.0) * side;
+        let sliding = SteadySliding {
+            below: Below::Line(100.0),
+            cells: [128, 1],
+            spacing: [side, 1.0],
+            glassy: c0,
+            terms: vec![(c1, reach)],
+            gap: (0..128).map(|k| 0.5 * x(k).powi(2) / radius).collect(),
+            rise: (0..128).map(|k| x(k) * side / radius).collect(),
+            force,
+        };
+        let found = [Time::Exact, Time::Steps].map(|time| sliding.solve(time).unwrap().friction / exact - 1.0);
+        println!("v τ/a = {}: {found:?}", reach / half);
+        assert!(found.iter().all(|error| error.abs() < 0.01), "{reach}: {found:?}");
+    }
 }

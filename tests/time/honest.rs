@@ -80,7 +80,7 @@ fn errors_are_honest_on_random_scenes() {
     check_honesty(RandomScene::new, ("HONEST_SCENES", 40));
 }
 
-/// The same of bodies that springs drive: of the force where they are stiffer than the contact, else of the approach.
+/// The same of bodies that springs drive: of approach and force.
 #[test]
 fn errors_under_springs_are_honest() {
     check_honesty(RandomScene::sprung, ("HONEST_SPRINGS", 20));

@@ -317,7 +317,7 @@ fn the_order_inside_adaptive_steps_is_above_that_of_a_line() {
     assert!(coarse[force][0][0] < 1e-12 && fine[force][0][0] < 1e-12);
 }
 
-/// A random scene, in part with a layer, a temperature that changes, or force and approach in turn.
+/// A random scene, in part with a layer, a temperature that changes, a spring, or force and approach in turn.
 struct Inside {
     scene: RandomScene,
     what: &'static str,
@@ -328,7 +328,7 @@ struct Inside {
 impl Inside {
     fn new(seed: u64, number: u64) -> Inside {
         let mut draws = Draws::new(seed.wrapping_mul(7_777_777).wrapping_add(number));
-        let scene = RandomScene::new(seed, number);
+        let mut scene = RandomScene::new(seed, number);
         let (mut kernel, mut temperature, mut what) = (None, None, "");
         match draws.below(5) {
             0 => {
@@ -352,6 +352,7 @@ impl Inside {
                 what = "temperature, ";
             }
             2 if scene.body.is_elastic_at_once() => what = "in turn, ",
+            3 => scene = RandomScene::sprung(seed, number),
             _ => {}
         }
         Inside { scene, what, kernel, temperature }

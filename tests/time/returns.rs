@@ -3,7 +3,7 @@
 //!
 //! The forge runs 300 scenes. By hand:
 //! `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`; `RETURNS_FIRST=17`
-//! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes.
+//! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes. `RETURNS_SPRINGS` counts those by springs.
 
 use crate::common::watched_runs::watch;
 use crate::common::{RandomScene, Ratios, Truth, from_environment};
@@ -13,6 +13,9 @@ const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 /// What 99 % of the errors are at most, over these tolerances, and all of them.
 const BOUNDS: [f64; 4] = [1.2, 1.8, 2.0, 2.7];
 const MOST: f64 = 5.0;
+/// The same by springs.
+const BOUNDS_BY_SPRINGS: [f64; 4] = [2.0; 4];
+const MOST_BY_SPRINGS: f64 = 3.0;
 /// A run of so many contact problems does not end.
 const MOST_PROBLEMS: u64 = 50_000;
 /// So many times more given steps find the truth where a run seems to err by too much.
@@ -22,8 +25,19 @@ const MORE_STEPS: u64 = 16;
 /// most twice what the budget states in as many: of approach or force, and of the greatest pressure.
 #[test]
 fn errors_are_honest_on_random_returns() {
+    check_returns(RandomScene::returning, ("RETURNS_SCENES", 16), BOUNDS, MOST);
+}
+
+/// True errors of approach and force are at most twice the tolerance in 99 % of random scenes under springs, 1/20 to 20 times as stiff as the
+/// bodies, and three times in all.
+#[test]
+fn errors_are_honest_on_random_returns_by_springs() {
+    check_returns(RandomScene::returning_by_spring, ("RETURNS_SPRINGS", 16), BOUNDS_BY_SPRINGS, MOST_BY_SPRINGS);
+}
+
+fn check_returns(make: impl Fn(u64, u64) -> RandomScene, count: (&str, u64), bounds: [f64; 4], most: f64) {
     let [scenes, seed, first, most_steps] =
-        [("RETURNS_SCENES", 16), ("RETURNS_SEED", 2), ("RETURNS_FIRST", 0), ("RETURNS_STEPS", 20_000)]
+        [count, ("RETURNS_SEED", 2), ("RETURNS_FIRST", 0), ("RETURNS_STEPS", 20_000)]
             .map(|(name, default)| from_environment(name, default));
     // at most tolerances whose truth takes few steps, unless more are asked for
     let tolerances = if scenes > 16 { &TOLERANCES[..] } else { &TOLERANCES[..3] };
@@ -31,7 +45,7 @@ fn errors_are_honest_on_random_returns() {
     let [mut of_budget, mut of_pressure] = [Ratios::default(), Ratios::default()];
     let (mut problems, mut unjudged) = (0, 0);
     for number in first..first + scenes {
-        let scene = RandomScene::returning(seed, number);
+        let scene = make(seed, number);
         let mut truth = Truth::of(&scene, 0.1 * tolerances[tolerances.len() - 1], most_steps).unwrap();
         for (&tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
             let mut contact = scene.contact(Settings::default().tolerance());
@@ -64,8 +78,8 @@ fn errors_are_honest_on_random_returns() {
     }
     of_budget.print("over the budget", 3);
     of_pressure.print("pressure over its budget", 3);
-    for ((tolerance, ratios), bound) in tolerances.iter().zip(&of_tolerance).zip(BOUNDS) {
-        assert!(ratios.quantile(0.99) <= bound && ratios.quantile(1.0) < MOST, "at {tolerance:e}");
+    for ((tolerance, ratios), bound) in tolerances.iter().zip(&of_tolerance).zip(bounds) {
+        assert!(ratios.quantile(0.99) <= bound && ratios.quantile(1.0) < most, "at {tolerance:e}");
     }
     assert!(of_budget.quantile(0.98) <= 2.0);
     assert!(of_pressure.quantile(0.98) <= 2.0);

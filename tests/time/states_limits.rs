@@ -279,7 +279,10 @@ fn sweeps_reach_what_a_run_needs() {
         });
         let depth = 0.02 + rise.max(0.0);
         let history = history(&mut draws, kind, [2.0e-3, depth]);
-        let reach = Reach::at_temperature(&body, warming.as_ref(), &*history, 1.0).unwrap();
+        let reach = match &warming {
+            Some(warming) => Reach::at_temperature(&body, warming, &*history, 1.0).unwrap(),
+            None => Reach::of(&body, &*history, 1.0).unwrap(),
+        };
         let sweep = Sweep::new(grid.clone(), &bowl).settings(Settings::default().with_edge(Edge::Allow)).accuracy(1e-2);
         let states = match sweep.run(reach) {
             Ok(states) => states,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::figures;
 use crate::common::rolling::{RollingCylinder, scaled_e1, scaled_ei};
+use viscocontact::contact::Unsteady;
 use viscocontact::prelude::*;
 
 const G: f64 = 1.0e6;
@@ -26,6 +27,8 @@ pub(super) struct Rolled {
     shape: Shifted,
     /// Axis of the cylinder.
     pub(super) at: f64,
+    /// Why it has not arrived, if so.
+    pub(super) lacks: Option<Unsteady>,
 }
 
 impl Rolled {
@@ -42,7 +45,7 @@ impl Rolled {
     }
 }
 
-/// On a grid that reaches `behind` the contact, to a change of `tolerance`.
+/// On a grid that reaches `behind` the contact.
 pub(super) fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Rolled {
     let side = scene.hertz(scene.glassy).0 / FINE;
     let relaxed = scene.hertz(scene.glassy + scene.delayed).0;
@@ -53,14 +56,18 @@ pub(super) fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Roll
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&shape)
         .material(Material::incompressible(Zener::new(G, G_K, G_K * TAU).unwrap()))
-        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0e3).unwrap()))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()
         .unwrap();
     let velocity = direction * scene.reach / TAU;
-    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
-    contact.toward_steady(motion).unwrap().run().unwrap();
-    Rolled { contact, shape, at }
+    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(4e-3);
+    let lacks = match contact.toward_steady(motion).unwrap().run() {
+        Ok(()) => None,
+        Err(Error::Step(StepError::NotSteady { reason, .. })) => Some(reason),
+        Err(error) => panic!("{error}"),
+    };
+    Rolled { contact, shape, at, lacks }
 }
 
 /// Five speeds over four decades, forth or back: peak pressure, width, both ends of contact, friction.
@@ -71,7 +78,8 @@ fn rolling_ends_in_the_steady_state_of_the_reference() {
         let scene = scene(speed);
         let (glassy, relaxed) = (scene.hertz(scene.glassy).0, scene.hertz(scene.glassy + scene.delayed).0);
         let (side, steady) = (glassy / FINE, scene.steady(600));
-        let rolled = roll(&scene, direction, (5.0 * scene.reach).clamp(4.0 * relaxed, 300.0 * glassy));
+        let rolled = roll(&scene, direction, (5.0 * scene.reach).clamp(4.0 * relaxed, 450.0 * glassy));
+        assert_eq!(rolled.lacks, None, "{speed}");
         let (peak, [behind, ahead]) = (rolled.peak() / steady.peak() - 1.0, steady.ends());
         let friction = direction * rolled.friction() / steady.friction(scene.radius) - 1.0;
         let width = (rolled.width() - (ahead - behind)) / side;
@@ -103,6 +111,8 @@ fn very_slow_and_very_fast_rolling_is_hertzs() {
         let scene = scene(speed);
         let (half_width, peak) = scene.hertz(compliance);
         let rolled = roll(&scene, 1.0, 4.0 * scene.hertz(scene.glassy + scene.delayed).0);
+        // so fast that friction comes from what is behind the grid
+        assert_eq!(matches!(rolled.lacks, Some(Unsteady::LeftGrid { .. })), speed > 1.0, "{:?}", rolled.lacks);
         let (peak, width) = (rolled.peak() / peak - 1.0, 0.5 * rolled.width() / half_width - 1.0);
         println!("v τ/a = {speed}: peak {peak:.1e}, width {width:.1e}, friction {:.1e}", rolled.friction());
         assert!(peak.abs() < 3e-3 && width.abs() < 6e-3, "{speed}: {peak} {width}");

@@ -1,5 +1,11 @@
 //! Warnings, and the ranking of models.
 
+use std::fmt;
+
+use viscocontact::contact::StepReport;
+use viscocontact::load::Load;
+use viscocontact::states::StatesContact;
+
 use crate::fit::Fit;
 
 /// What a fit shows that a user should know.
@@ -24,6 +30,34 @@ pub enum FitWarning {
         /// Name of the parameter.
         parameter: String,
     },
+    /// At its deepest, the contact of a curve is outside the model: too steep, too deep in its layer, on too few cells, or its modulus is none of
+    /// a solid. The text is one of [`StepReport::messages`](viscocontact::contact::StepReport::messages).
+    Contact {
+        /// Index of the curve.
+        curve: usize,
+        /// What is outside, with its number and its cure.
+        text: String,
+    },
+}
+
+impl fmt::Display for FitWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FitWarning::Misfit => f.write_str(
+                "the residuals are not independent: try another model of the material, the tip or the noise",
+            ),
+            FitWarning::Undetermined { parameter } => {
+                write!(f, "{parameter} is uncertain by more than a factor of two: fix it, or measure where it matters")
+            }
+            FitWarning::Correlated { parameters: [one, other] } => {
+                write!(f, "only a combination of {one} and {other} is determined: fix one of them")
+            }
+            FitWarning::TimeOutside { parameter } => {
+                write!(f, "{parameter} lies outside the times of the data: sample faster, or measure longer")
+            }
+            FitWarning::Contact { curve, text } => write!(f, "curve {curve}: {text}"),
+        }
+    }
 }
 
 /// Probability below which a test of the residuals is a warning; there are two tests.
@@ -60,7 +94,18 @@ impl Fit {
                 }
             }
         }
+        warnings.extend((0..self.curves().len()).flat_map(|curve| self.contact_warnings(curve)));
         warnings
+    }
+
+    /// What a step on the elastic states of the tip to the greatest contact of a curve warns of.
+    fn contact_warnings(&self, curve: usize) -> Vec<FitWarning> {
+        let tip = self.curves()[curve].experiment().tip();
+        let depth = self.samples(curve).iter().map(|sample| sample.contact_depth).fold(0.0, f64::max);
+        let step = |mut contact: StatesContact| contact.step(0.0, Load::approach(tip.approach(0.0) + depth));
+        let report = self.material().and_then(|material| Ok(StatesContact::new(tip, &material).and_then(step)?));
+        let messages = report.iter().flat_map(StepReport::messages);
+        messages.map(|text| FitWarning::Contact { curve, text }).collect()
     }
 }
 

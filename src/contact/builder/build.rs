@@ -9,12 +9,13 @@ use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
 use crate::contact::distributed::gap::SharedGap;
+use crate::contact::read::limits::Limits;
 use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
 use crate::error::{AdhesionError, Error, KernelError, RanksError, Result, StepError, count_within, length, positive};
-use crate::geometry::Gap;
+use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
@@ -69,14 +70,16 @@ impl Builder {
 
     /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
     fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
-        let Builder { grid, temperature, attraction, .. } = self;
+        let Builder { grid, waves, temperature, attraction, .. } = self;
         let Parts { settings, material, kernel, history, .. } = parts;
+        let missed = Missed::of(&waves, &grid, kernel.periodic_axes());
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
             built: Built::new(indenter.gap(), &region.of_gap()),
             bodies: indenter.bodies(),
             grid,
             kernel,
+            limits: Limits::of(&material),
             material,
             settings,
             temperature,
@@ -85,7 +88,7 @@ impl Builder {
         };
         let attracts = scene.attraction.is_some();
         let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history, attracts));
-        ViscoelasticContact::new(scene, computation)
+        ViscoelasticContact::new(scene, computation, missed)
     }
 
     /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
@@ -183,8 +186,11 @@ impl Builder {
 
     /// Rejects scenes that are not covered where surfaces attract each other.
     fn attraction_is_covered(&self) -> Result<()> {
+        let cure =
+            "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
+        let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
         let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
-        let refused = self.special().or(shared);
+        let refused = self.special().or(shared).or(planned);
         refused.map_or(Ok(()), |[what, cure]| Err(AdhesionError::NotCovered { what, cure }.into()))
     }
 

@@ -10,7 +10,7 @@ use crate::Grid;
 use crate::adhesion::Attraction;
 use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::{Error, Result};
-use crate::geometry::{Geometry, evaluate};
+use crate::geometry::{Geometry, Waves, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
 use crate::parallel::{Ranks, Rows};
@@ -30,6 +30,8 @@ pub struct Builder {
     pub(super) grid: Grid,
     /// The gap of each rigid body.
     pub(super) gaps: Vec<LocalGap>,
+    /// The waves of all of them.
+    pub(super) waves: Vec<Waves>,
     pub(super) material: Option<Material>,
     pub(super) counter_body: Option<Material>,
     pub(super) times: Option<Times>,
@@ -38,6 +40,8 @@ pub struct Builder {
     pub(super) kernel: Option<Arc<InfluenceKernel>>,
     pub(super) settings: Settings,
     pub(super) ranks: Option<Arc<dyn Ranks>>,
+    /// Whether the grid was chosen by a plan, for surfaces that do not attract each other.
+    pub(crate) planned: bool,
 }
 
 /// Rows of the grid, and a gap on them if there was memory for it.
@@ -49,6 +53,7 @@ impl ViscoelasticContact {
         Builder {
             grid,
             gaps: Vec::new(),
+            waves: Vec::new(),
             material: None,
             counter_body: None,
             times: None,
@@ -57,6 +62,7 @@ impl ViscoelasticContact {
             kernel: None,
             settings: Settings::default(),
             ranks: None,
+            planned: false,
         }
     }
 }
@@ -66,6 +72,7 @@ impl Builder {
     /// reported by [`Builder::build`]. Replaces the shapes given before.
     pub fn geometry(mut self, geometry: &dyn Geometry) -> Builder {
         self.gaps.clear();
+        self.waves.clear();
         self.another_body(geometry)
     }
 
@@ -77,6 +84,7 @@ impl Builder {
         let rows = self.ranks.as_ref().map_or(0..cells[0], |ranks| Rows::of_rank(cells, Arc::clone(ranks)).own());
         let gap = evaluate(geometry, &self.grid.part([rows.start, 0], [rows.len(), cells[1]]));
         self.gaps.push((rows, gap));
+        self.waves.extend(geometry.waves());
         self
     }
 

@@ -1,5 +1,6 @@
 //! The rigid bodies that press on the creeping body: their gap, its symmetry, and the hulls where loads may act.
 
+mod depth;
 pub(in crate::contact) mod hull;
 mod slope;
 

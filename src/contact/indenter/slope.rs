@@ -1,13 +1,15 @@
 //! Slopes of the undeformed bodies in contact.
 
 use crate::Grid;
+use crate::contact::read::limits::STEEP;
 use crate::contact::{Indenter, Region};
 use crate::solver::{HaloExchange, HaloRows};
 
-/// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
-const STEEP: f64 = 0.5;
 /// Bodies without a slope beyond this are no real ones: a nanometre over a millimetre.
 const FLAT: f64 = 1e-6;
+/// Nor do surfaces of so great a length rise by less than this part of it \[m, 1\]: lengths in mm or µm that are read as metres.
+const LONG: f64 = 0.1;
+const LEAST_RISE: f64 = 1e-4;
 /// A relief of a smaller part of the height of the lowest point is rounding.
 const RELIEF: f64 = 1e-12;
 
@@ -38,14 +40,8 @@ impl Indenter {
         if !self.slopes(grid).any_steep {
             return None;
         }
-        let squared = |k: usize| {
-            let [i, j] = region.cell(k);
-            if self.is_local {
-                self.squared_slope(local(region), k)
-            } else {
-                self.squared_slope(whole, i * whole.n2 + j)
-            }
-        };
+        let cells = if self.is_local { local(region) } else { whole };
+        let squared = |k: usize| self.squared_slope(cells, self.index(grid, region, k));
         let in_contact = (0..pressure.len()).filter(|&k| pressure[k] > 0.0);
         let greatest = region.rows().greatest(in_contact.map(squared).fold(0.0, f64::max));
         (greatest > STEEP * STEEP).then(|| greatest.sqrt())
@@ -57,11 +53,13 @@ impl Indenter {
     }
 
     fn slopes(&self, grid: &Grid) -> Slopes {
-        *self.slopes.get_or_init(|| self.slopes_of(self.greatest_slope_and_relief(whole(grid))))
+        *self.slopes.get_or_init(|| self.slopes_of(self.greatest_slope_and_relief(whole(grid)), grid))
     }
 
-    fn slopes_of(&self, [squared, relief]: [f64; 2]) -> Slopes {
-        let too_flat = squared > 0.0 && squared < FLAT * FLAT && relief > RELIEF * self.gap.datum.abs();
+    fn slopes_of(&self, [squared, relief]: [f64; 2], grid: &Grid) -> Slopes {
+        let longest = grid.lengths().into_iter().fold(0.0, f64::max);
+        let rises_little = squared < FLAT * FLAT || longest > LONG && relief < LEAST_RISE * longest;
+        let too_flat = squared > 0.0 && rises_little && relief > RELIEF * self.gap.datum.abs();
         Slopes { any_steep: squared > STEEP * STEEP, too_flat }
     }
 
@@ -82,7 +80,7 @@ impl Indenter {
             exchange.fetch(&mut self.beyond, n2, own, |k, row| row.copy_from_slice(&above[k * n2..][..n2]));
         }
         let own = self.greatest_slope_and_relief(local(region));
-        self.slopes = self.slopes_of(own.map(|own| rows.greatest(own))).into();
+        self.slopes = self.slopes_of(own.map(|own| rows.greatest(own)), region.whole_grid()).into();
         self
     }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::contact::{Frame, Indenter, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result, exact_length};
-use crate::geometry::{Gap, Geometry, evaluate};
+use crate::geometry::{Gap, Geometry, Missed, evaluate};
 use crate::load::Loads;
 
 impl ViscoelasticContact {
@@ -37,6 +37,8 @@ impl ViscoelasticContact {
             // the next step unfolds the fields
             self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
         }
+        let waves: Vec<_> = geometries.iter().flat_map(|geometry| geometry.waves()).collect();
+        self.missed = Missed::of(&waves, &self.scene.grid, self.scene.kernel.periodic_axes());
         let state = &mut self.computation.state;
         let before = std::mem::replace(&mut state.indenter, Arc::new(indenter));
         state.start.replaced.get_or_insert(before);

@@ -2,6 +2,8 @@
 
 pub(in crate::contact) mod accessors;
 pub(in crate::contact) mod energies;
+pub(crate) mod limits;
 pub(in crate::contact) mod observations;
 pub(in crate::contact) mod report;
 pub(in crate::contact) mod stress;
+pub(in crate::contact) mod warnings;

@@ -1,9 +1,8 @@
-//! The report of a step, and its warnings.
+//! The report of a step.
 
 use std::fmt;
 
-use bitflags::bitflags;
-
+use crate::contact::Warnings;
 use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 
@@ -34,8 +33,8 @@ pub struct StepReport {
     pub estimated: Estimated,
     /// Reasons why the result may be less accurate than expected.
     pub warnings: Warnings,
-    /// Greatest slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
-    pub max_slope: Option<f64>,
+    /// The numbers of the warnings.
+    pub figures: Figures,
     /// Iterations of the solver.
     pub iterations: usize,
     /// Iterations by the fall-back solver, which is slower and always descends.
@@ -47,6 +46,29 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
+}
+
+/// The numbers behind [`Warnings`], each `None` where the scene is far from its limit; `Display` of a [`StepReport`] prints them with the warnings.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Figures {
+    /// Greatest slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
+    pub max_slope: Option<f64>,
+    /// Greatest displacement in contact over the thickness of a layer, of every contact on a [`Layer`](crate::Layer)
+    /// ([`Warnings::DEEP`]). On a half-space it is the part of the displacement that the layer takes.
+    pub compression: Option<f64>,
+    /// Cells in the shortest wave of the shapes, if fewer than four ([`Warnings::SHORT_WAVES`]).
+    pub cells_in_wave: Option<f64>,
+    /// Periods of a shape in the period of the bodies, if no whole number ([`Warnings::OTHER_PERIOD`]).
+    pub periods: Option<f64>,
+    /// Cells in the zone in which an attraction acts, if fewer than four ([`Warnings::COARSE_ZONE`]).
+    pub cells_in_zone: Option<f64>,
+    /// The contact modulus at once \[Pa\], if no solid has it ([`Warnings::MODULUS`]).
+    pub modulus: Option<f64>,
+    /// The approach at which the upright bodies touch \[m\], at the end of a run that never brought them into contact
+    /// ([`Warnings::NO_CONTACT`]).
+    pub touch: Option<f64>,
 }
 
 /// The quantity of which an error is estimated: the one that the load leaves free.
@@ -91,6 +113,53 @@ impl StepReport {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64
     }
 
+    /// What each warning says, with its number: one line each.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
+    ///     .geometry(&Cone::new(0.9)?)
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let report = contact.step(0.0, Load::approach(1.0e-3))?;
+    /// let messages: Vec<_> = report.messages().collect();
+    /// assert!(messages[0].starts_with("the bodies are steeper than 0.5") && messages[0].ends_with("(greatest slope 0.9)"));
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn messages(&self) -> impl Iterator<Item = String> + '_ {
+        self.warnings.iter().map(|warning| match self.figure(warning) {
+            Some((name, figure)) => format!("{warning} ({name} {})", rounded(figure, 3)),
+            None => warning.to_string(),
+        })
+    }
+
+    /// Warns at the end of a run that never brought the bodies into contact; upright they touch at the approach `touch`.
+    pub(crate) fn warn_of_no_contact(&mut self, touch: f64) {
+        if self.estimated != Estimated::Approach {
+            self.warnings |= Warnings::NO_CONTACT;
+            self.figures.touch = Some(touch);
+        }
+    }
+
+    /// What the number of a warning is, and the number.
+    fn figure(&self, warning: Warnings) -> Option<(&'static str, f64)> {
+        let Figures { max_slope, compression, cells_in_wave, periods, cells_in_zone, modulus, touch } = self.figures;
+        let (name, figure) = match warning {
+            Warnings::STEEP => ("greatest slope", max_slope),
+            Warnings::DEEP => ("depth over thickness", compression),
+            Warnings::SHORT_WAVES => ("cells in a wave:", cells_in_wave),
+            Warnings::OTHER_PERIOD => ("periods:", periods),
+            Warnings::COARSE_ZONE => ("cells in the zone:", cells_in_zone),
+            Warnings::MODULUS => ("E* in Pa:", modulus),
+            Warnings::LONG_STEP => ("relative error", self.time_error),
+            Warnings::FEW_CELLS => ("cells in contact:", Some(self.contact_cells as f64)),
+            Warnings::NO_CONTACT => ("they touch at an approach in m of", touch),
+            _ => ("", None),
+        };
+        figure.map(|figure| (name, figure))
+    }
+
     /// Emits the event of an accepted step, with the feature `tracing`.
     #[inline]
     pub(crate) fn emit(&self) {
@@ -127,8 +196,7 @@ impl fmt::Display for StepReport {
             Some(error) => write!(f, ", error in time {error:.1e} of the {}", self.estimated)?,
             None => write!(f, ", error in time not estimated")?,
         }
-        self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))?;
-        self.max_slope.map_or(Ok(()), |slope| write!(f, " (the greatest slope is {slope:.3})"))
+        self.messages().try_for_each(|message| write!(f, "; {message}"))
     }
 }
 
@@ -149,135 +217,8 @@ pub struct BodyState {
     pub contact_cells: usize,
 }
 
-bitflags! {
-    /// Reasons why the result of a step may be less accurate than expected: none, one or several.
-    ///
-    /// ```
-    /// use viscocontact::contact::Warnings;
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///     .build()?;
-    /// let report = contact.step(0.0, Load::force(0.1))?;
-    /// assert!(report.warnings.contains(Warnings::FEW_CELLS));
-    /// for warning in &report.warnings {
-    ///     println!("{warning}");
-    /// }
-    /// # Ok::<(), Error>(())
-    /// ```
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-    pub struct Warnings: u16 {
-        /// Contact is within two cells of an edge of the grid beyond which the bodies extend. Under a slightly greater load
-        /// a step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge). Enlarge the grid. Only with
-        /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
-        const NEAR_EDGE = 1 << 0;
-        /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh;
-        /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error) estimates the error from 5 on. A sphere's approach,
-        /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
-        const FEW_CELLS = 1 << 1;
-        /// The loading time exceeds the measured range of the material: a table is extrapolated beyond its data
-        /// ([`CreepSeries::extrapolated`](crate::rheology::CreepSeries::extrapolated)).
-        const EXTRAPOLATED = 1 << 2;
-        /// The step is shorter than the times for which the material is known: creep within it counts as elastic.
-        const FASTER_THAN_MATERIAL = 1 << 3;
-        /// One more step of this length would exceed the range in which the material is known, and fail with
-        /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial).
-        const NEAR_END_OF_MATERIAL = 1 << 4;
-        /// The time rule oscillates at steps of this length. The rectangle rule does where the bodies creep in a step by more than
-        /// they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
-        const RINGS = 1 << 5;
-        /// The solver stagnated, and its slow fall-back took over for a while:
-        /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The result meets the
-        /// tolerance. If this happens often, take smaller steps or a larger tolerance.
-        const FALL_BACK = 1 << 6;
-        /// The table of the material does not determine its creep well, or is inconsistent with a linear body: see
-        /// [`FitReport::warning`](crate::rheology::FitReport::warning) of each of the
-        /// [`Material::fit_reports`](crate::rheology::Material::fit_reports).
-        const UNCERTAIN_MATERIAL = 1 << 7;
-        /// The gap is a sum of numbers whose rounding exceeds [`Settings::tolerance`](crate::contact::Settings::tolerance)
-        /// times the displacement due to the pressure, as where little pressure is left on bodies that were pressed much
-        /// harder before: the error of pressure and force exceeds the residual.
-        const ROUNDING = 1 << 8;
-        /// The contact modulus at once, 1/C(0), is below 10 Pa or above 1e13 Pa, which no solid has: moduli are given in another
-        /// unit than Pa, or compliances in another one than 1/Pa.
-        const MODULUS = 1 << 9;
-        /// The undeformed bodies are steeper than 0.5 somewhere in contact ([`StepReport::max_slope`](crate::contact::StepReport::max_slope)):
-        /// slopes and strains are not small, and half-spaces are no model of the bodies. Heights in µm that are read as metres are that steep.
-        /// A slope is the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count.
-        const STEEP = 1 << 10;
-        /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the compliance that the bodies have
-        /// reached: the force of a slow pull-off errs by a percent or more. A fast pull finds a stiffer body, and a longer zone. Refine the mesh,
-        /// or take an attraction of longer range.
-        const COARSE_ZONE = 1 << 11;
-        /// Surfaces that attract each other snapped together or apart within the step, or nearly so: its end is known, not the moment within it
-        /// ([`PassReport::response`](crate::contact::PassReport::response)); [`PassReport::released`](crate::contact::PassReport::released) is the
-        /// energy that was lost. Adaptive steps are shortened until the moment no longer matters.
-        const JUMP = 1 << 12;
-        /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:
-        /// sides of a map or a grid in µm that are read as metres are that long for their heights.
-        const FLAT = 1 << 13;
-    }
-}
-
-impl IntoIterator for &Warnings {
-    type Item = Warnings;
-    type IntoIter = bitflags::iter::Iter<Warnings>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.iter()
-    }
-}
-
-/// The message of each warning.
-const MESSAGES: [(Warnings, &str); 14] = [
-    (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
-    (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
-    (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data"),
-    (Warnings::FASTER_THAN_MATERIAL, "the step is shorter than the material is known for: that counts as elastic"),
-    (Warnings::NEAR_END_OF_MATERIAL, "one more such step would look beyond what is known of the material"),
-    (Warnings::RINGS, "the time rule rings at steps of this length: take shorter ones, or another rule"),
-    (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
-    (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
-    (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain"),
-    (Warnings::MODULUS, "no solid has such a modulus: moduli are in Pa, compliances in 1/Pa"),
-    (
-        Warnings::STEEP,
-        "the bodies are steeper than 0.5 in contact, too steep for small strains: heights and lengths are in m",
-    ),
-    (Warnings::FLAT, "the bodies are flatter than 1e-6 everywhere, as no real ones are: heights and lengths are in m"),
-    (
-        Warnings::COARSE_ZONE,
-        "the attraction acts over fewer than 4 cells at the edge: refine the mesh, or lengthen its range",
-    ),
-    (Warnings::JUMP, "surfaces snapped together or apart in this step"),
-];
-
-/// The warnings, separated by semicolons; nothing if there are none.
-impl fmt::Display for Warnings {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut separator = "";
-        for (_, message) in MESSAGES.iter().filter(|(warning, _)| self.contains(*warning)) {
-            write!(f, "{separator}{message}")?;
-            separator = "; ";
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-
-    #[test]
-    fn every_warning_has_a_message() {
-        assert!(Warnings::empty().to_string().is_empty());
-        assert!(Warnings::all().iter().all(|warning| !warning.to_string().is_empty()));
-        assert_eq!(Warnings::all().to_string().split("; ").count(), MESSAGES.len());
-    }
-
     /// Results, statistics and specifications come back from a file; values out of range do not.
     #[cfg(feature = "checkpoint")]
     #[test]

@@ -1,9 +1,8 @@
 //! Acceptance of a computed step, and its warnings.
 
-use crate::contact::builder::build::cells_in_zone;
-use crate::contact::{Computation, Edge, Scene, Step, TimeRule, Warnings};
+use crate::contact::read::limits::{DEEP, LONG_STEP};
+use crate::contact::{Computation, Edge, Figures, Scene, Step, TimeRule, Warnings};
 use crate::extent::Extent;
-use crate::rheology::is_known;
 use crate::solver::RigidMotion;
 
 impl Computation {
@@ -52,18 +51,15 @@ const EDGE_MARGIN: usize = 2;
 const MIN_CELLS_ACROSS: usize = 8;
 const MIN_CELLS: usize = 50;
 /// Fewer cells resolve the zone of an attraction badly.
-const COARSE_ZONE: f64 = 4.0;
+pub(super) const COARSE_ZONE: f64 = 4.0;
 
-/// Contact moduli E* outside this range are in other units than Pa \[Pa\].
-const SOFTEST: f64 = 10.0;
-const STIFFEST: f64 = 1e13;
-
-/// The warnings of the step accepted last, with all pressed cells in `reach`, and the greatest slope in contact if it is steep.
+/// The warnings of the step accepted last, with all pressed cells in `reach`.
 pub(super) fn collect_warnings(
     scene: &Scene,
     computation: &Computation,
     reach: Option<Extent>,
-    max_slope: Option<f64>,
+    figures: &Figures,
+    time_error: Option<f64>,
 ) -> Warnings {
     let Computation { state, trial, .. } = computation;
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
@@ -84,31 +80,26 @@ pub(super) fn collect_warnings(
         }
         few |= !line && contact_cells < MIN_CELLS && !(periodic == [true; 2] && all_in_touch);
     }
-    let (age, [from, until]) = (state.clock.age(), material.measured());
-    let has_memory = !state.is_undisturbed();
-    let uncertain = material.fit_reports().any(|report| report.warning().is_some());
+    let of_material =
+        if state.is_undisturbed() { Warnings::empty() } else { scene.limits.warnings(state.clock.age(), dt) };
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = scene.settings.time_rule == TimeRule::Rectangle
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
-    let coarse = scene.softening > 0.0
-        && cells_in_zone(scene.softening, material.contact_compliance(age.max(dt)), &scene.grid) < COARSE_ZONE;
-    // a body without elastic response has no modulus at once
-    let at_once = material.contact_compliance(0.0);
     let reasons = [
-        (Warnings::COARSE_ZONE, coarse),
+        (Warnings::COARSE_ZONE, figures.cells_in_zone.is_some()),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
         (Warnings::FEW_CELLS, few),
-        (Warnings::EXTRAPOLATED, has_memory && !is_known(age, until)),
-        (Warnings::FASTER_THAN_MATERIAL, has_memory && dt > 0.0 && dt < from),
-        (Warnings::NEAR_END_OF_MATERIAL, has_memory && dt > 0.0 && !is_known(age + dt, material.known_until())),
         (Warnings::RINGS, oscillates),
         (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
-        (Warnings::UNCERTAIN_MATERIAL, has_memory && uncertain),
         (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
-        (Warnings::MODULUS, at_once * SOFTEST > 1.0 || (at_once > 0.0 && at_once * STIFFEST < 1.0)),
-        (Warnings::STEEP, max_slope.is_some()),
+        (Warnings::MODULUS, figures.modulus.is_some()),
+        (Warnings::STEEP, figures.max_slope.is_some()),
+        (Warnings::DEEP, figures.compression > Some(DEEP)),
+        (Warnings::OTHER_PERIOD, figures.periods.is_some()),
+        (Warnings::SHORT_WAVES, figures.cells_in_wave.is_some()),
+        (Warnings::LONG_STEP, time_error > Some(LONG_STEP)),
         (Warnings::JUMP, trial.passes.as_ref().is_some_and(|passes| passes.report.jumped())),
         (Warnings::FLAT, state.indenter.is_too_flat(&scene.grid)),
     ];
-    reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
+    of_material | Warnings::of(&reasons)
 }

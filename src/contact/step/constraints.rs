@@ -129,7 +129,7 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
     }
 }
 
-/// Rejects results that overflow, and contact at the edge of the grid. Returns Σ p.
+/// Rejects results that overflow, contact at the edge of the grid, and bodies pressed through a layer on a rigid base. Returns Σ p.
 pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
     let (Solution { pressure, motions, .. }, rows) = (&trial.solution, state.region.rows());
     let sum_of_pressure = net_sum(&rows, &trial.solution);
@@ -154,6 +154,16 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
             let (lengths, needed) = (scene.grid.lengths(), needed_lengths(scene, state, trial, step));
             return Err(Error::Step(StepError::ContactAtEdge { time, cells, lengths, needed }));
         }
+    }
+    let motion = |body: usize| {
+        step.prescribed(body) + state.region.modes(trial.free[body]).physical(trial.solution.motions[body])
+    };
+    if let Some(layer) = scene.kernel.layer_of().filter(|layer| layer.is_on_rigid())
+        && let Some(compression) = scene.compression(&step.indenter, &state.region, pressure, motion)
+        && compression >= 1.0
+    {
+        let thickness = layer.thickness();
+        return Err(Error::Step(StepError::ThroughLayer { time, depth: compression * thickness, thickness }));
     }
     Ok(sum_of_pressure)
 }
@@ -192,7 +202,7 @@ fn needed_lengths(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) 
             if !rise.is_finite() || !EXPONENTS.contains(&exponent) {
                 return None;
             }
-            let over = depth / (factor(exponent) * height(end));
+            let over = depth / (depth_of_power(exponent) * height(end));
             let wider = match step.loads[0] {
                 Load::Approach { .. } => over.powf(1.0 / exponent),
                 _ => (((exponent + 1.0) * over - 1.0) / exponent).powf(1.0 / (exponent + 1.0)),
@@ -205,8 +215,8 @@ fn needed_lengths(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) 
     (needed != grid.lengths() && needed.iter().all(|length| length.is_finite())).then_some(needed)
 }
 
-/// κ = n √π/2 Γ(n/2) / Γ((n + 1)/2), to 1 %: π/2 for a cone, 2 for a paraboloid.
-fn factor(exponent: f64) -> f64 {
-    let half = 0.5 * exponent;
-    half * PI.sqrt() * (half + 0.5) / half / (half + 0.75).sqrt()
+/// κ of the shape A rⁿ, which touches within a at the depth κ A aⁿ (Galin; Sneddon 1965): √π Γ(n/2 + 1) / Γ((n + 1)/2), π/2 for a cone, 2
+/// for a paraboloid.
+pub(crate) fn depth_of_power(exponent: f64) -> f64 {
+    PI.sqrt() * libm::tgamma(0.5 * exponent + 1.0) / libm::tgamma(0.5 * exponent + 0.5)
 }

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::contact::step::spring::has_stiff_spring;
+use crate::contact::step::spring::share_of_force;
 use crate::contact::window::placement::motion_tried;
 use crate::contact::{Computation, Scene, Step};
-use crate::hereditary::{ErrorMeasure, TimeError};
+use crate::hereditary::{ErrorMeasure, StepContext, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
 use crate::sum;
@@ -29,18 +29,31 @@ impl Computation {
     }
 
     /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
-    /// the datum of the gap; NaN if that is not known.
+    /// the datum of the gap; NaN if that is not known. One that a spring lowers onto the surface advances at the rate that it has from then on.
     fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
         let Computation { state, window, trial } = self;
         let body = window.gap(&step.indenter).owner(k);
         let end = motion_tried(&state.region, trial, step, body);
         if self.was_at_rest(body) {
-            return rests_at.map_or(f64::NAN, |start| end.at(state.region.center(k)) - start);
+            let since = rests_at.map_or(1.0, |start| self.since_touch(step, body, start));
+            return rests_at.map_or(f64::NAN, |start| (end.at(state.region.center(k)) - start) / since);
         }
         let start = state.current.motions[body];
         let approach = step.indenter.gap().datum + end.approach - start.approach;
         let tilt = [0, 1].map(|axis| end.tilt[axis] - start.tilt[axis]);
         RigidMotion { approach, tilt }.at(state.region.center(k))
+    }
+
+    /// The part of the step tried in which a body touches a surface at this approach, from the datum of the gap: all of it where it lies on the
+    /// surface. A body apart is where the far end of its spring is.
+    fn since_touch(&self, step: &Step<'_>, body: usize, surface: f64) -> f64 {
+        let (start, datum) = (self.state.current.motions[body].approach, step.indenter.gap().datum);
+        match step.loads[body] {
+            Load::Spring { drive, .. } if drive > datum + surface && datum + surface > start => {
+                (drive - datum - surface) / (drive - start)
+            }
+            _ => 1.0,
+        }
     }
 }
 
@@ -56,58 +69,6 @@ const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 /// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that matter.
 pub(crate) const SHORTEST_TOUCH: f64 = 10.0;
 
-/// Data of a run besides the step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct StepContext {
-    /// Mean displacement and v that are to be expected of the greatest loads.
-    pub(crate) expected: [f64; 2],
-    /// The depth below first touch to which the bodies may come back, or 0 if they do not, and the response of v to an error
-    /// of u when they meet.
-    pub(crate) coming_back: [f64; 2],
-    /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
-    pub(crate) lasting: [f64; 2],
-    pub(crate) tolerance: f64,
-    /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy compliance, that a
-    /// unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
-    pub(crate) on_switch: [f64; 2],
-    /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
-    pub(crate) greatest_on_switch: f64,
-    /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
-    pub(crate) on_jump: f64,
-    /// Whether the load has a corner or jumps at the end of the step, which no step then puts right.
-    pub(crate) is_last: bool,
-    /// How far the defects of the run agree in sign, 0 … 1.
-    pub(crate) agreement: f64,
-    /// Steps so far, this one included.
-    pub(crate) steps: f64,
-    /// Events that take less time than this do not matter, ...
-    pub(crate) resolution: f64,
-    /// ... nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
-    pub(crate) beginning: f64,
-    /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
-    pub(crate) length_is_given: bool,
-}
-
-impl Default for StepContext {
-    fn default() -> StepContext {
-        StepContext {
-            expected: [0.0; 2],
-            coming_back: [0.0; 2],
-            lasting: [0.0; 2],
-            tolerance: 1.0,
-            on_switch: [0.0; 2],
-            greatest_on_switch: 0.0,
-            on_jump: 0.0,
-            is_last: false,
-            agreement: 1.0,
-            steps: f64::INFINITY,
-            resolution: 0.0,
-            beginning: 0.0,
-            length_is_given: true,
-        }
-    }
-}
-
 /// Displacements, and v, below this part of the greatest are measured relative to that part.
 const SMALL: [f64; 2] = [0.05, 0.2];
 
@@ -115,9 +76,7 @@ const SMALL: [f64; 2] = [0.05, 0.2];
 /// given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is relative to the parts [`SMALL`] of the
 /// greatest of the run, expected ones included.
 pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: StepContext) -> TimeError {
-    let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
-    let StepContext { greatest_on_switch, on_jump, is_last, steps, resolution, beginning, length_is_given, .. } =
-        outlook;
+    let StepContext { expected, mut meeting, on_switch: [one, all], agreement, steps, length_is_given, .. } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -145,43 +104,33 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));
     // so many steps cannot add up to more than as many times the error of one
     let amplified = |one: f64, all: f64| if one > 0.0 { (all / one).clamp(1.0, steps.max(1.0)) } else { 1.0 };
-    let amplification = amplified(young, old);
-    let on_switch = one * (1.0 + agreement * (amplified(one, all) - 1.0));
-    let pressure = tried.weights();
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     // an attraction pulls at a surface whose displacement is free
     let attracted = scene.attraction.is_some();
-    let matters =
-        [forces > 0 || attracted, forces < trial.free.len() || attracted || has_stiff_spring(scene, state, step)];
+    let is_given = forces < trial.free.len() || attracted;
+    let matters = [
+        if forces > 0 || attracted { 1.0 } else { 0.0 },
+        if is_given { 1.0 } else { share_of_force(scene, state, step) },
+    ];
+    meeting.give = if is_given { 0.0 } else { meeting.give };
     let gap = &tried.window.gap(&step.indenter).above;
-    let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
-    let rests_at = from_rest.then(|| first_touch(tried, gap));
+    let was_at_rest = trial.free.len() == 1 && tried.was_at_rest(0);
+    let rests_at = was_at_rest.then(|| first_touch(tried, gap));
+    let from_rest = rests_at.is_some_and(|start| tried.since_touch(step, 0, start) == 1.0);
     let advance = |k: usize| tried.advance(step, rests_at, k);
-    let potential = &trial.solution.potential;
-    let advance = &advance;
-    let rows = &state.region.rows();
     let measure = ErrorMeasure {
-        rows,
-        pressure,
-        potential,
+        rows: &state.region.rows(),
+        pressure: tried.weights(),
+        potential: &trial.solution.potential,
         matters,
         greatest,
         least,
         gap,
         from_rest,
-        coming_back: coming_back[0],
-        stiffness: coming_back[1],
-        lasting,
-        tolerance,
-        advance,
-        amplification,
-        on_switch,
-        greatest_on_switch,
-        on_jump,
-        is_last,
-        agreement,
-        resolution,
-        beginning,
+        advance: &advance,
+        amplification: amplified(young, old),
+        on_switch: one * (1.0 + agreement * (amplified(one, all) - 1.0)),
+        context: &StepContext { meeting, ..outlook },
     };
     let error = state.history.time_error(measure);
     if !length_is_given || forces == 0 {

@@ -16,7 +16,7 @@
 
 mod accept;
 pub(in crate::contact) mod attraction;
-mod constraints;
+pub(in crate::contact) mod constraints;
 pub(crate) mod error_in_time;
 mod gap;
 mod initial_guess;
@@ -27,22 +27,23 @@ pub(in crate::contact) mod spring;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
+use crate::contact::builder::build::cells_in_zone;
 use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::{
-    Computation, Equilibrium, Estimated, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
+    Computation, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
 };
 use crate::error::{Error, Result, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
-use crate::hereditary::{Interval, TimeError};
+use crate::hereditary::{Interval, StepContext, TimeError};
 use crate::load::{Load, Loads};
 use crate::parallel::in_pool;
-use crate::solver::{Solution, Stop};
-use accept::collect_warnings;
+use crate::solver::{RigidMotion, Solution, Stop};
+use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use constraints::{find_free_motions, validate_loads};
-use error_in_time::{StepContext, error_in_time};
+use error_in_time::error_in_time;
 use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
@@ -151,7 +152,19 @@ impl ViscoelasticContact {
     pub(crate) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
-        let max_slope = state.indenter.steepest(&scene.grid, &state.region, &state.current.solution.pressure);
+        let State { indenter, region, clock, .. } = state;
+        let (pressure, datum) = (&state.current.solution.pressure, indenter.gap().datum);
+        let motion = |body: usize| RigidMotion { approach: -datum, tilt: [0.0; 2] } + state.current.motions[body];
+        let compliance = scene.material.contact_compliance(clock.age().max(clock.last_dt));
+        let figures = Figures {
+            max_slope: indenter.steepest(&scene.grid, region, pressure),
+            compression: scene.compression(indenter, region, pressure, motion),
+            cells_in_wave: self.missed.cells,
+            periods: self.missed.periods,
+            cells_in_zone: Some(cells_in_zone(scene.softening, compliance, &scene.grid)).filter(|c| *c < COARSE_ZONE),
+            modulus: scene.limits.modulus,
+            touch: None,
+        };
         StepReport {
             time: state.clock.time,
             force: self.force(),
@@ -161,8 +174,8 @@ impl ViscoelasticContact {
             dt: state.clock.last_length,
             time_error,
             estimated: Estimated::under(&state.loads),
-            warnings: collect_warnings(scene, &self.computation, reach, max_slope),
-            max_slope,
+            warnings: collect_warnings(scene, &self.computation, reach, &figures, time_error),
+            figures,
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,

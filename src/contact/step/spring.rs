@@ -51,10 +51,12 @@ fn yielding(scene: &Scene, state: &State, c: f64) -> f64 {
     0.5 * c / (pressed * scene.grid.cell_area() / PI).sqrt()
 }
 
-/// Whether a spring is stiffer than the contact, so that it gives the approach rather than the force.
-pub(super) fn has_stiff_spring(scene: &Scene, state: &State, step: &Step<'_>) -> bool {
+/// The greatest part of an error of the force under a given approach that a spring leaves: 1 of a spring far stiffer than the contact, 0
+/// without springs.
+pub(super) fn share_of_force(scene: &Scene, state: &State, step: &Step<'_>) -> f64 {
     let c = state.history.exponential_rule().map_or(0.0, |rule| rule.compliance());
-    springs(step).any(|(_, give, _)| give < yielding(scene, state, c))
+    let yielding = yielding(scene, state, c);
+    springs(step).fold(0.0, |most, (_, give, _)| f64::max(most, yielding / (yielding + give)))
 }
 
 /// Writes the first forces to try to the free motions: those that the present pressure, and in a first contact the shape, suggest.

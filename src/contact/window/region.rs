@@ -206,6 +206,11 @@ impl Region {
         Extent { low: self.first, high: [0, 1].map(|axis| self.first[axis] + self.cells()[axis] - 1) }
     }
 
+    /// The grid that it is a part of.
+    pub(crate) fn whole_grid(&self) -> &Grid {
+        &self.whole
+    }
+
     /// Its cell that is, or is the image of, a cell of the whole grid.
     pub(crate) fn find(&self, cell: [usize; 2]) -> Option<usize> {
         let mut own = [0; 2];

@@ -17,8 +17,8 @@ use std::fmt;
 
 use crate::Grid;
 use crate::error::{Error, LONGEST, MapError, Result, exact_length};
-use crate::geometry::Geometry;
 use crate::geometry::height_spectrum::HeightSpectrum;
+use crate::geometry::{Geometry, Waves};
 use crate::values::Counted;
 
 /// Distances from a point below this, in cells, are rounding errors.
@@ -251,6 +251,12 @@ impl Geometry for HeightMap {
         } else {
             super::fill_by_points(self, grid, by, gap);
         }
+    }
+
+    /// Waves of four of its points and more, whatever shorter ones it may hold: on a grid of its own spacing nothing is missed.
+    fn waves(&self) -> Vec<Waves> {
+        let period = if self.periodic { self.lengths() } else { [f64::INFINITY; 2] };
+        vec![Waves { period, shortest: self.spacing.map(|spacing| 4.0 * spacing) }]
     }
 }
 

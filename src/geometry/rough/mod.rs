@@ -15,7 +15,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::error::{Error, MapError, Result, within};
 use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
-use crate::geometry::{Geometry, HeightMap};
+use crate::geometry::{Geometry, HeightMap, Waves};
 use crate::parallel::{Rows, part};
 use crate::{Grid, memory};
 
@@ -93,6 +93,10 @@ impl Geometry for Rough {
 
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         self.map.fill_gap_at(grid, by, gap);
+    }
+
+    fn waves(&self) -> Vec<Waves> {
+        vec![Waves { period: self.map.lengths(), shortest: self.spec.shortest_along_axes() }]
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::{Rough, RoughSpec, heights};
 use crate::Grid;
 use crate::error::Result;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Waves};
 use crate::parallel::{Ranks, Rows, part};
 
 /// Distances from a cell centre below this, in cells, are rounding errors.
@@ -105,5 +105,10 @@ impl Geometry for SharedRough {
             (Some(i), Some(j)) => self.highest - self.heights[i * self.grid.cells()[1] + j],
             _ => f64::NAN,
         }
+    }
+
+    /// Its period is the grid that it was made for: there are no other points.
+    fn waves(&self) -> Vec<Waves> {
+        vec![Waves { period: [f64::INFINITY; 2], shortest: self.spec.shortest_along_axes() }]
     }
 }

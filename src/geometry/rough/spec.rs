@@ -124,6 +124,13 @@ impl RoughSpec {
         Ok(())
     }
 
+    /// Shortest wavelengths along x1 and x2 \[m\].
+    pub(super) fn shortest_along_axes(&self) -> [f64; 2] {
+        let (sin, cos) = self.anisotropy.direction.sin_cos();
+        let ratio = self.anisotropy.ratio;
+        [(cos / ratio).hypot(sin), (sin / ratio).hypot(cos)].map(|part| self.shortest / part)
+    }
+
     /// Power spectral density at the wave numbers `q` \[rad/m\], 1 at the roll-off; for a profile if `line` is set.
     pub(super) fn density(&self, q: [f64; 2], line: bool) -> f64 {
         let (sin, cos) = self.anisotropy.direction.sin_cos();

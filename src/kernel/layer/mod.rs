@@ -161,13 +161,20 @@ impl Layer {
     }
 
     /// Whether the surface is at rest far from a load.
-    pub(super) fn is_on_rigid(&self) -> bool {
+    pub(crate) fn is_on_rigid(&self) -> bool {
         !matches!(self.base, Base::HalfSpace { .. })
     }
 
     /// How much softer than the half-space of its own material it is for the longest waves: zero on a rigid base.
     pub(crate) fn longest_over_half_space(&self) -> f64 {
         self.response().at(0.0)
+    }
+
+    /// The part of the displacement under a contact of this `area` \[m²\] that the layer takes, and not its base. A square of side L yields
+    /// like the wave 2.1/L.
+    pub(crate) fn share(&self, area: f64) -> f64 {
+        let yields = self.response().at(2.1 / area.sqrt() * self.thickness);
+        if self.is_on_rigid() { 1.0 } else { (1.0 - self.longest_over_half_space() / yields).max(0.0) }
     }
 
     /// Whether the layer yields to long waves only by being squeezed out.

@@ -85,12 +85,14 @@ pub struct FitReport {
     wrong_way: f64,
     interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
+    /// Whether the series is the creep of a rod in tension.
+    pub(crate) in_tension: bool,
 }
 
 debug_by! {
     self: FitReport =>
     samples: Counted(&self.samples), terms: self.terms, wrong_way: self.wrong_way, interval: Counted(&self.interval),
-    warning: self.warning
+    warning: self.warning, in_tension: self.in_tension
 }
 
 impl FitReport {
@@ -107,7 +109,7 @@ impl FitReport {
 
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
+        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None, in_tension: false }
     }
 
     /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, and the

@@ -233,7 +233,7 @@ impl MasterCurve {
             }
             rows[k].place = Place::Entry(k);
         }
-        Measurements::from_rows(self.isotherms[0].experiment, rows)?.fitted()
+        Measurements::from_rows(self.isotherms[0].experiment, rows)?.fitted(deformation)
     }
 }
 

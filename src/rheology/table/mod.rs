@@ -144,8 +144,7 @@ impl Measurements {
     /// If no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)), or the headings of its file name
     /// moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
     pub fn fit(&self) -> Result<CreepSeries> {
-        self.deformation.accepts(Deformation::Shear)?;
-        self.fitted()
+        self.fitted(Deformation::Shear)
     }
 
     /// [`Measurements::fit`] of a table in tension, E(t), D(t), or E′ and E″ (a DMA): the creep D(t) of a rod, of which
@@ -165,11 +164,11 @@ impl Measurements {
     /// # Errors
     /// As [`Measurements::fit`], if the headings name moduli in shear.
     pub fn fit_tension(&self) -> Result<CreepSeries> {
-        self.deformation.accepts(Deformation::Tension)?;
-        self.fitted()
+        self.fitted(Deformation::Tension)
     }
 
-    fn fitted(&self) -> Result<CreepSeries> {
+    fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
+        self.deformation.accepts(deformation)?;
         let (layout, samples) = (self.experiment.layout(), &self.samples);
         let time = |x: f64| if layout.zero { x } else { 1.0 / x };
         let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
@@ -192,8 +191,9 @@ impl Measurements {
             }
         }
         let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
-        let report =
+        let mut report =
             FitReport::new(&measured.series, samples).of_measurements(self.wrong_way, measured.ambiguity, interval);
+        report.in_tension = deformation == Deformation::Tension;
         if let Some(worst) = report.worst().filter(|_| report.rms_misfit() > MOST_MISFIT) {
             let (table, rms) = (layout.table, report.rms_misfit());
             return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());

@@ -1,0 +1,44 @@
+//! Limits of the model and of a material, beyond which a step warns.
+
+use crate::contact::Warnings;
+use crate::rheology::{Material, is_known};
+
+/// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
+pub(crate) const STEEP: f64 = 0.5;
+/// Bodies that are pressed into a layer by more of its thickness strain it by more than is small.
+pub(crate) const DEEP: f64 = 0.2;
+/// A step of a greater error in time is too long.
+pub(crate) const LONG_STEP: f64 = 0.05;
+/// Contact moduli E* outside this range are in other units than Pa \[Pa\].
+const SOLID: std::ops::RangeInclusive<f64> = 10.0..=1e13;
+
+/// What a material is known for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    pub(crate) known_until: f64,
+    measured: [f64; 2],
+    is_uncertain: bool,
+    /// The contact modulus at once, if no solid has it \[Pa\].
+    pub(crate) modulus: Option<f64>,
+}
+
+impl Limits {
+    pub(crate) fn of(material: &Material) -> Limits {
+        // a body without elastic response has no modulus at once
+        let modulus = Some(1.0 / material.contact_compliance(0.0)).filter(|e| e.is_finite() && !SOLID.contains(e));
+        let is_uncertain = material.fit_reports().any(|report| report.warning().is_some());
+        Limits { known_until: material.known_until(), measured: material.measured(), is_uncertain, modulus }
+    }
+
+    /// The warnings of a step of length `dt` to the loading time `age`, without its modulus.
+    pub(crate) fn warnings(&self, age: f64, dt: f64) -> Warnings {
+        let [from, until] = self.measured;
+        let reasons = [
+            (Warnings::EXTRAPOLATED, !is_known(age, until)),
+            (Warnings::FASTER_THAN_MATERIAL, dt > 0.0 && dt < from),
+            (Warnings::NEAR_END_OF_MATERIAL, dt > 0.0 && !is_known(age + dt, self.known_until)),
+            (Warnings::UNCERTAIN_MATERIAL, self.is_uncertain),
+        ];
+        Warnings::of(&reasons)
+    }
+}
