@@ -74,10 +74,23 @@ impl StepControl {
         let (loads, points) = (Vec::with_capacity(PARTS_OF_RUN as usize + 1), Vec::with_capacity(2 * PARTS));
         let [whole, halves, middle] = [(); 3].map(|()| contact.clone());
         let (next, corner, by_force, greatest, greatest_load, rejected) = (0.0, 0.0, true, [0.0; 2], 0.0, 0);
-        StepControl { until, next, corner, by_force, greatest, loads, greatest_load, points, rejected, whole, halves, middle }
+        StepControl {
+            until,
+            next,
+            corner,
+            by_force,
+            greatest,
+            loads,
+            greatest_load,
+            points,
+            rejected,
+            whole,
+            halves,
+            middle,
+        }
     }
 
-    /// The last step tells nothing about the next one: the load jumps, or has a corner.
+    /// The next step starts at a jump or a corner of the load.
     pub(super) fn restart(&mut self) {
         self.next = 0.0;
     }
@@ -157,8 +170,8 @@ impl StepControl {
         }
     }
 
-    /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end. How far apart bodies are
-    /// does not matter where this is farther than the greatest depth.
+    /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
+    /// between the equal parts of the step. How far apart bodies are does not matter where this is farther than the greatest depth.
     fn bend(&mut self, [now, end]: [f64; 2], loads: &[f64; PARTS + 1]) -> f64 {
         self.greatest_load = loads.iter().copied().fold(self.greatest_load, f64::max);
         let near = |load: f64| load.max(-self.greatest_load);
@@ -170,6 +183,9 @@ impl StepControl {
         let own = loads.iter().enumerate().map(|(k, load)| off(k as f64 / PARTS as f64, *load));
         let after = self.loads.partition_point(|load| load.0 <= now);
         let others = self.loads[after..].iter().take_while(|load| load.0 < end);
+        if loads.iter().all(|load| *load <= 0.0) && others.clone().any(|(_, load)| *load > 0.0) {
+            return f64::INFINITY;
+        }
         own.chain(others.map(|(time, load)| off((time - now) / (end - now), *load))).fold(0.0, f64::max)
     }
 
@@ -211,7 +227,8 @@ impl StepControl {
         if !by_force && excess(end, top)? <= 0.0 {
             return Ok(None);
         }
-        let overshoot = if by_force { 0.0 } else { OVERSHOOT * tolerance * self.greatest[0].max(1e-3 * self.greatest_load) };
+        let overshoot =
+            if by_force { 0.0 } else { OVERSHOOT * tolerance * self.greatest[0].max(1e-3 * self.greatest_load) };
         let (mut low, mut presses) = (now, by_force && loads[0] > 0.0);
         for &(time, load) in &self.points {
             let (mut high, mut over) = (time, excess(time, load)?);

@@ -101,9 +101,8 @@ fn history(draws: &mut Draws, control: Control, until: f64, jumps: bool) -> (&'s
             let (first, second) = (until * draws.between(0.02, 0.2), until * draws.between(0.3, 0.7));
             let width = until * draws.scale(0.01, 0.1);
             let pulse = |t: f64| (-t * t).exp();
-            let part = move |t: f64| {
-                0.8 * pulse((t - first) / (0.3 * first)) + 0.9 * pulse((t - second) / width) - 0.02
-            };
+            let part =
+                move |t: f64| 0.8 * pulse((t - first) / (0.3 * first)) + 0.9 * pulse((t - second) / width) - 0.02;
             ("two pulses", Box::new(FnHistory::new(move |t: f64| control.load(part(t)))))
         }
     }
@@ -138,7 +137,7 @@ impl Scene {
             1 => Control::Approach { touch: 0.0, depth },
             _ => {
                 let drive = depth + force / stiffness;
-                Control::Spring { touch: 0.0, depth: drive, stiffness, is_stiff: false }
+                Control::Spring { touch: 0.0, depth: drive, stiffness, over: 1.0 }
             }
         };
         let (kind, history) = history(draws, control, until, !is_kelvin_voigt);

@@ -1,5 +1,8 @@
 //! The levels of a contact: groups with one past each, and the level up to which they are held.
 
+mod distance;
+mod merging;
+
 use crate::error::{Error, Result, StatesError, StepError};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::states::curve::{ElasticStates, Motions};
@@ -9,15 +12,6 @@ const ROUNDING: f64 = 1e-9;
 const SAME_LEVEL: f64 = 1e-15;
 /// Room for so many groups is made at once.
 const GROUPS: usize = 256;
-/// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
-const MORE: [usize; 2] = [8, 8];
-/// What merging changes is measured against the force and depth with a cut at the level of the groups, but against this part of those at the
-/// top at least.
-const LEAST: f64 = 1e-4;
-/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, and counts so much.
-const SWEPT: f64 = 0.05;
-/// Strains of levels that were swept count as far as they last for so many halves of the step.
-const LASTING: i32 = 8;
 
 /// What is prescribed at the end of a step.
 #[derive(Debug, Clone, Copy)]
@@ -321,101 +315,9 @@ impl Levels {
         self.groups.partition_point(|group| group.top <= self.level * (1.0 + SAME_LEVEL))
     }
 
-    /// Merges neighbours, both held or both free, where a later step that ends within the merged group errs by at most about `error`, in
-    /// depth and in force, relative to those with a cut at its top. Let A be the greatest difference of the strains of both: what a cut inside
-    /// leaves out is a profile of slope 2 A over the sum of both widths, so it errs by A/4 times this sum. Held groups keep their force,
-    /// free ones the depth.
-    pub(super) fn merge(&mut self, states: &ElasticStates, error: f64) {
-        let Some(last) = self.groups.last().copied().filter(|_| self.groups.len() >= self.merge_from) else { return };
-        let (held, reach, compliance) = (self.held(), states.reach(), self.history.rule().compliance());
-        // of (1 − W) Δl, the force over the compliance of a step that cuts there
-        let carried_by = |levels: &Levels, k: usize| {
-            let Group { top, traction, .. } = levels.groups[k];
-            let part = if k < held { traction * compliance } else { 1.0 - levels.history.displacements()[k] };
-            part * (top - levels.bottom(k).0)
-        };
-        let width = |levels: &Levels, k: usize| {
-            let ((bottom, lower), Group { top, motions, .. }) = (levels.bottom(k), levels.groups[k]);
-            let turned = (0..2).map(|axis| (motions.tilt[axis] - lower.tilt[axis]).abs()).sum::<f64>();
-            [top - bottom, motions.depth - lower.depth + reach * turned]
-        };
-        let least = LEAST * (0..self.groups.len()).map(|k| carried_by(self, k)).sum::<f64>();
-        let (mut kept, mut carried) = (0, 0.0);
-        for k in 0..self.groups.len() {
-            carried += carried_by(self, k);
-            let (group, own) = (self.groups[k], width(self, k));
-            if kept > 0 && k != held {
-                let before = width(self, kept - 1);
-                let [level, depth] = [0, 1].map(|axis| before[axis] + own[axis]);
-                let deep = group.motions.depth.max(LEAST * last.motions.depth);
-                let most = 4.0 * error * (carried.max(least) / level).min(deep / depth);
-                if self.history.differ_at_most(kept - 1, k, most) {
-                    let share = if k < held { own[0] / level } else { own[1] / depth };
-                    self.history.mix(kept - 1, k, share);
-                    let into = &mut self.groups[kept - 1];
-                    let traction = into.traction + share * (group.traction - into.traction);
-                    *into = Group { traction, ..group };
-                    continue;
-                }
-            }
-            self.groups[kept] = group;
-            self.history.copy_within(k, kept);
-            kept += 1;
-        }
-        self.groups.truncate(kept);
-        self.history.truncate(kept);
-        self.merge_from = kept + kept / MORE[0] + MORE[1];
-    }
-
     /// Σ W Δδ at the end of a step in which all groups are free: the depth that a body must pass to touch.
     pub(super) fn surface_after(&mut self, dt: f64, interpolant: Interpolant) -> f64 {
         self.history.predict(dt, interpolant, &mut self.trial);
         self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum()
-    }
-
-    /// Depth and force of an undisturbed contact under a load of this kind and size, the depth as soon as it acts, the force after so many
-    /// steps like the last one.
-    pub(super) fn expected(&self, states: &ElasticStates, demand: Demand, size: f64, steps: f64) -> [f64; 2] {
-        match demand {
-            Demand::Force(_) => [states.depth(size * self.history.rule().compliance()), size],
-            Demand::Depth { give, .. } => {
-                let stiffness = self.history.stiffness_over(steps);
-                let level = states.level_where(give * stiffness, size);
-                [states.depth(level), stiffness * level]
-            }
-        }
-    }
-
-    /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|
-    /// from below over the compliance, for X = W and X the strains as far as they can raise a free surface. This is the most that the
-    /// difference can ever add to a depth and to a force. The `cuts` are those of the other outcome.
-    pub(super) fn distance(&mut self, states: &ElasticStates, other: &Levels, start: f64, cuts: [f64; 2], steps: f64) -> [f64; 2] {
-        cuts.into_iter().for_each(|level| self.cut_at(states, level));
-        let all = [start, self.level, cuts[0], cuts[1]];
-        let [from, to] = [all.into_iter().fold(start, f64::min), all.into_iter().fold(start, f64::max)];
-        let mut worst = [0.0f64; 2];
-        for ((_, own), ([weight, decay], others)) in self.history.strains().zip(other.history.strains()) {
-            let swept = SWEPT * decay.powi(LASTING);
-            let (mut k, mut sums) = (0, [0.0f64; 2]);
-            // least and greatest sum over the depth below a level, of levels that were swept and of others
-            let mut range = [[0.0f64; 2]; 2];
-            for (group, Group { top, motions, .. }) in self.groups.iter().enumerate() {
-                let (bottom, lower) = self.bottom(group);
-                while other.groups.get(k).is_some_and(|group| group.top < top * (1.0 - ROUNDING)) {
-                    k += 1;
-                }
-                let difference = weight * (own(group) - if k < other.groups.len() { others(k) } else { 0.0 });
-                sums[0] += difference * (motions.depth - lower.depth);
-                sums[1] += difference * (top - bottom);
-                let is_swept = from * (1.0 + ROUNDING) < *top && *top < to * (1.0 - ROUNDING);
-                worst[1] = worst[1].max(if is_swept { swept } else { 1.0 } * sums[1].abs());
-                let [least, most] = &mut range[usize::from(is_swept)];
-                (*least, *most) = (least.min(sums[0]), most.max(sums[0]));
-            }
-            for ([least, most], weight) in range.into_iter().zip([1.0, swept]) {
-                worst[0] = worst[0].max(weight * (sums[0] - least).max(most - sums[0]));
-            }
-        }
-        [worst[0], worst[1] * other.history.stiffness_over(steps)]
     }
 }
