@@ -18,9 +18,12 @@ const SHORTEST: f64 = 8.0 * f64::EPSILON;
 /// Limits of the ratio of a step to the one before.
 const MAX_GROWTH: f64 = 4.0;
 const MIN_GROWTH: f64 = 0.1;
-/// Shares of the tolerance that the error of a step aims at, and that it may have: errors of several steps add up.
+/// Share of the tolerance that the error of a step aims at: errors of several steps add up, more so under given forces, where nothing brings
+/// the depth back.
 const AIM: f64 = 0.15;
-const ALLOWED: f64 = 0.45;
+const AIM_OF_FORCE: f64 = 0.1;
+/// A step may have so many times the error that it aims at.
+const ALLOWED: f64 = 3.0;
 /// Order of a corrected step, by which its length is chosen.
 const ORDER: f64 = 3.0;
 /// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
@@ -113,6 +116,7 @@ impl StepControl {
             self.corner = now;
         }
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.next }.max(shortest);
+        let aim = if self.by_force { AIM_OF_FORCE } else { AIM } * tolerance;
         let mut last: Option<(f64, f64)> = None;
         loop {
             if length < shortest {
@@ -140,8 +144,8 @@ impl StepControl {
                 Some(_) => 1.0,
                 None => ORDER,
             };
-            let growth = (AIM * tolerance / error).powf(1.0 / order).clamp(MIN_GROWTH, MAX_GROWTH);
-            if error <= ALLOWED * tolerance {
+            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, MAX_GROWTH);
+            if error <= ALLOWED * aim {
                 self.next = match event {
                     Some(_) => growth.clamp(0.5, 1.0) * length,
                     None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
