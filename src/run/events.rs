@@ -252,7 +252,7 @@ fn top(looks: &[Look]) -> Option<f64> {
     let share = -0.25 * slope / bend;
     let value = middle.beyond + slope * share + 2.0 * bend * share * share;
     let is_inside = (1e-3..0.499).contains(&share.abs());
-    (is_inside && (value >= 0.0) != (middle.beyond >= 0.0)).then(|| middle.time + share * (end.time - start.time))
+    (is_inside && (value >= 0.0) != (middle.beyond >= 0.0)).then_some(middle.time + share * (end.time - start.time))
 }
 
 /// The first time found at which the quantity is beyond the value, at most `same` after one at which it is not: by secants, and by

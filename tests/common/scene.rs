@@ -127,7 +127,7 @@ impl Scene {
             false => random_history(draws, scene.control, until, scene.body.is_elastic_at_once()),
         };
         let count = if returns { 8 } else { 1 + draws.below(10) };
-        let mut part = |k: usize| match returns || k % 2 == 0 {
+        let mut part = |k: usize| match returns || k.is_multiple_of(2) {
             true => draws.between(0.0, 1.0),
             false => draws.power_of_ten(-4.0, 0.0),
         };
