@@ -95,8 +95,8 @@
 //! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
 //! times per decade for an error of 1e-4, in a tenth of a second.
 //!
-//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is computed,
-//! <!-- figures memory -->158 to 186<!-- end --> where all are, 16 more for each computed cell where threads share a contact
+//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
+//! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, 16 more for each computed cell where threads share a contact
 //! (<!-- figures memory of a line -->370<!-- end --> for a line contact, whose transform tables are as long as the line), and 8 for each
 //! computed cell and further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory for it is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the

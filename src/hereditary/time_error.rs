@@ -124,7 +124,7 @@ impl History {
         }
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
-        let Defect { signed, smooth, kinks, of_leaving, greatest, surface: [surface, of_surface], peak } =
+        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
             sums.defect(rule, context.resolution, context.is_last);
         let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
@@ -135,14 +135,11 @@ impl History {
             scales[1].max(measure.greatest[1]).max(context.greatest_on_switch),
         ];
         let [in_contact, outside] = context.lasting;
-        let lasting = match (measure.matters[0] > 0.0, pressed) {
-            (true, true) => relative(in_contact, whole[0]),
-            (true, false) => relative(outside, whole[0]),
-            (false, _) => 0.0,
-        };
+        let lasting = relative(if pressed { in_contact } else { outside }, whole[0]);
+        let lasting = if measure.matters[0] > 0.0 { lasting } else { 0.0 };
         let growth = (1.0 + context.agreement * (measure.amplification - 1.0))
             * (1.0 + LASTING_WEIGHT * (lasting / context.tolerance - TOLERATED).max(0.0));
-        let kinks_of_u = (edge * kinks).max(of_leaving);
+        let kinks_of_u = (edge * kinks).max(sums.of_leaving(rule));
         let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
@@ -295,8 +292,6 @@ struct Defect {
     smooth: f64,
     /// By cells that joined.
     kinks: f64,
-    /// By the kink of u where cells leave.
-    of_leaving: f64,
     /// The greatest of a cell.
     greatest: f64,
     /// Of a surface that bodies may come back to, and of its absolute value.
@@ -338,7 +333,6 @@ impl Sums {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1.0),
-            of_leaving: self.of_leaving(rule),
             greatest: (EDGE * self.sharpest).max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),

@@ -31,7 +31,7 @@ impl Loads {
         let interpolant = scene.accuracy.settings().adaptive_interpolant();
         if on_states
             && all.iter().all(|load| matches!(load, Load::Force { .. }))
-            && let Ok(normal) = course.greatest_level(tilt, interpolant)
+            && let Ok(normal) = course.greatest_level(tilt, interpolant, PARTS)
         {
             return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
         }

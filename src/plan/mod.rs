@@ -73,7 +73,8 @@ use crate::run::Stepping;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Plan {
-    /// A builder with grid, geometry, material and settings; each can be replaced.
+    /// A builder with grid, geometry, material and settings; each can be replaced. [`Builder::attraction`] is refused when it is built: the grid
+    /// was chosen without it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub builder: Builder,
     /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).

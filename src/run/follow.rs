@@ -173,7 +173,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     }
 
     /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
-    /// [`Error::Cancelled`] within an iteration of the solver, and leaves the contact as it was. While the flag is set no step is
+    /// [`Error::Cancelled`](crate::Error::Cancelled) within an iteration of the solver, and leaves the contact as it was. While the flag is set no step is
     /// taken; once it is cleared the run goes on, with the same steps. Where ranks share out the contact they look at their flags
     /// when a step begins.
     ///

@@ -32,7 +32,7 @@ impl Stepping {
     }
 
     /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under a
-    /// given force, the error of the force under a given approach. It is relative to the displacement or force; for
+    /// given force, the error of the force under a given approach, of both under a spring. It is relative to the displacement or force; for
     /// small values it is relative to a fraction of the greatest of the run. Errors of the pressure at a point may be
     /// larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The tolerance of the solver is
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`, whichever is greater.

@@ -83,9 +83,7 @@ impl RunScale {
                 loads.push((time, load));
             }
         }
-        if compliance > 0.0 {
-            scale.include_spring(scene, state, compliance, &loads);
-        }
+        scale.include_spring(scene, state, compliance, &loads);
         for (time, load) in loads.iter().filter(|(time, load)| !matches!(load, Load::Force { .. }) && *time > now) {
             let compliance = compliance_at(*time)? + SECANT * scale.give(load);
             scale.stress = scale.stress.max(scale.magnitude(load) / compliance);
@@ -125,7 +123,7 @@ impl RunScale {
             _ => None,
         });
         let deepest = springs.max_by(|(one, _), (other, _)| one.total_cmp(other));
-        if let Some((drive, stiffness)) = deepest.filter(|&(drive, _)| drive > 0.0) {
+        if let Some((drive, stiffness)) = deepest.filter(|&(drive, _)| drive > 0.0 && compliance > 0.0) {
             let force = stiffness * drive;
             let depth = 2.0 * resting_depth(scene, state, force * compliance);
             let part = drive / (drive + depth);

@@ -212,16 +212,14 @@ impl StepControl {
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
         let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
         let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
+        let lasting = self.lasting.as_ref().map(<[_; 2]>::each_ref);
         let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
         let meeting =
             self.scale.as_ref().map_or(Meeting::default(), |scale| scale.coming_back(scene, load, [age, now]));
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
-            lasting: self
-                .lasting
-                .as_ref()
-                .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
+            lasting: lasting.map_or([0.0; 2], |errors| errors.map(LastingError::of_displacement)),
             on_switch,
             greatest_on_switch: if on_switch[1] > 0.0 { greatest } else { 0.0 },
             on_jump: 0.0,

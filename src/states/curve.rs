@@ -291,7 +291,9 @@ impl ElasticStates {
             // one of the summands is half of the sum at least
             let low = ((half - first.depth) / first.slope).min(half - give - first.level);
             let at = |s: f64| excess([first.depth + first.slope * s, first.slope, first.level + s]);
-            return (first.level + root([low, 0.0], at)).exp();
+            let level = (first.level + root([low, 0.0], at)).exp();
+            // what has no digits left is no contact
+            return if level < f64::MIN_POSITIVE { 0.0 } else { level };
         }
         let [a, b] = [self.nodes[upper - 1], self.nodes[upper]];
         let (length, depths) = (b.level - a.level, [a.depth, b.depth]);

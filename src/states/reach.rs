@@ -15,10 +15,10 @@ use crate::states::curve::ElasticStates;
 const PARTS: u32 = 4096;
 const MAX_CORNERS: usize = 1000;
 /// Number of even parts of a run at whose ends its level is sampled, and the tolerance of its steps.
-const LEVELS: u32 = 64;
+const LEVELS: u32 = 1024;
 const TOLERANCE: f64 = 1e-4;
 /// Factor by which a sweep goes beyond the level that a run is found to need: the load may be greater between two samples, and steps err.
-pub(super) const MARGIN: f64 = 1.01;
+pub(super) const MARGIN: f64 = 1.05;
 
 /// How far a sweep goes.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ pub enum Reach {
     Level(f64),
     /// To an approach of the load point \[m\].
     Approach(f64),
-    /// To the largest contact of an elastic body of unit compliance under one of these loads, and 1 % of the level beyond: a force is a
+    /// To the largest contact of an elastic body of unit compliance under one of these loads, and 5 % of the level beyond: a force is a
     /// level \[m²\], and the stiffness of a spring is given over the contact modulus \[m\]. The loads have the tilts of the sweep.
     Loads(Vec<Load>),
 }
@@ -91,7 +91,9 @@ impl Course<'_> {
         positive("end of the run", self.until)?;
         let all = self.sampled(PARTS)?;
         if all.iter().all(|load| matches!(load, Load::Force { .. })) {
-            return Ok(Reach::Level(MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear)?));
+            return Ok(Reach::Level(
+                MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
+            ));
         }
         Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
@@ -133,13 +135,13 @@ impl Course<'_> {
         })
     }
 
-    /// The greatest level of a run under given forces, which does not depend on the shape.
-    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant) -> Result<f64> {
+    /// The greatest level at the ends of the steps and of so many even parts of a run under given forces; it does not depend on the shape.
+    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant, parts: u32) -> Result<f64> {
         let mut states = ElasticStates::sphere(1.0)?;
         Arc::make_mut(&mut states).tilt = tilt;
         let mut contact = self.contact(&states, interpolant)?;
         let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
-        let mut run = run.sample_at(Times::every(self.until / f64::from(LEVELS)))?;
+        let mut run = run.sample_at(Times::every(self.until / f64::from(parts)))?;
         let mut greatest = 0.0_f64;
         while run.next_step()?.is_some() {
             for sample in run.samples() {

@@ -111,9 +111,9 @@ fn damaged_files_are_refused() {
     }
     let mut newer = bytes.clone();
     newer[8] = 99;
-    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 10 });
+    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 11 });
     newer[8] = 1;
-    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 10 });
+    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 11 });
     assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
     let longer = [&bytes[..], &[0]].concat();
     assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));
@@ -340,7 +340,7 @@ fn a_run_that_is_killed() {
     let mut log = fs::OpenOptions::new().create(true).append(true).open(folder.join("log")).unwrap();
     use std::io::Write;
     writeln!(log, "\nresumed {:e}", contact.time()).unwrap(); // the line before may be cut
-    let load = Sinusoid::new(Load::force(0.3), Load::force(0.2), 1.0).unwrap();
+    let load = Sinusoid::new(Load::force(0.2), Load::force(0.3), 1.0).unwrap();
     let mut run = contact.follow(&load, Stepping::fixed(0.01), 0.01 * STEPS).autosave_to(&saved, every);
     while let Some(report) = run.next_step().unwrap() {
         writeln!(log, "{:e} .", report.time).unwrap();

@@ -1,10 +1,10 @@
 //! Named constructors, and bodies measured in tension.
 
-use crate::common::{pairs, triples};
+use crate::common::{builder_on, pairs, triples};
 use approx::assert_abs_diff_eq;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, Experiment, Isotherm, MasterCurve, TableError, Units};
+use viscocontact::rheology::{CreepSpectrum, Experiment, Isotherm, MasterCurve, MaterialError, TableError, Units};
 use viscocontact::{Error, TextFormat};
 
 fn terms_of(body: &dyn Rheology) -> (f64, Vec<(f64, f64)>) {
@@ -233,7 +233,14 @@ fn headings_keep_tension_and_shear_apart() {
     }
     for (experiment, headings) in [(Experiment::Relaxation, "t,modulus"), (Experiment::Creep, "t,compliance")] {
         let table = read(experiment, headings);
-        assert_eq!(table.fit().unwrap().report(), table.fit_tension().unwrap().report());
+        // the same series, which knows what it was taken for
+        let [shear, rod] = [table.fit().unwrap(), table.fit_tension().unwrap()];
+        assert_eq!((shear.spectrum(), shear.report().samples()), (rod.spectrum(), rod.report().samples()));
+        let contact_on =
+            |series| builder_on(Grid::square(16, 4.0e-3).unwrap(), Material::incompressible(series)).build();
+        assert!(contact_on(shear).is_ok());
+        let refused = contact_on(rod).err();
+        assert!(matches!(refused, Some(Error::Material(MaterialError::TakenForShear))), "{refused:?}");
     }
     // a diameter is no compliance
     let diameter = "t,D [mm],J\n1,5,1.0\n2,5,1.1\n4,5,1.3\n8,5,1.4\n";

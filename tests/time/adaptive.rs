@@ -265,7 +265,7 @@ fn named_jumps_are_followed_however_late() {
     let sphere = Sphere::new(10.0e-3).unwrap();
     let sweep = Sweep::new(grid.clone(), &sphere).accuracy(1e-5);
     let states = sweep.run(Reach::Level(4.0e-7)).unwrap();
-    let (mut late, mut worst) = (0, 0.0f64);
+    let (mut late, mut worst, mut unresolved) = (0, 0.0f64, 0.0f64);
     for number in 0..from_environment("LATE_JUMPS", 30) {
         let mut draws = Draws::new(number.wrapping_add(57_000_001));
         let terms: Vec<_> = (0..21).map(|k| (1.0e5 * draws.power_of_ten(-1.0, 0.0), 10.0_f64.powi(k - 10))).collect();
@@ -283,25 +283,22 @@ fn named_jumps_are_followed_however_late() {
         {
             steps += 1;
             let since = report.time - jump;
-            // within the resolution of times after the jump, the report gives the error
-            let allowed = if since > 0.0 && since < 1e4 * f64::EPSILON * jump { report.time_error } else { None };
             let increase = if since > 0.0 || report.force > 0.5 * (before + last) { last - before } else { 0.0 };
             let level =
                 before * body.contact_compliance(report.time) + increase * body.contact_compliance(since.max(0.0));
             let off = (report.approach / states.approach(level) - 1.0).abs();
-            let ratio = off / allowed.unwrap_or(0.0).max(tolerance);
-            if ratio > 1.0 {
-                println!(
-                    "{number}: {ratio:.2} at {tolerance:.0e}, {:.1e} roundings after the jump at {jump:.1e} s, {:.1e}",
-                    since / (f64::EPSILON * jump),
-                    since / end
-                );
+            // the report estimates the error of steps that are not resolved
+            if since > 0.0 && since < 1e3 * f64::EPSILON * jump {
+                unresolved = unresolved.max(off / report.time_error.unwrap().max(tolerance));
+            } else {
+                worst = worst.max(off / tolerance);
             }
-            worst = worst.max(ratio);
             assert!(steps < 3000, "{number}");
         }
         late += u32::from(jump > 1e7);
     }
-    println!("{late} jumps after 1e7 s; greatest error over the tolerance {worst:.2}");
-    assert!(late > 3 && worst < 2.0, "{late} {worst}");
+    println!(
+        "{late} jumps after 1e7 s; greatest error over the tolerance {worst:.2}, over the one reported {unresolved:.2}"
+    );
+    assert!(late > 3 && worst < 2.0 && unresolved < 4.0, "{late} {worst} {unresolved}");
 }

@@ -6,7 +6,7 @@
 //! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes. `RETURNS_SPRINGS` counts those by springs.
 
 use crate::common::watched_runs::watch;
-use crate::common::{RandomScene, Ratios, Truth, from_environment};
+use crate::common::{RandomScene, Ratios, Truth, builder_on, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -123,4 +123,34 @@ fn step_loads_and_short_ramps_are_honest() {
         ratios.print(name, 3);
         assert!(ratios.quantile(0.99) <= 2.0, "{name}");
     }
+}
+
+/// Cells leave within steps of many relaxation times, after which a force presses the bodies deeper than before: the kink of u shows little in
+/// its differences where it is near the end of a step.
+#[test]
+fn cells_that_leave_in_long_steps_are_honest() {
+    let (until, tolerance) = (18.94, 1e-5);
+    let force = |part: f64| Load::force(2.0171e-2 * part);
+    let rows = [(0.0, force(0.0)), (0.4243 * until, force(1.0)), (0.8487 * until, force(0.2)), (until, force(0.8))];
+    let load = PiecewiseLinear::new(&rows).unwrap();
+    let body = FractionalZener::new(1.0e6, 1.0e6 / 2.2523, 0.01, 0.6909).unwrap();
+    let contact = || {
+        let builder = builder_on(Grid::square(14, 2.0e-3).unwrap(), Material::incompressible(body));
+        let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(1e-10);
+        builder.times_of(&load, until).settings(settings).build().unwrap()
+    };
+    let (mut tried, mut fine) = (contact(), contact());
+    let mut run = tried.follow(&load, Stepping::adaptive(tolerance), until);
+    let (mut now, mut worst, mut deepest, mut leaves, mut cells) = (0.0, 0.0_f64, 0.0_f64, 0, 0);
+    while let Some(StepReport { time, approach, contact_cells, .. }) = run.next_step().unwrap() {
+        for part in 1..=32 {
+            let next = if part == 32 { time } else { now + (time - now) * f64::from(part) / 32.0 };
+            fine.step(next - fine.time(), load.before(next)).unwrap();
+        }
+        (now, leaves, cells) = (time, leaves + usize::from(contact_cells < cells), contact_cells);
+        (worst, deepest) = (worst.max((approach - fine.approach()).abs()), deepest.max(fine.approach()));
+    }
+    let worst = worst / deepest / tolerance;
+    println!("cells leave in {leaves} steps, greatest error {worst:.2} tolerances");
+    assert!(leaves >= 3 && worst <= 2.0, "{worst}");
 }

@@ -263,7 +263,7 @@ fn history(draws: &mut Draws, kind: usize, [force, depth]: [f64; 2]) -> Box<dyn 
 /// A sweep to the reach of a run holds all states of the run, and under forces and approaches few others.
 #[test]
 fn sweeps_reach_what_a_run_needs() {
-    let (mut beyond, mut wasted, mut kinds) = (0, 0.0f64, [0; 7]);
+    let (mut beyond, mut wasted, mut kinds) = ([0; 2], 0.0f64, [0; 7]);
     let grid = Grid::square(10, 1.0).unwrap();
     for number in 0..from_environment("STATES_REACH", 42) {
         let mut draws = Draws::new(number.wrapping_add(86_000_001));
@@ -286,7 +286,10 @@ fn sweeps_reach_what_a_run_needs() {
         let sweep = Sweep::new(grid.clone(), &bowl).settings(Settings::default().with_edge(Edge::Allow)).accuracy(1e-2);
         let states = match sweep.run(reach) {
             Ok(states) => states,
-            Err(Error::OutOfRange { field: "load that a sweep reaches", .. }) => continue,
+            // never in contact
+            Err(Error::OutOfRange { field: "load that a sweep reaches" | "level that a sweep reaches", .. }) => {
+                continue;
+            }
             Err(error) => panic!("{number}: {error}"),
         };
         let mut contact = StatesContact::new(&states, &body).unwrap();
@@ -300,7 +303,7 @@ fn sweeps_reach_what_a_run_needs() {
                 Ok(Some(_)) => greatest = greatest.max(run.contact().level()),
                 Ok(None) => break,
                 Err(Error::States(StatesError::Beyond { .. })) => {
-                    beyond += 1;
+                    beyond[usize::from(matches!(kind, 2 | 5 | 6))] += 1;
                     println!("{number}, kind {kind}: beyond");
                     break;
                 }
@@ -309,12 +312,15 @@ fn sweeps_reach_what_a_run_needs() {
         }
         kinds[kind] += 1;
         let last = states.states()[states.states().len() - 1].level;
-        if !matches!(kind, 2 | 5 | 6) {
+        if greatest > 0.0 && !matches!(kind, 2 | 5 | 6) {
             wasted = wasted.max(last / greatest);
         }
     }
-    println!("runs by kind {kinds:?}; {beyond} go beyond; sweeps reach {wasted:.3} times the level needed");
-    assert!(beyond == 0 && wasted < 1.2 && kinds.iter().all(|runs| *runs > 2), "{beyond} {wasted} {kinds:?}");
+    println!("runs by kind {kinds:?}; {beyond:?} go beyond; sweeps reach {wasted:.3} times the level needed");
+    // springs and several kinds of load have an estimate
+    let of_estimates: u32 = [2, 5, 6].map(|kind: usize| kinds[kind]).iter().sum();
+    let few = beyond[0] == 0 && 20 * beyond[1] <= of_estimates;
+    assert!(few && wasted < 1.2 && kinds.iter().all(|runs| *runs > 2), "{beyond:?} {wasted} {kinds:?}");
 }
 
 /// A body that tilts freely under no force rests where small forces press it. The stepper has the same limit; under exactly no force its

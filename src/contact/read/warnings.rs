@@ -138,7 +138,7 @@ const MESSAGES: [(Warnings, &str); 19] = [
     (Warnings::NO_CONTACT, "the bodies never touched in the run: raise the approach, or check its sign and unit"),
 ];
 
-/// The warnings, separated by semicolons; nothing if there are none. [`StepReport::messages`] adds their numbers.
+/// The warnings, separated by semicolons; nothing if there are none. [`StepReport::messages`](crate::contact::StepReport::messages) adds their numbers.
 impl fmt::Display for Warnings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";

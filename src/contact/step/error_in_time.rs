@@ -9,7 +9,6 @@ use crate::hereditary::{ErrorMeasure, StepContext, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
 use crate::sum;
-use crate::sum::greatest as greatest_of;
 use crate::sum::greatest;
 
 impl Computation {
@@ -35,8 +34,8 @@ impl Computation {
         let body = window.gap(&step.indenter).owner(k);
         let end = motion_tried(&state.region, trial, step, body);
         if self.was_at_rest(body) {
-            let since = rests_at.map_or(1.0, |start| self.since_touch(step, body, start));
-            return rests_at.map_or(f64::NAN, |start| (end.at(state.region.center(k)) - start) / since);
+            let advance = |start: f64| (end.at(state.region.center(k)) - start) / self.since_touch(step, body, start);
+            return rests_at.map_or(f64::NAN, advance);
         }
         let start = state.current.motions[body];
         let approach = step.indenter.gap().datum + end.approach - start.approach;
@@ -47,11 +46,9 @@ impl Computation {
     /// The part of the step tried in which a body touches a surface at this approach, from the datum of the gap: all of it where it lies on the
     /// surface. A body apart is where the far end of its spring is.
     fn since_touch(&self, step: &Step<'_>, body: usize, surface: f64) -> f64 {
-        let (start, datum) = (self.state.current.motions[body].approach, step.indenter.gap().datum);
+        let (start, surface) = (self.state.current.motions[body].approach, step.indenter.gap().datum + surface);
         match step.loads[body] {
-            Load::Spring { drive, .. } if drive > datum + surface && datum + surface > start => {
-                (drive - datum - surface) / (drive - start)
-            }
+            Load::Spring { drive, .. } if drive > surface && surface > start => (drive - surface) / (drive - start),
             _ => 1.0,
         }
     }
@@ -88,7 +85,7 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     if !scene.settings.time_rule.needs_series() {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
         // products of great pressures and displacements would overflow; no ranks share out direct sums
-        let most = greatest_of(pressure);
+        let most = sum::greatest(pressure);
         let fields =
             pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
         for ((&p, &u), (&v, &old)) in fields.filter(|((p, _), _)| **p > 0.0) {
@@ -108,10 +105,8 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     // an attraction pulls at a surface whose displacement is free
     let attracted = scene.attraction.is_some();
     let is_given = forces < trial.free.len() || attracted;
-    let matters = [
-        if forces > 0 || attracted { 1.0 } else { 0.0 },
-        if is_given { 1.0 } else { share_of_force(scene, state, step) },
-    ];
+    let of_force = if is_given { 1.0 } else { share_of_force(scene, state, step) };
+    let matters = [if forces > 0 || attracted { 1.0 } else { 0.0 }, of_force];
     meeting.give = if is_given { 0.0 } else { meeting.give };
     let gap = &tried.window.gap(&step.indenter).above;
     let was_at_rest = trial.free.len() == 1 && tried.was_at_rest(0);

@@ -155,13 +155,14 @@ impl ViscoelasticContact {
         let State { indenter, region, clock, .. } = state;
         let (pressure, datum) = (&state.current.solution.pressure, indenter.gap().datum);
         let motion = |body: usize| RigidMotion { approach: -datum, tilt: [0.0; 2] } + state.current.motions[body];
-        let compliance = scene.material.contact_compliance(clock.age().max(clock.last_dt));
+        let compliance = || scene.material.contact_compliance(clock.age().max(clock.last_dt));
+        let in_zone = || cells_in_zone(scene.softening, compliance(), &scene.grid);
         let figures = Figures {
             max_slope: indenter.steepest(&scene.grid, region, pressure),
             compression: scene.compression(indenter, region, pressure, motion),
             cells_in_wave: self.missed.cells,
             periods: self.missed.periods,
-            cells_in_zone: Some(cells_in_zone(scene.softening, compliance, &scene.grid)).filter(|c| *c < COARSE_ZONE),
+            cells_in_zone: (scene.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
             modulus: scene.limits.modulus,
             touch: None,
         };

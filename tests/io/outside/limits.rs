@@ -6,7 +6,7 @@ use super::surfaces::Pressed;
 use crate::common::{Draws, RandomScene, builder_of, elastic, from_environment};
 use viscocontact::Error;
 use viscocontact::contact::Warnings;
-use viscocontact::geometry::Sum;
+use viscocontact::geometry::{Repeated, Sum};
 use viscocontact::prelude::*;
 
 /// A shape that a contact is given later is told of, too; a tilt presses a corner deeper.
@@ -129,4 +129,35 @@ fn scenes_inside_the_model_give_no_false_alarm() {
         runs += 1;
     }
     assert!(runs > 0 && steps > 10 * runs, "{runs} {steps}");
+}
+
+/// A shape repeats after the period that it tells, and the shortest wave that it tells is its own.
+#[test]
+fn shapes_repeat_after_the_periods_that_they_tell() {
+    let grid = Grid::new([24, 16], [3.0, 2.0]).unwrap();
+    let rough = || Rough::new(&grid, RoughSpec::new(1.5, 0.6, Roughness::RmsHeight(0.01))).unwrap();
+    let shapes: [(Box<dyn Geometry>, f64); 6] = [
+        (Box::new(Wavy::new(0.1, 0.7).unwrap()), 0.7),
+        (Box::new(Wavy::in_two_directions([0.1, 0.2], [0.7, 0.5]).unwrap()), 0.5),
+        (Box::new(rough()), 0.6),
+        (Box::new(rough().height_map().clone()), 0.5),
+        (Box::new(Shifted::new(rough(), [0.3, -0.2]).unwrap()), 0.6),
+        (Box::new(Repeated::new(Wavy::new(0.1, 0.7).unwrap(), [2.0, f64::INFINITY]).unwrap()), 0.7),
+    ];
+    let mut draws = Draws::new(9_000_001);
+    for (shape, least) in &shapes {
+        let waves = shape.waves();
+        let shortest = waves.iter().flat_map(|waves| waves.shortest).fold(f64::INFINITY, f64::min);
+        assert!((shortest / least - 1.0).abs() < 1e-12, "{shape:?}: {shortest}");
+        let periods = [0, 1].map(|axis| waves[0].period[axis]);
+        assert!(periods.iter().any(|period| period.is_finite()), "{shape:?}");
+        for _ in 0..50 {
+            let [x1, x2] = [draws.between(-2.0, 2.0), draws.between(-2.0, 2.0)];
+            let here = shape.initial_gap(x1, x2);
+            for (axis, period) in periods.into_iter().enumerate().filter(|(_, period)| period.is_finite()) {
+                let there = if axis == 0 { [x1 + period, x2] } else { [x1, x2 + period] };
+                assert!((shape.initial_gap(there[0], there[1]) - here).abs() < 1e-9, "{shape:?} {x1} {x2} {axis}");
+            }
+        }
+    }
 }
