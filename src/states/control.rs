@@ -214,13 +214,13 @@ impl StepControl {
             _ => loads[k + 1] - loads[k - 1],
         };
         self.points.clear();
-        for k in 1..=PARTS {
+        for (k, &load) in loads.iter().enumerate().skip(1) {
             let (rise, fall) = (slope(k - 1), -slope(k));
             if rise > 0.0 && fall > 0.0 {
                 let top = part([now, end], (k - 1) as f64 + rise / (rise + fall));
                 self.points.push((top, value(contact, load_at(history, top)?)?));
             }
-            self.points.push((part([now, end], k as f64), loads[k]));
+            self.points.push((part([now, end], k as f64), load));
         }
         let scratch = &mut self.whole;
         scratch.copy_from(contact);

@@ -344,3 +344,51 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
     assert!(failed.is_empty(), "{failed:?}");
     assert!(both.above(2.0) <= both.count() / 100 && both.above(3.0) == 0, "beyond what was asked: {both:?}");
 }
+
+/// Nine taps, most of them shorter than the step that the body apart would allow: none is stepped over, and none is too weak.
+#[test]
+fn taps_are_not_stepped_over() {
+    let states = ElasticStates::sphere(1.0).unwrap();
+    let body = relaxing(1.0 / 10.5, [(1.0, 1.0)]);
+    let rate = 1.5;
+    let load = FnHistory::new(move |t: f64| Load::approach(0.18 * (rate * t).sin()));
+    let mut fine = StatesContact::new(&states, &body).unwrap();
+    let mut peaks = [[0.0f64; 9]; 2];
+    let tap = |time: f64| (rate * time / TAU) as usize;
+    for _ in 0..20_000 {
+        let next = fine.time() + 37.0 / 20_000.0;
+        fine.step(next - fine.time(), load.at(next)).unwrap();
+        peaks[0][tap(next).min(8)] = peaks[0][tap(next).min(8)].max(fine.force());
+    }
+    for tolerance in [1e-3, 1e-4, 1e-5] {
+        let mut contact = StatesContact::new(&states, &body).unwrap();
+        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 37.0);
+        peaks[1] = [0.0; 9];
+        while let Some(report) = run.next_step().unwrap() {
+            for k in 1..=8 {
+                let time = report.time - report.dt * (1.0 - f64::from(k) / 8.0);
+                let force = run.within_step(time).unwrap().force();
+                peaks[1][tap(time).min(8)] = peaks[1][tap(time).min(8)].max(force);
+            }
+        }
+        for (found, right) in peaks[1].iter().zip(peaks[0]) {
+            assert!((found / right - 1.0).abs() < 0.02 + 10.0 * tolerance, "{tolerance:e}: {found} instead of {right}");
+        }
+    }
+}
+
+/// A breakpoint that is the end of the run but for the rounding of times.
+#[test]
+fn breakpoints_a_rounding_before_the_end_are_reached() {
+    let until = 95.21f64;
+    let load = |t: f64| Load::force((0.1 * t).sin().powi(2));
+    for ulps in 1..=40 {
+        let corner = f64::from_bits(until.to_bits() - ulps);
+        let history = FnHistory::new(load).with_breakpoints(&[corner]).unwrap();
+        let mut contact =
+            StatesContact::new(&ElasticStates::sphere(1.0).unwrap(), &relaxing(0.1, [(0.9, 1.0)])).unwrap();
+        let mut run = contact.follow(&history, Stepping::adaptive(1e-3), until);
+        while run.next_step().unwrap().is_some() {}
+        assert_eq!(contact.time(), until);
+    }
+}
