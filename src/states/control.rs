@@ -328,7 +328,7 @@ impl StepControl {
 
 /// The load at a time, or just before it where it jumps.
 pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
-    history.before(time).validated_at(time, false)
+    history.checked_before(time, false)
 }
 
 fn is_force(history: &dyn LoadHistory, time: f64) -> bool {

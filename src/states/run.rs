@@ -109,7 +109,7 @@ impl Driven for StatesContact {
         if control.halved && time > middle && time < end {
             contact.step_to(middle, middle - start, load_at(history, middle)?)?;
         }
-        let load = history.at(time).validated_at(time, false)?;
+        let load = history.checked_at(time, false)?;
         if time > start && time < end {
             contact.step_to(time, time - contact.time(), load)?;
         }

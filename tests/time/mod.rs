@@ -9,6 +9,7 @@ mod inside;
 mod protocols;
 mod protocols_run;
 mod returns;
+mod run;
 mod samples;
 mod springs;
 mod states;
