@@ -17,7 +17,7 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
 /// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each group of one. Every
-/// step adds a group at most; groups merge where the difference of their pasts counts for nothing, so that N stays below about 30 τ/Δt. A step allocates
+/// step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]), so that N stays below about 2/√error. A step allocates
 /// nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
@@ -84,7 +84,7 @@ impl StatesContact {
 
     /// With groups of levels that merge where this changes force and depth by at most about `error`, relative to what they are: 1e-6 unless
     /// set. The contact area errs ten times as much. A long run has about 1/√`error` groups, whatever the number of its steps and
-    /// relaxation times: a contact law in a loop is faster with 1e-4. Runs with [`Stepping::adaptive`](crate::contact::Stepping::adaptive)
+    /// relaxation times: a contact law in a loop is faster with 1e-4. Runs with [`Stepping::adaptive`](crate::run::Stepping::adaptive)
     /// take a hundredth of their tolerance instead; 0 merges only groups with the same past.
     ///
     /// ```
