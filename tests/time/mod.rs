@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod cancelled;
+mod cost;
 mod fixed_steps;
 mod follow;
 mod honest;
@@ -18,4 +19,3 @@ mod states_limits;
 mod states_outside;
 mod temperature;
 mod time_rules;
-mod uncached;
