@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use viscocontact::prelude::*;
 use viscocontact_scenes::any_scene::AnyScene;
-use viscocontact_scenes::random_scenes::RandomScene;
+use viscocontact_scenes::{Features, Scene};
 
 fn hash(numbers: impl IntoIterator<Item = u64>) -> u64 {
     let mut hasher = DefaultHasher::new();
@@ -28,7 +28,7 @@ fn of_any_kernel(seed: u64, window: bool) -> String {
 }
 
 /// A scene whose steps are chosen by their error.
-fn adaptive(scene: &RandomScene) -> String {
+fn adaptive(scene: &Scene) -> String {
     let mut contact = scene.contact(1e-10);
     let mut run = contact.follow(scene.load(), Stepping::adaptive(1e-3), scene.body.until);
     let mut steps = 0;
@@ -50,7 +50,7 @@ fn main() {
         for window in [false, true] {
             println!("any kernel {seed} window {window}: {}", of_any_kernel(seed, window));
         }
-        println!("adaptive {seed}: {}", adaptive(&RandomScene::new(1, seed)));
-        println!("returning {seed}: {}", adaptive(&RandomScene::returning(1, seed)));
+        println!("adaptive {seed}: {}", adaptive(&Scene::draw(1, seed, Features::ANY)));
+        println!("returning {seed}: {}", adaptive(&Scene::draw(1, seed, Features::RETURNING)));
     }
 }

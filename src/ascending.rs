@@ -28,8 +28,8 @@ impl Ascending {
 }
 
 /// Times at which the steps of a run end ([`Run::stop_at`](crate::run::Run::stop_at)) or its states are sampled
-/// ([`Run::sample_at`](crate::run::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade. References to
-/// slices, arrays and vectors of times \[s\] are times, too.
+/// ([`Run::sample_at`](crate::run::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade. Arrays, vectors
+/// and slices of times \[s\] are times, too.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -37,7 +37,7 @@ impl Ascending {
 /// let mut contact = StatesContact::new(&ElasticStates::sphere(10.0e-3)?, &Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))?;
 /// let load = StepLoad::new(Load::force(0.5))?;
 /// let run = contact.follow(&load, Stepping::adaptive(1.0e-3), 10.0);
-/// let mut run = run.stop_at(&[1.0, 5.0])?.sample_at(Times::decades(1.0e-2, 10).and(Times::every(0.5)))?;
+/// let mut run = run.stop_at([1.0, 5.0])?.sample_at(Times::decades(1.0e-2, 10).and(Times::every(0.5)))?;
 /// while run.next_step()?.is_some() {}
 /// # Ok::<(), Error>(())
 /// ```
@@ -72,6 +72,18 @@ impl Times {
 impl<T: AsRef<[f64]> + ?Sized> From<&T> for Times {
     fn from(times: &T) -> Times {
         Times { given: times.as_ref().to_vec(), rules: Vec::new() }
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for Times {
+    fn from(times: [f64; N]) -> Times {
+        Times::from(&times)
+    }
+}
+
+impl From<Vec<f64>> for Times {
+    fn from(given: Vec<f64>) -> Times {
+        Times { given, rules: Vec::new() }
     }
 }
 

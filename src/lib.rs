@@ -206,7 +206,7 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, FileError, KernelError, OutputError, Result, TextError, Trend};
+pub use error::{Convergence, Error, FileError, KernelError, OutputError, Result, TextError, Trend, UserError};
 pub use grid::Grid;
 pub use input::{Delimiter, TextFormat};
 pub use kernel::{InfluenceKernel, Layer, Workspace};
@@ -241,7 +241,7 @@ pub mod prelude {
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Zener,
     };
-    pub use crate::run::{Run, SteadyMotion, Stepping, Times};
+    pub use crate::run::{Crossing, Run, SteadyMotion, Stepping, Times};
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }

@@ -18,6 +18,7 @@ mod step;
 mod table;
 mod text;
 mod unsteady;
+mod user;
 mod violation;
 
 pub use adhesion::AdhesionError;
@@ -39,6 +40,8 @@ pub use step::StepError;
 pub use table::{Place, TableError};
 pub use text::TextError;
 pub use unsteady::Unsteady;
+pub(crate) use user::Failure;
+pub use user::UserError;
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};
@@ -231,6 +234,11 @@ pub enum Error {
         /// Side of the last domain tried \[m\].
         length: f64,
     },
+
+    /// A function that you wrote could not give a value: a load history, a gap or a creep function. Its error is the
+    /// [`source`](std::error::Error::source).
+    #[error(transparent)]
+    User(#[from] UserError),
 
     /// The caller ended the call: by its report of progress, or the flag of
     /// [`Run::cancelled_by`](crate::run::Run::cancelled_by).

@@ -31,6 +31,12 @@ impl<F: Cut> Appending<F> {
         Appending { file, length: 0, torn: false }
     }
 
+    /// Continues a file after its first `length` bytes.
+    pub(crate) fn after(mut file: F, length: u64) -> io::Result<Appending<F>> {
+        file.cut(length)?;
+        Ok(Appending { file, length, torn: false })
+    }
+
     /// Writes and flushes a piece, or fails and leaves nothing of it in the file.
     pub(crate) fn append(&mut self, piece: &[u8]) -> io::Result<()> {
         if self.torn {

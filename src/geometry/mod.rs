@@ -52,7 +52,7 @@ pub use wavy::Wavy;
 
 use std::fmt::Debug;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, UserError};
 use crate::{Grid, memory};
 
 /// The gap between the undeformed bodies at zero approach.
@@ -105,6 +105,11 @@ pub trait Geometry: Debug + Send + Sync {
         fill_by_points(self, grid, by, gap);
     }
 
+    /// Why a value was none, of a gap that can fail ([`FnGeometry::fallible`]): such a value is NaN.
+    fn failure(&self) -> Option<UserError> {
+        None
+    }
+
     /// Periods and shortest waves of the shape and of its parts, for the warnings of contacts whose grid does not hold them
     /// ([`Warnings::OTHER_PERIOD`](crate::contact::Warnings::OTHER_PERIOD), [`Warnings::SHORT_WAVES`](crate::contact::Warnings::SHORT_WAVES)).
     /// By default none are told.
@@ -141,6 +146,10 @@ macro_rules! forward_geometry {
                 (**self).fill_gap_at(grid, by, gap);
             }
 
+            fn failure(&self) -> Option<UserError> {
+                (**self).failure()
+            }
+
             fn waves(&self) -> Vec<Waves> {
                 (**self).waves()
             }
@@ -175,7 +184,7 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     if !gap.is_empty() {
         geometry.fill_gap(grid, &mut gap);
     }
-    Ok(gap)
+    geometry.failure().map_or(Ok(gap), |failure| Err(failure.into()))
 }
 
 /// Refuses NaN and −∞.

@@ -137,6 +137,14 @@ impl ExponentialRule {
         self.relaxation.terms().iter().map(|&(modulus, _)| modulus)
     }
 
+    /// E_i of each relaxation time, and the most by which its strain alone, 1, can ever raise a free surface, about: E_i over the sum of E∞
+    /// and the moduli of times at least as long.
+    pub(super) fn influences(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let terms = self.relaxation.terms();
+        let longer = move |tau: f64| terms.iter().filter(|term| term.1 >= tau).map(|term| term.0).sum::<f64>();
+        terms.iter().map(move |&(modulus, tau)| (modulus, modulus / (self.equilibrium() + longer(tau))))
+    }
+
     /// Number of relaxation times.
     pub(crate) fn branches(&self) -> usize {
         self.relaxation.terms().len()

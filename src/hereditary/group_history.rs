@@ -5,8 +5,6 @@ use crate::parallel::combine;
 
 /// Rounding of a displacement between 0 and 1.
 const ROUNDING: f64 = 1e-12;
-/// Pasts that differ by less are one.
-const ALIKE: f64 = 1e-14;
 
 /// Displacements W of groups of elements that follow one [`ExponentialRule`]: 1 is the displacement of an element in contact, 0 that of
 /// an undisturbed one.
@@ -38,6 +36,11 @@ impl GroupHistory {
     /// The past does not determine how the displacements continue, as after a corner of the load.
     pub(crate) fn reset_differences(&mut self) {
         self.rule.reset_differences();
+    }
+
+    /// The mean response of a displacement that grows for the time of so many steps, each as long as the one predicted last.
+    pub(crate) fn stiffness_over(&self, steps: f64) -> f64 {
+        self.rule.equilibrium() + (self.rule.relaxing(steps) + self.rule.viscous()) / steps
     }
 
     /// Copies another without reallocating where there is room.
@@ -113,15 +116,44 @@ impl GroupHistory {
         self.columns.iter_mut().for_each(|column| column.insert(group, column[group]));
     }
 
-    /// Removes the past of a group.
-    pub(crate) fn remove(&mut self, group: usize) {
-        self.columns.iter_mut().for_each(|column| _ = column.remove(group));
+    /// W of each group and its strains W − q_i/E_i, the strain of the dashpot of each relaxation time: with the most that they can ever raise
+    /// a free surface, and what the last step left of older ones.
+    pub(crate) fn strains(&self) -> impl Iterator<Item = ([f64; 2], impl Fn(usize) -> f64 + '_)> + '_ {
+        let displacements = &self.columns[0];
+        let decays = self.rule.committed.branches.iter().map(|weights| weights[0]);
+        let branches = self.columns[HEAD..].iter().zip(self.rule.influences()).zip(decays);
+        let all = branches.map(|((column, (modulus, influence)), decay)| ([influence, decay], Some((column, modulus))));
+        std::iter::once(([1.0; 2], None)).chain(all).map(move |(weights, branch)| {
+            let strain = move |group: usize| {
+                displacements[group] - branch.map_or(0.0, |(column, modulus): (&Vec<f64>, f64)| column[group] / modulus)
+            };
+            (weights, strain)
+        })
     }
 
-    /// Whether a group and the one before it have the same past to rounding, where their difference counts with a `share` only.
-    pub(crate) fn is_like_the_one_before(&self, group: usize, share: f64) -> bool {
-        let scales = [1.0; HEAD].into_iter().chain(self.rule.moduli());
-        let mut columns = self.columns.iter().zip(scales);
-        columns.all(|(column, scale)| (column[group] - column[group - 1]).abs() * share <= ALIKE * scale)
+    /// Whether W of two groups, its first difference and the strains of all relaxation times differ by `most` at most. Strains of groups that
+    /// are held together, or free together, approach each other ever after, and so do their W: W of a free group is a mean of them.
+    pub(crate) fn differ_at_most(&self, a: usize, b: usize, most: f64) -> bool {
+        let [displacements, changes, _, stresses @ ..] = &self.columns[..] else { return true };
+        let difference = displacements[a] - displacements[b];
+        let mut strains = stresses.iter().zip(self.rule.moduli());
+        difference.abs() <= most
+            && (changes[a] - changes[b]).abs() <= most
+            && strains.all(|(column, modulus)| (difference - (column[a] - column[b]) / modulus).abs() <= most)
+    }
+
+    /// Mixes a share of the past of group `b` into that of `a`.
+    pub(crate) fn mix(&mut self, a: usize, b: usize, share: f64) {
+        self.columns.iter_mut().for_each(|column| column[a] += share * (column[b] - column[a]));
+    }
+
+    /// Puts the past of one group in the place of another.
+    pub(crate) fn copy_within(&mut self, from: usize, to: usize) {
+        self.columns.iter_mut().for_each(|column| column[to] = column[from]);
+    }
+
+    /// Removes the pasts of all groups after the first few.
+    pub(crate) fn truncate(&mut self, groups: usize) {
+        self.columns.iter_mut().for_each(|column| column.truncate(groups));
     }
 }

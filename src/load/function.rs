@@ -1,5 +1,5 @@
 use crate::ascending::Ascending;
-use crate::error::Result;
+use crate::error::{Failure, Result, UserError};
 use crate::load::{Load, LoadHistory};
 
 /// A load history given by a closure of time \[s\].
@@ -16,12 +16,26 @@ use crate::load::{Load, LoadHistory};
 pub struct FnHistory<F> {
     load: F,
     breakpoints: Ascending,
+    failure: Failure,
+}
+
+impl FnHistory<fn(f64) -> Load> {
+    /// Wraps a closure that may fail: its error comes out of the step that needed the load, as the source of
+    /// [`Error::User`](crate::Error::User).
+    pub fn fallible<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
+        load: impl Fn(f64) -> Result<Load, E> + Send + Sync,
+    ) -> FnHistory<impl Fn(f64) -> Load + Send + Sync> {
+        let failure = Failure::default();
+        let caught = failure.clone();
+        let load = move |t| caught.or("the load history", load(t), Load::force(f64::NAN));
+        FnHistory { load, breakpoints: Ascending::default(), failure }
+    }
 }
 
 impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
     /// Wraps the closure, taken to be smooth; each step checks its load.
     pub fn new(load: F) -> FnHistory<F> {
-        FnHistory { load, breakpoints: Ascending::default() }
+        FnHistory { load, breakpoints: Ascending::default(), failure: Failure::default() }
     }
 
     /// The same history with corners at `times` \[s\], in any order: steps end exactly there. A closure has one value
@@ -45,5 +59,9 @@ impl<F: Fn(f64) -> Load + Send + Sync> LoadHistory for FnHistory<F> {
 
     fn next_breakpoint(&self, after: f64) -> Option<f64> {
         self.breakpoints.after(after)
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.failure.take()
     }
 }

@@ -32,7 +32,7 @@ pub use step::StepLoad;
 
 use std::fmt::{self, Debug};
 
-use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::error::{Error, Result, UserError, finite, non_negative, positive};
 
 /// The load at the end of a step: the force or the approach of the rigid body, or the spring that drives it, and its tilt.
 ///
@@ -344,6 +344,28 @@ pub trait LoadHistory: Debug + Send + Sync {
         let _ = after;
         None
     }
+
+    /// Why the last load was none, of a history that can fail ([`FnHistory::fallible`]). Such a load has a value that is not finite; the
+    /// step that needs it then fails with [`Error::User`].
+    fn failure(&self) -> Option<UserError> {
+        None
+    }
+}
+
+impl dyn LoadHistory + '_ {
+    /// [`LoadHistory::at`], if it is a load that may act, or pull where surfaces attract each other.
+    pub(crate) fn checked_at(&self, t: f64, attracts: bool) -> Result<Load> {
+        self.checked(self.at(t), t, attracts)
+    }
+
+    /// [`LoadHistory::before`], if it is a load that may act.
+    pub(crate) fn checked_before(&self, t: f64, attracts: bool) -> Result<Load> {
+        self.checked(self.before(t), t, attracts)
+    }
+
+    fn checked(&self, load: Load, t: f64, attracts: bool) -> Result<Load> {
+        load.validated_at(t, attracts).map_err(|error| self.failure().map_or(error, Error::User))
+    }
 }
 
 /// Implements [`LoadHistory`] for a wrapper by the history inside.
@@ -360,6 +382,10 @@ macro_rules! forward_load {
 
             fn next_breakpoint(&$self, after: f64) -> Option<f64> {
                 $inner.next_breakpoint(after)
+            }
+
+            fn failure(&$self) -> Option<$crate::UserError> {
+                $inner.failure()
             }
         }
     };

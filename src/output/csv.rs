@@ -1,13 +1,13 @@
 //! The history of a run as a CSV table.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
 use crate::contact::{Contact, StepReport};
 use crate::error::{Result, exact_length};
 use crate::file::{Appending, check_regular, failed};
-use crate::output::Metadata;
+use crate::output::{Earlier, Kept, Metadata};
 
 /// The names of the columns of every history.
 const COLUMNS: [&str; 17] = [
@@ -117,7 +117,7 @@ impl CsvHistory {
         contact: &impl Contact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), false)
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), Earlier::Refused)
     }
 
     /// [`CsvHistory::create`] in the place of an earlier file, which is emptied first.
@@ -131,25 +131,41 @@ impl CsvHistory {
         contact: &impl Contact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), true)
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), Earlier::Replaced)
+    }
+
+    /// [`CsvHistory::create`], or the history in an earlier file continued after the state of `contact`: rows of later states are cut off.
+    /// So a run that is resumed from a checkpoint, or begins, writes one file.
+    ///
+    /// # Errors
+    /// As [`CsvHistory::create_or_replace`], or if the file is no history with these columns.
+    pub fn create_or_continue(
+        path: impl AsRef<Path>,
+        metadata: &Metadata,
+        contact: &impl Contact,
+        additional: &[&str],
+    ) -> Result<CsvHistory> {
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), Earlier::Continued)
     }
 
     fn begin(
         path: &Path,
         (metadata, contact, additional): (&Metadata, &impl Contact, &[&str]),
-        replaced: bool,
+        earlier: Earlier,
     ) -> Result<CsvHistory> {
         let unusable = |error| failed(path, error);
         agreed(contact, check_names(additional).map_err(unusable))?;
         let names: Vec<String> = COLUMNS.iter().chain(additional).map(|name| quoted(name)).collect();
-        let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
+        let names = names.join(",");
+        let head = format!("# {}\n{names}\n", metadata.json(contact));
         let create = || {
-            let file = if replaced {
+            if earlier != Earlier::Refused {
                 check_regular(path)?;
-                File::create(path)
-            } else {
-                File::create_new(path)
-            };
+            }
+            if earlier == Earlier::Continued && path.exists() {
+                return continued(path, &names, contact).map_err(unusable);
+            }
+            let file = if earlier == Earlier::Refused { File::create_new(path) } else { File::create(path) };
             let mut file = Appending::new(file.map_err(|error| unusable(or_replace(error)))?);
             if let Err(error) = file.append(head.as_bytes()) {
                 let _ = fs::remove_file(path); // report the error of the write instead
@@ -178,6 +194,30 @@ impl CsvHistory {
         let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
         agreed(contact, appended.map_err(|error| failed(path, error)))
     }
+}
+
+/// The file of a history of these columns, cut off after the state of a contact.
+fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<Appending<File>> {
+    let file = File::options().read(true).write(true).open(path)?;
+    let mut lines = io::BufReader::new(&file);
+    let (mut number, mut end, mut kept, mut line) = (0, 0, Kept::default(), String::new());
+    while lines.read_line(&mut line)? > 0 && line.ends_with('\n') {
+        end += line.len() as u64;
+        let numbers: Vec<f64> = line.split(',').take(4).filter_map(|cell| cell.parse().ok()).collect();
+        match (number, &numbers[..]) {
+            (0, _) if line.starts_with("# ") => kept.earlier = end,
+            (1, _) if line.trim_end() == names => kept.earlier = end,
+            (2.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], contact) => {}
+            _ => break,
+        }
+        number += 1;
+        line.clear();
+    }
+    if number < 2 {
+        let reason = "it is no history with these columns: CsvHistory::create_or_replace replaces it";
+        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+    }
+    Appending::after(file, kept.end())
 }
 
 /// The error of a file that exists names the way to replace it.

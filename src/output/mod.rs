@@ -54,3 +54,38 @@ pub use series::{Format, FrameSeries};
 #[cfg(feature = "npy")]
 pub use states::{read_states, write_states};
 pub use stress::write_stress;
+
+use crate::contact::Contact;
+
+/// What becomes of the files of an earlier run.
+#[derive(Clone, Copy, PartialEq)]
+enum Earlier {
+    Refused,
+    Replaced,
+    Continued,
+}
+
+/// The part of the rows or frames of an earlier run that ends with the state of a contact.
+#[derive(Default)]
+struct Kept {
+    /// Its end, if the state is not there.
+    earlier: u64,
+    /// Its end with the state: others of the same time may come before a jump and after it.
+    with_state: Option<u64>,
+}
+
+impl Kept {
+    /// Includes what ends at `end`, with its time, force and approach, unless it is later than the contact.
+    fn includes(&mut self, end: u64, [time, force, approach]: [f64; 3], contact: &impl Contact) -> bool {
+        if time < contact.time() {
+            self.earlier = end;
+        } else if [time, force, approach] == [contact.time(), contact.force(), contact.approach()] {
+            self.with_state = Some(end);
+        }
+        time <= contact.time()
+    }
+
+    fn end(&self) -> u64 {
+        self.with_state.unwrap_or(self.earlier)
+    }
+}

@@ -1,9 +1,10 @@
 //! Archives in the NPZ format of NumPy.
 
-use std::io::{self, BufWriter, Seek, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, Write};
 
-use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 use crate::file::{npy, write_numbers};
 use crate::output::Metadata;
@@ -30,6 +31,17 @@ pub(super) fn write_frame(
     archive.add("tilt", &[2], &contact.tilt())?;
     archive.add("contact_area", &[], &[area])?;
     archive.finish(&metadata.json(contact))
+}
+
+/// Time, force and approach of a frame.
+pub(super) fn state_of(frame: File) -> io::Result<[f64; 3]> {
+    let (mut archive, mut state) = (ZipArchive::new(frame)?, [0.0; 3]);
+    for (number, name) in state.iter_mut().zip(["time.npy", "force.npy", "approach.npy"]) {
+        let mut bytes = Vec::new();
+        archive.by_name(name)?.read_to_end(&mut bytes)?;
+        *number = f64::from_le_bytes(*bytes.last_chunk().ok_or(io::ErrorKind::InvalidData)?);
+    }
+    Ok(state)
 }
 
 /// An NPZ archive being written.

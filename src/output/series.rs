@@ -11,7 +11,7 @@ use crate::output::field_values::write_fields;
 #[cfg(feature = "npy")]
 use crate::output::npz;
 use crate::output::vtk;
-use crate::output::{Field, Metadata};
+use crate::output::{Earlier, Field, Kept, Metadata};
 
 /// Name of the file that lists the frames of VTK.
 const COLLECTION: &str = "series.pvd";
@@ -54,6 +54,11 @@ impl Format {
             Format::Npz => "npz",
             Format::Vtk => "vti",
         }
+    }
+
+    /// The file of a frame.
+    fn frame(self, number: usize) -> String {
+        format!("frame_{number:06}.{}", self.extension())
     }
 
     /// Whether a collection lists the frames.
@@ -120,7 +125,7 @@ impl FrameSeries {
         metadata: &Metadata,
         fields: &[Field],
     ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), false)
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Refused, None)
     }
 
     /// [`FrameSeries::create`] in the place of an earlier series, whose frames are removed first.
@@ -133,14 +138,30 @@ impl FrameSeries {
         metadata: &Metadata,
         fields: &[Field],
     ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), true)
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Replaced, None)
+    }
+
+    /// [`FrameSeries::create`], or an earlier series in `folder` continued after the state of `contact`: frames of later states are
+    /// removed. So a run that is resumed from a checkpoint, or begins, writes one series.
+    ///
+    /// # Errors
+    /// As [`FrameSeries::create_or_replace`], or if a frame cannot be read.
+    pub fn create_or_continue(
+        folder: impl AsRef<Path>,
+        format: Format,
+        metadata: &Metadata,
+        fields: &[Field],
+        contact: &ViscoelasticContact,
+    ) -> Result<FrameSeries> {
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Continued, Some(contact))
     }
 
     fn begin(
         folder: &Path,
         format: Format,
         (metadata, fields): (&Metadata, &[Field]),
-        replaced: bool,
+        earlier: Earlier,
+        contact: Option<&ViscoelasticContact>,
     ) -> Result<FrameSeries> {
         let unusable = |error: io::Error| failed(folder, error);
         let refused = |kind, reason: String| Err(unusable(io::Error::new(kind, reason)));
@@ -149,16 +170,23 @@ impl FrameSeries {
             return refused(io::ErrorKind::InvalidInput, reason);
         }
         fs::create_dir_all(folder).map_err(unusable)?;
+        let (mut written, mut entries) = (0, String::new());
+        if let Some(contact) = contact {
+            (written, entries) = kept(folder, format, contact).map_err(unusable)?;
+        }
+        let kept: Vec<String> = (0..written).map(|number| format.frame(number)).collect();
         for entry in fs::read_dir(folder).map_err(unusable)? {
             let path = entry.map_err(unusable)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let is_frame = name.starts_with("frame_") && name.ends_with(&format!(".{}", format.extension()));
-            if is_frame && !replaced {
+            if is_frame && earlier == Earlier::Refused {
                 let reason =
                     format!("the folder contains {name} of another run: FrameSeries::create_or_replace removes it");
                 return refused(io::ErrorKind::AlreadyExists, reason);
             }
-            if is_frame || replaced && format.has_collection() && name == COLLECTION {
+            let is_kept = kept.iter().any(|frame| *frame == name);
+            let is_list = earlier == Earlier::Replaced && format.has_collection() && name == COLLECTION;
+            if is_frame && !is_kept || is_list {
                 check_regular(&path)?;
                 match fs::remove_file(&path) {
                     // another rank may have removed it
@@ -168,7 +196,7 @@ impl FrameSeries {
             }
         }
         let (folder, metadata, fields) = (folder.to_owned(), metadata.clone(), fields.to_vec());
-        Ok(FrameSeries { folder, format, metadata, fields, written: 0, entries: String::new(), buffer: Vec::new() })
+        Ok(FrameSeries { folder, format, metadata, fields, written, entries, buffer: Vec::new() })
     }
 
     /// Writes the current state of the contact as the next frame and returns its path; a frame of VTK is listed in
@@ -178,7 +206,7 @@ impl FrameSeries {
     /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
     pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
         let FrameSeries { folder, format, metadata, fields, buffer, .. } = self;
-        let name = format!("frame_{:06}.{}", self.written, format.extension());
+        let name = format.frame(self.written);
         let path = folder.join(&name);
         let area = contact.contact_area();
         write_fields(&path, (contact, fields, *format), buffer, |out, values| match format {
@@ -187,9 +215,7 @@ impl FrameSeries {
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
         if format.has_collection() {
-            let time = contact.time();
-            let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
-            let entries = format!("{}{entry}", self.entries);
+            let entries = format!("{}{}", self.entries, entry(contact.time(), &name));
             contact.by_one_rank(|| {
                 replace(&folder.join(COLLECTION), |out| {
                     write!(
@@ -209,4 +235,27 @@ impl FrameSeries {
     pub fn frames(&self) -> usize {
         self.written
     }
+}
+
+/// The number of the frames of an earlier series up to the state of a contact, and their entries in the collection.
+fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> io::Result<(usize, String)> {
+    let (mut kept, mut entries) = (Kept::default(), Vec::new());
+    while let Ok(frame) = fs::File::open(folder.join(format.frame(entries.len()))) {
+        let state = match format {
+            #[cfg(feature = "npy")]
+            Format::Npz => npz::state_of(frame)?,
+            Format::Vtk => vtk::state_of(frame)?,
+        };
+        entries.push(entry(state[0], &format.frame(entries.len())));
+        if !kept.includes(entries.len() as u64, state, contact) {
+            break;
+        }
+    }
+    entries.truncate(kept.end() as usize);
+    Ok((entries.len(), entries.concat()))
+}
+
+/// The entry of a frame in the collection.
+fn entry(time: f64, name: &str) -> String {
+    format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n")
 }

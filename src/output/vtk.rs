@@ -1,12 +1,15 @@
 //! Files in the XML formats of VTK: the XML announces arrays, whose values follow it as binary in the same order.
 
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Write};
 
 use crate::ViscoelasticContact;
 use crate::file::write_numbers;
 use crate::output::field_values::FieldValues;
 use crate::output::{Field, Metadata};
 
+/// What the numbers follow.
+const OPENING: &[u8] = b"  <AppendedData encoding=\"raw\">\n   _";
 /// End of a file.
 pub(super) const CLOSING: &[u8] = b"\n  </AppendedData>\n</VTKFile>\n";
 
@@ -45,6 +48,20 @@ pub(super) fn write_frame(
     out.write_all(CLOSING)
 }
 
+/// Time, force and approach of a frame: the first numbers after the XML, each after its length.
+pub(super) fn state_of(frame: File) -> io::Result<[f64; 3]> {
+    let (mut file, mut xml) = (BufReader::new(frame), Vec::new());
+    while !xml.ends_with(OPENING) {
+        if file.read_until(b'_', &mut xml)? == 0 {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+    }
+    let mut numbers = [0; 48];
+    file.read_exact(&mut numbers)?;
+    let number = |k: usize| numbers[16 * k + 8..].first_chunk().map_or(f64::NAN, |bytes| f64::from_le_bytes(*bytes));
+    Ok([number(0), number(2), number(1)])
+}
+
 /// Writes the XML of a file of this kind and extent, and the values of its field data: `numbers` and the metadata.
 pub(super) fn write_opening(
     out: &mut impl Write,
@@ -80,7 +97,8 @@ pub(super) fn write_opening(
         }
         xml += &format!("      </{}>\n", section.split(' ').next().unwrap_or_default());
     }
-    write!(out, "{xml}    </Piece>\n  </{kind}>\n  <AppendedData encoding=\"raw\">\n   _")?;
+    write!(out, "{xml}    </Piece>\n  </{kind}>\n")?;
+    out.write_all(OPENING)?;
     for (_, values) in numbers {
         write_array(out, values.len(), values.iter().copied())?;
     }

@@ -128,7 +128,7 @@ impl Curve {
             let parts = if dt > 0.0 { parts } else { 1 };
             for part in 1..=parts {
                 let end = if part == parts { time } else { start + dt * f64::from(part) / f64::from(parts) };
-                let load = if part == parts { load } else { scene.history.before(end).validated_at(end, false)? };
+                let load = if part == parts { load } else { scene.history.checked_before(end, false)? };
                 match contact.step_to(end, end - contact.time(), load) {
                     // the run stays as it was
                     Err(Error::Step(StepError::NoElasticResponse { .. })) if dt == 0.0 => {}

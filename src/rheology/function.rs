@@ -1,3 +1,4 @@
+use crate::error::{Failure, UserError};
 use crate::rheology::Rheology;
 
 /// A rheology given by a closure J(t): shear creep compliance \[1/Pa\] at t ≥ 0 \[s\].
@@ -23,12 +24,27 @@ use crate::rheology::Rheology;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct FnRheology<F>(F);
+pub struct FnRheology<F> {
+    compliance: F,
+    failure: Failure,
+}
+
+impl FnRheology<fn(f64) -> f64> {
+    /// Wraps a closure that may fail: its error comes out of the call that needed the compliance, as the source of
+    /// [`Error::User`](crate::Error::User).
+    pub fn fallible<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
+        compliance: impl Fn(f64) -> Result<f64, E> + Send + Sync,
+    ) -> FnRheology<impl Fn(f64) -> f64 + Send + Sync> {
+        let failure = Failure::default();
+        let caught = failure.clone();
+        FnRheology { compliance: move |t| caught.or("the creep function", compliance(t), f64::NAN), failure }
+    }
+}
 
 impl<F: Fn(f64) -> f64 + Send + Sync> FnRheology<F> {
     /// Wraps the closure. Its values are checked when used: they must be finite, ≥ 0 and non-decreasing.
     pub fn new(compliance: F) -> FnRheology<F> {
-        FnRheology(compliance)
+        FnRheology { compliance, failure: Failure::default() }
     }
 }
 
@@ -36,6 +52,10 @@ debug_by!(self: FnRheology<F> =>);
 
 impl<F: Fn(f64) -> f64 + Send + Sync> Rheology for FnRheology<F> {
     fn creep_compliance(&self, t: f64) -> f64 {
-        (self.0)(t)
+        (self.compliance)(t)
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.failure.take()
     }
 }

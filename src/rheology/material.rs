@@ -301,7 +301,8 @@ impl Material {
         let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
         let (value, previous) =
             self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
-        Err(MaterialError::InvalidCompliance { time: age, value, previous }.into())
+        let failure = self.bodies.iter().find_map(|body| body.rheology.failure());
+        Err(failure.map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
     }
 
     /// The error of `what`, which needs an exponential series that a rheology does not have.

@@ -115,7 +115,7 @@ pub use zener::Zener;
 use std::fmt::Debug;
 use std::ops::RangeInclusive;
 
-use crate::error::Result;
+use crate::error::{Result, UserError};
 
 /// The shear creep of a linear viscoelastic body.
 ///
@@ -141,6 +141,11 @@ use crate::error::Result;
 pub trait Rheology: Debug + Send + Sync {
     /// J(t) \[1/Pa\] at t ≥ 0 \[s\], 2Φ(t) in Eq. 9 of the [paper](crate::paper).
     fn creep_compliance(&self, t: f64) -> f64;
+
+    /// Why a value was none, of a creep function that can fail ([`FnRheology::fallible`]): such a value is NaN.
+    fn failure(&self) -> Option<UserError> {
+        None
+    }
 
     /// The exact exponential series of J, if there is one.
     fn creep_spectrum(&self) -> Option<CreepSpectrum> {
@@ -197,6 +202,10 @@ macro_rules! forward_rheology {
         impl $(<$generic: $crate::rheology::Rheology + ?Sized>)? $crate::rheology::Rheology for $outer {
             fn creep_compliance(&$self, t: f64) -> f64 {
                 $crate::rheology::Rheology::creep_compliance(&$inner, t)
+            }
+
+            fn failure(&$self) -> Option<$crate::UserError> {
+                $crate::rheology::Rheology::failure(&$inner)
             }
 
             fn creep_spectrum(&$self) -> Option<$crate::rheology::CreepSpectrum> {

@@ -1,6 +1,6 @@
 use std::ops::RangeInclusive;
 
-use crate::error::{MaterialError, Result, within};
+use crate::error::{Error, MaterialError, Result, within};
 use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, is_known, may_follow};
 
@@ -145,6 +145,6 @@ fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Resu
     if may_follow(value, previous) && (value > 0.0 || time == 0.0 && value == 0.0) {
         Ok(value)
     } else {
-        Err(MaterialError::InvalidCompliance { time, value, previous }.into())
+        Err(rheology.failure().map_or(MaterialError::InvalidCompliance { time, value, previous }.into(), Error::User))
     }
 }

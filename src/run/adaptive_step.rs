@@ -65,7 +65,7 @@ pub(super) fn adaptive_step(
             return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance: control.tolerance }));
         }
         tried = time;
-        let loads = [history.before(time).validated_at(time, scene.attraction.is_some())?];
+        let loads = [history.checked_before(time, scene.attraction.is_some())?];
         let mut step = contact.request(time, dt, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         let straying = control.watch(history, [now, time], |time| scene.reduced_time(clock, time))?;
@@ -185,7 +185,7 @@ impl StepControl {
             let deviation = if jumped {
                 (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
             } else {
-                let load = history.before(now + dt).validated_at(now + dt, scene.attraction.is_some())?;
+                let load = history.checked_before(now + dt, scene.attraction.is_some())?;
                 let change = (magnitude(&load) - held - slope * reduced).abs();
                 let scale =
                     self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
@@ -226,7 +226,7 @@ impl StepControl {
         reduced: impl Fn(f64) -> Result<f64>,
     ) -> Result<f64> {
         let attracts = self.scale.as_ref().is_some_and(|scale| scale.attracts);
-        let end = history.before(time).validated_at(time, attracts)?;
+        let end = history.checked_before(time, attracts)?;
         let mut nodes = [(reduced(time)?, end); NODES + 1];
         let known = self.nodes.len().min(NODES);
         nodes[1..=known].copy_from_slice(&self.nodes[..known]);
@@ -236,7 +236,7 @@ impl StepControl {
         let mut most = 0.0_f64;
         for share in SHARES {
             let between = now + share * (time - now);
-            let load = history.at(between).validated_at(between, attracts)?;
+            let load = history.checked_at(between, attracts)?;
             let like = load.is_like(&start) && load.is_like(&end);
             most = most.max(if like { load.deviation(reduced(between)?, nodes, scale) } else { f64::INFINITY });
         }

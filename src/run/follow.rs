@@ -8,6 +8,7 @@ use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::{LoadError, Result};
 use crate::load::LoadHistory;
 use crate::run::driven::{Course, Next};
+use crate::run::events::Event;
 use crate::run::progress::{Progress, RunProgress, Stepping};
 #[cfg(feature = "checkpoint")]
 use crate::run::saving::Autosave;
@@ -78,8 +79,10 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     until: f64,
     pub(super) progress: Progress<C::Control>,
     /// Times at which steps end, and at which states within steps are sampled.
-    stops: Schedule,
+    pub(super) stops: Schedule,
     pub(super) sampled: Schedule,
+    /// Quantities whose crossings end steps.
+    pub(super) events: Vec<Event<C>>,
     /// Set by another thread to end the step under way.
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
@@ -144,6 +147,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             progress,
             stops: Schedule::default(),
             sampled: Schedule::default(),
+            events: Vec::new(),
             cancelled: None,
             last: None,
             #[cfg(feature = "checkpoint")]
@@ -237,7 +241,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     fn take_next(&mut self) -> Result<Option<StepReport>> {
         self.last = None;
         let start = self.contact.time();
-        let mut report = self.take_step()?;
+        let mut report = if self.events.is_empty() { self.take_step()? } else { self.take_until_event()? };
         if let Some(report) = report.as_mut().filter(|report| report.time >= self.until) {
             self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
         }
@@ -246,12 +250,12 @@ impl<'a, C: RunContact> Run<'a, C> {
         Ok(report)
     }
 
-    fn take_step(&mut self) -> Result<Option<StepReport>> {
+    pub(super) fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
         let Run { contact, history, until, progress, cancelled, .. } = self;
         let (now, until, history) = (contact.time(), *until, history_of(history));
         let attracts = contact.in_space().is_some_and(|contact| contact.scene.attraction.is_some());
-        let load = history.at(now).validated_at(now, attracts)?;
+        let load = history.checked_at(now, attracts)?;
         let jumps = contact.load(&progress.control) != Some(load);
         if !jumps && now >= until {
             return Ok(None);
@@ -270,7 +274,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             _ if jumps => Next::Given { time: now, load },
             Stepping::Fixed { dt } => {
                 let time = progress.next_time(now, dt, stop)?;
-                Next::Given { time, load: history.before(time).validated_at(time, attracts)? }
+                Next::Given { time, load: history.checked_before(time, attracts)? }
             }
             Stepping::Adaptive { tolerance } => Next::Adaptive { tolerance },
         };
@@ -297,9 +301,6 @@ impl<'a, C: RunContact> Run<'a, C> {
 impl<C: RunContact> Run<'static, C> {
     /// The contact of a run that owns it ([`ViscoelasticContact::into_follow`]), after the last step.
     pub fn into_contact(self) -> C {
-        match self.contact {
-            OwnedOrBorrowed::Borrowed(contact) => contact.clone(), // of a leaked contact
-            OwnedOrBorrowed::Owned(contact) => *contact,
-        }
+        self.contact.into_owned()
     }
 }

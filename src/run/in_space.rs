@@ -88,7 +88,7 @@ impl Driven for ViscoelasticContact {
     }
 
     fn within(&self, control: &SpaceControl, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)> {
-        let loads = |_: &_| Ok(vec![history.at(time).validated_at(time, self.scene.attraction.is_some())?]);
+        let loads = |_: &_| Ok(vec![history.checked_at(time, self.scene.attraction.is_some())?]);
         let (contact, reach) = self.advanced_within_step(time, control.solver_tolerance(self), loads)?;
         let report = contact.report(None, reach);
         Ok((contact, report))

@@ -10,6 +10,7 @@
 mod adaptive_step;
 pub(crate) mod driven;
 mod error_budget;
+mod events;
 mod follow;
 mod in_space;
 mod progress;
@@ -22,6 +23,7 @@ mod step_control;
 
 pub use crate::ascending::Times;
 pub use error_budget::ErrorBudget;
+pub use events::{Crossing, Event};
 pub use follow::Run;
 pub(crate) use follow::SAME_TIME;
 pub use progress::{RunProgress, Stepping};
@@ -41,6 +43,15 @@ impl<C: driven::Driven> RunContact for C {}
 pub(crate) enum OwnedOrBorrowed<B, O> {
     Borrowed(B),
     Owned(O),
+}
+
+impl<T: Clone> OwnedOrBorrowed<&mut T, Box<T>> {
+    fn into_owned(self) -> T {
+        match self {
+            OwnedOrBorrowed::Borrowed(value) => value.clone(),
+            OwnedOrBorrowed::Owned(value) => *value,
+        }
+    }
 }
 
 impl<B: Deref, O: Deref<Target = B::Target>> Deref for OwnedOrBorrowed<B, O> {

@@ -73,8 +73,8 @@ impl RunScale {
         times.sort_by(f64::total_cmp);
         let mut loads: Vec<(f64, Load)> = Vec::new();
         for time in times {
-            for load in [LoadHistory::before, LoadHistory::at] {
-                let load = load(history, time).validated_at(time, scene.attraction.is_some())?;
+            for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
+                let load = load(history, time, scene.attraction.is_some())?;
                 scale.include(&load);
                 let is_force = |load: &Load| matches!(load, Load::Force { .. });
                 if !is_force(&load) && loads.last().is_some_and(|(_, before)| is_force(before)) {
@@ -274,8 +274,8 @@ impl Rises {
     fn new(scene: &Scene, history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Rises> {
         let (mut rises, mut again, mut last) = (Rises::default(), false, None);
         for &time in times {
-            for load in [LoadHistory::before, LoadHistory::at] {
-                let (approach, spring) = match load(history, time).validated_at(time, scene.attraction.is_some())? {
+            for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
+                let (approach, spring) = match load(history, time, scene.attraction.is_some())? {
                     Load::Approach { approach: depth, .. } => (depth, 0.0),
                     Load::Spring { stiffness, drive: depth, .. } => (depth, 1.0 / stiffness),
                     Load::Force { .. } => {

@@ -1,5 +1,8 @@
 //! Motion over the bodies to the steady state.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use crate::axis::Axis;
 use crate::contact::moving::shortfall::Shortfall;
 use crate::contact::{Frame, StepReport, Unsteady, ViscoelasticContact};
@@ -7,6 +10,7 @@ use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
 use crate::rheology::CreepSpectrum;
+use crate::run::OwnedOrBorrowed;
 
 /// Least number of the longest strides per contact length.
 const STEPS_PER_CONTACT_LENGTH: usize = 8;
@@ -48,7 +52,7 @@ impl SteadyMotion {
 /// A contact on its way to a steady state, made by [`ViscoelasticContact::toward_steady`].
 #[derive(Debug)]
 pub struct SteadyRun<'a> {
-    contact: &'a mut ViscoelasticContact,
+    contact: OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>,
     motion: SteadyMotion,
     creep: CreepSpectrum,
     /// The cell of the grid by which the shortest stride goes.
@@ -66,6 +70,8 @@ pub struct SteadyRun<'a> {
     /// Whether a step in place was taken for the indenter to touch.
     tried_to_touch: bool,
     arrived: bool,
+    /// Set by another thread to end the step under way.
+    cancelled: Option<Arc<AtomicBool>>,
 }
 
 impl ViscoelasticContact {
@@ -105,14 +111,32 @@ impl ViscoelasticContact {
     /// If the grid is fixed to the bodies, the velocity zero or not finite, the tolerance not in (0, 1), or the bodies flow without end:
     /// there is no steady state.
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<SteadyRun<'_>> {
-        if self.settings().frame != Frame::Indenter {
+        SteadyRun::new(OwnedOrBorrowed::Borrowed(self), motion)
+    }
+
+    /// Like [`ViscoelasticContact::toward_steady`], for a run that owns the contact: it can be stored or sent to another thread.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::toward_steady`].
+    pub fn into_toward_steady(self, motion: SteadyMotion) -> Result<SteadyRun<'static>> {
+        SteadyRun::new(OwnedOrBorrowed::Owned(Box::new(self)), motion)
+    }
+}
+
+impl<'a> SteadyRun<'a> {
+    fn new(
+        contact: OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>,
+        motion: SteadyMotion,
+    ) -> Result<SteadyRun<'a>> {
+        if contact.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a motion to its steady state" });
         }
         let velocity = finite("velocity", motion.velocity)?;
         within("velocity", velocity, velocity != 0.0, "finite and not 0")?;
         let tolerance = motion.tolerance;
         within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
-        let creep = self.scene.material.contact_spectrum()?.ok_or_else(|| self.scene.material.no_series("a motion"))?;
+        let creep =
+            contact.scene.material.contact_spectrum()?.ok_or_else(|| contact.scene.material.no_series("a motion"))?;
         let flows = creep.fluidity();
         within(
             "fluidity of the contact",
@@ -122,9 +146,9 @@ impl ViscoelasticContact {
         )?;
         let mut cell = [0; 2];
         cell[motion.axis.index()] = velocity.signum() as isize;
-        let before = self.pressure().to_vec();
+        let before = contact.pressure().to_vec();
         Ok(SteadyRun {
-            contact: self,
+            contact,
             motion,
             creep,
             cell,
@@ -136,11 +160,16 @@ impl ViscoelasticContact {
             outstanding: f64::INFINITY,
             tried_to_touch: false,
             arrived: false,
+            cancelled: None,
         })
     }
-}
 
-impl SteadyRun<'_> {
+    /// Lets another thread end the step under way, as [`Run::cancelled_by`](crate::run::Run::cancelled_by).
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> SteadyRun<'a> {
+        self.cancelled = Some(flag);
+        self
+    }
+
     /// Takes one step and returns its report, or `None` if the motion is steady.
     ///
     /// # Errors
@@ -164,7 +193,7 @@ impl SteadyRun<'_> {
         let (stride, lasts) = if apart { (0, 1) } else { (self.stride, self.stride) };
         let cells = self.cell.map(|cell| cell * stride as isize);
         let dt = lasts as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
-        let report = self.contact.step_over(cells, dt, load)?;
+        let report = self.contact.step_over_unless(self.cancelled.as_deref(), cells, dt, &[load])?;
         self.travelled += stride;
         self.left = self.left.saturating_sub(stride);
         Ok(Some(report))
@@ -181,7 +210,12 @@ impl SteadyRun<'_> {
 
     /// The contact.
     pub fn contact(&self) -> &ViscoelasticContact {
-        self.contact
+        &self.contact
+    }
+
+    /// The contact, of a run that owns it ([`ViscoelasticContact::into_toward_steady`]) or a copy of it.
+    pub fn into_contact(self) -> ViscoelasticContact {
+        self.contact.into_owned()
     }
 
     /// Change of the pressure over the last contact length, Σ |Δp| over Σ p; infinite before the first full length.
@@ -228,7 +262,7 @@ impl SteadyRun<'_> {
         let SteadyMotion { axis, tolerance, max_distance, .. } = self.motion;
         let (change, distance) = (self.change, self.distance());
         let most = max_distance.unwrap_or(MAX_GRID_LENGTHS * self.contact.grid().lengths()[axis.index()]);
-        let mut shortfall = Shortfall { contact: self.contact, creep: &self.creep, cell: self.cell };
+        let mut shortfall = Shortfall { contact: &mut self.contact, creep: &self.creep, cell: self.cell };
         let remaining = shortfall.outstanding();
         self.outstanding = remaining;
         let (time, reach) = shortfall.slowest(distance);

@@ -167,7 +167,7 @@ impl StepControl {
     pub(super) fn begin(&mut self, scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<()> {
         let (now, reduced) = (state.clock.time, state.clock.reduced_time);
         if self.nodes.is_empty() {
-            self.nodes.push((reduced, history.at(now).validated_at(now, scene.attraction.is_some())?));
+            self.nodes.push((reduced, history.checked_at(now, scene.attraction.is_some())?));
             self.since = reduced;
         }
         if self.scale.is_none() {

@@ -188,6 +188,14 @@ impl ElasticStates {
         load_point(&self.tilt)
     }
 
+    /// Distance from the load point to the edge of the greatest contact \[m\], at most; 0 where no tilt is free.
+    pub(super) fn reach(&self) -> f64 {
+        let at = self.load_point();
+        let is_free = self.tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
+        let radius = self.states.last().map_or(0.0, |state| (state.area / PI).sqrt());
+        if is_free { at[0].hypot(at[1]) + radius } else { 0.0 }
+    }
+
     /// Depth of the load point at a state.
     pub(super) fn depth_of(&self, state: &ElasticState) -> f64 {
         approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach

@@ -40,6 +40,7 @@
 
 mod closed_forms;
 mod contact;
+mod control;
 mod curve;
 mod elastic;
 mod fields;

@@ -104,7 +104,7 @@ impl Course<'_> {
         let mut all = Vec::new();
         for k in 0..=parts {
             let time = until * f64::from(k) / f64::from(parts);
-            all.push(history.at(time).validated_at(time, false)?);
+            all.push(history.checked_at(time, false)?);
         }
         let mut corner = 0.0;
         for _ in 0..MAX_CORNERS {
@@ -112,9 +112,7 @@ impl Course<'_> {
                 Some(next) if next > corner && next <= until => corner = next,
                 _ => break,
             }
-            for load in [history.before(corner), history.at(corner)] {
-                all.push(load.validated_at(corner, false)?);
-            }
+            all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
         }
         Ok(all)
     }

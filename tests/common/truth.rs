@@ -7,7 +7,7 @@ use std::path::Path;
 
 use viscocontact::prelude::*;
 
-use super::random_scenes::RandomScene;
+use super::scene::Scene;
 use super::watched_runs::{Stopped, Watched, watch};
 
 /// Greatest difference of two sequences over `scale`.
@@ -44,7 +44,7 @@ fn extrapolated(runs: &[Vec<f64>], scale: f64) -> (Vec<f64>, f64) {
 
 impl Truth {
     /// Halves given steps until the answer is known to `wanted`, or a run would take more than `most_steps`.
-    pub fn of(scene: &RandomScene, wanted: f64, most_steps: u64) -> Result<Truth, Stopped> {
+    pub fn of(scene: &Scene, wanted: f64, most_steps: u64) -> Result<Truth, Stopped> {
         let mut runs: Vec<Watched> = Vec::new();
         loop {
             let times = scene.graded_times(runs.len() as u32);
@@ -79,7 +79,7 @@ impl Truth {
     }
 
     /// One line of text.
-    fn line(&self, scene: &RandomScene) -> String {
+    fn line(&self, scene: &Scene) -> String {
         let mut line = key(scene);
         let Truth { answer, pressures: [top, central], times, cell, greatest, uncertainty } = self;
         write!(line, "\t{cell}").unwrap();
@@ -107,7 +107,7 @@ impl Truth {
 
     /// From a file that holds truths of earlier runs of the test, or else computed and added to it: the truth does not depend
     /// on the time rule.
-    pub fn kept_in(file: Option<&Path>, scene: &RandomScene, wanted: f64, most_steps: u64) -> Result<Truth, Stopped> {
+    pub fn kept_in(file: Option<&Path>, scene: &Scene, wanted: f64, most_steps: u64) -> Result<Truth, Stopped> {
         let Some(file) = file else { return Truth::of(scene, wanted, most_steps) };
         let (text, key) = (std::fs::read_to_string(file).unwrap_or_default(), key(scene));
         let mut lines = text.lines().filter(|line| line.split('\t').next() == Some(&*key));
@@ -132,6 +132,6 @@ impl Truth {
 }
 
 /// What a truth belongs to: the scene, its load, which the solution of an elastic contact gives, and the times looked at.
-fn key(scene: &RandomScene) -> String {
+fn key(scene: &Scene) -> String {
     format!("{} {:?} {:?}", scene.name, scene.control, scene.moments())
 }

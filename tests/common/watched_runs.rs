@@ -6,7 +6,7 @@ use viscocontact::Error;
 use viscocontact::prelude::*;
 
 use super::random_histories::Control;
-use super::random_scenes::RandomScene;
+use super::scene::Scene;
 
 /// States of a run at the times to look at, and what it took.
 #[derive(Debug, Clone, Default)]
@@ -77,7 +77,7 @@ impl fmt::Display for Stopped {
 
 /// Follows the history of a scene, and looks at it at its moments.
 pub fn watch(
-    scene: &RandomScene,
+    scene: &Scene,
     contact: &mut ViscoelasticContact,
     history: &dyn LoadHistory,
     stepping: Stepping,

@@ -6,7 +6,7 @@
 //! file for the next time.
 
 use crate::common::watched_runs::{Stopped, Watched, watch};
-use crate::common::{RandomScene, Ratios, Truth, from_environment};
+use crate::common::{Features, Ratios, Scene, Truth, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -33,7 +33,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn take(&mut self, scene: &RandomScene, truth: &Truth, tolerance: f64, run: Result<Watched, Stopped>) {
+    fn take(&mut self, scene: &Scene, truth: &Truth, tolerance: f64, run: Result<Watched, Stopped>) {
         let run = match run {
             Ok(run) => run,
             Err(stopped) => return self.failures.push(format!("{}: {stopped}", scene.name)),
@@ -77,16 +77,16 @@ fn is_doubtful(truth: &Truth, tolerance: f64, run: &Result<Watched, Stopped>) ->
 /// of random scenes, and below three times in all of them; no run ends in an error.
 #[test]
 fn errors_are_honest_on_random_scenes() {
-    check_honesty(RandomScene::new, ("HONEST_SCENES", 40));
+    check_honesty(Features::ANY, ("HONEST_SCENES", 40));
 }
 
 /// The same of bodies that springs drive: of approach and force.
 #[test]
 fn errors_under_springs_are_honest() {
-    check_honesty(RandomScene::sprung, ("HONEST_SPRINGS", 20));
+    check_honesty(Features::SPRING, ("HONEST_SPRINGS", 20));
 }
 
-fn check_honesty(make: impl Fn(u64, u64) -> RandomScene, count: (&'static str, u64)) {
+fn check_honesty(features: Features, count: (&'static str, u64)) {
     let [scenes, seed, first, most_steps] =
         [count, ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)]
             .map(|(name, default)| from_environment(name, default));
@@ -94,7 +94,7 @@ fn check_honesty(make: impl Fn(u64, u64) -> RandomScene, count: (&'static str, u
     let mut tallies: [Tally; 4] = Default::default();
     let mut without_truth = 0;
     for number in first..first + scenes {
-        let scene = make(seed, number);
+        let scene = Scene::draw(seed, number, features);
         let mut truth = match Truth::kept_in(kept.as_deref(), &scene, 1e-6, most_steps) {
             Ok(truth) => truth,
             Err(stopped) => {

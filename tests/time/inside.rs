@@ -12,7 +12,8 @@ use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 use crate::common::histories::{self, Scene};
 use crate::common::runs::scenes;
-use crate::common::{Draws, RandomScene, Ratios, builder_on, elastic, from_environment};
+use crate::common::scene::Scene as RandomScene;
+use crate::common::{Draws, Features, Ratios, builder_on, elastic, from_environment};
 
 /// A history that is one until a time, and another from then on.
 #[derive(Debug)]
@@ -328,7 +329,7 @@ struct Inside {
 impl Inside {
     fn new(seed: u64, number: u64) -> Inside {
         let mut draws = Draws::new(seed.wrapping_mul(7_777_777).wrapping_add(number));
-        let mut scene = RandomScene::new(seed, number);
+        let mut scene = RandomScene::draw(seed, number, Features::ANY);
         let (mut kernel, mut temperature, mut what) = (None, None, "");
         match draws.below(5) {
             0 => {
@@ -352,7 +353,7 @@ impl Inside {
                 what = "temperature, ";
             }
             2 if scene.body.is_elastic_at_once() => what = "in turn, ",
-            3 => scene = RandomScene::sprung(seed, number),
+            3 => scene = RandomScene::draw(seed, number, Features::SPRING),
             _ => {}
         }
         Inside { scene, what, kernel, temperature }

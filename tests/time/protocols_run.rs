@@ -4,7 +4,7 @@
 
 use crate::common::random_histories::FromSmallLoad;
 use crate::common::watched_runs::watch;
-use crate::common::{Draws, RandomScene, Ratios, builder_on, from_environment};
+use crate::common::{Draws, Features, Ratios, Scene, builder_on, from_environment};
 use viscocontact::prelude::*;
 
 /// A run of so many contact problems does not end.
@@ -80,7 +80,7 @@ fn random_protocols_run_to_their_end() {
     let seed = from_environment("PROTOCOLS_SEED", 2);
     let (mut failures, mut compared, mut total) = (Vec::new(), Ratios::default(), [0; 2]);
     for number in 0..scenes {
-        let scene = RandomScene::new(seed, number);
+        let scene = Scene::draw(seed, number, Features::ANY);
         let tolerance = Draws::new(number.wrapping_add(77 * seed)).power_of_ten(-4.0, -2.0);
         let name = format!("{tolerance:.0e} {}", scene.name);
         let steps = |history: &dyn LoadHistory| {

@@ -6,7 +6,7 @@
 //! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes. `RETURNS_SPRINGS` counts those by springs.
 
 use crate::common::watched_runs::watch;
-use crate::common::{RandomScene, Ratios, Truth, builder_on, from_environment};
+use crate::common::{Features, Ratios, Scene, Truth, builder_on, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -25,17 +25,17 @@ const MORE_STEPS: u64 = 16;
 /// most twice what the budget states in as many: of approach or force, and of the greatest pressure.
 #[test]
 fn errors_are_honest_on_random_returns() {
-    check_returns(RandomScene::returning, ("RETURNS_SCENES", 16), BOUNDS, MOST);
+    check_returns(Features::RETURNING, ("RETURNS_SCENES", 16), BOUNDS, MOST);
 }
 
 /// True errors of approach and force are at most twice the tolerance in 99 % of random scenes under springs, 1/20 to 20 times as stiff as the
 /// bodies, and three times in all.
 #[test]
 fn errors_are_honest_on_random_returns_by_springs() {
-    check_returns(RandomScene::returning_by_spring, ("RETURNS_SPRINGS", 16), BOUNDS_BY_SPRINGS, MOST_BY_SPRINGS);
+    check_returns(Features::RETURNING_BY_SPRING, ("RETURNS_SPRINGS", 16), BOUNDS_BY_SPRINGS, MOST_BY_SPRINGS);
 }
 
-fn check_returns(make: impl Fn(u64, u64) -> RandomScene, count: (&str, u64), bounds: [f64; 4], most: f64) {
+fn check_returns(features: Features, count: (&str, u64), bounds: [f64; 4], most: f64) {
     let [scenes, seed, first, most_steps] =
         [count, ("RETURNS_SEED", 2), ("RETURNS_FIRST", 0), ("RETURNS_STEPS", 20_000)]
             .map(|(name, default)| from_environment(name, default));
@@ -45,7 +45,7 @@ fn check_returns(make: impl Fn(u64, u64) -> RandomScene, count: (&str, u64), bou
     let [mut of_budget, mut of_pressure] = [Ratios::default(), Ratios::default()];
     let (mut problems, mut unjudged) = (0, 0);
     for number in first..first + scenes {
-        let scene = make(seed, number);
+        let scene = Scene::draw(seed, number, features);
         let mut truth = Truth::of(&scene, 0.1 * tolerances[tolerances.len() - 1], most_steps).unwrap();
         for (&tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
             let mut contact = scene.contact(Settings::default().tolerance());
@@ -93,13 +93,13 @@ fn step_loads_and_short_ramps_are_honest() {
     let [wanted, seed] =
         [("STEPS_SCENES", 6), ("STEPS_SEED", 2)].map(|(name, default)| from_environment(name, default));
     let mut ratios: [Ratios; 4] = Default::default();
-    let is_step = |scene: &RandomScene| {
+    let is_step = |scene: &Scene| {
         let creep = scene.body.material.contact_spectrum().unwrap().unwrap();
         scene.history.name.starts_with("step") && creep.terms().len() == 1
     };
-    let is_ramp = |scene: &RandomScene| scene.history.name.starts_with("ramp, hold");
+    let is_ramp = |scene: &Scene| scene.history.name.starts_with("ramp, hold");
     let (mut steps, mut ramps) = (0, 0);
-    for scene in (0..).map(|number| RandomScene::returning(seed, number)) {
+    for scene in (0..).map(|number| Scene::draw(seed, number, Features::RETURNING)) {
         let (step, ramp) = (is_step(&scene) && steps < wanted, is_ramp(&scene) && ramps < wanted);
         (steps, ramps) = (steps + u64::from(step), ramps + u64::from(ramp));
         for tolerance in [1e-2, 1e-3, 1e-4].into_iter().filter(|&tolerance| ramp || step && tolerance == 1e-4) {

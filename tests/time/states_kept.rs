@@ -181,7 +181,7 @@ fn runs_on_states_can_be_looked_at_within_their_steps() {
     let driven = Ramp::new(Load::spring(0.2, -0.005), Load::spring(0.2, 0.03), 1.0).unwrap();
     let exact = |time: f64| {
         let mut contact = StatesContact::new(&states, &material()).unwrap();
-        let mut run = contact.follow(&driven, Stepping::adaptive(1e-9), time);
+        let mut run = contact.follow(&driven, Stepping::adaptive(1e-7), time);
         while run.next_step().unwrap().is_some() {}
         contact
     };

@@ -4,11 +4,12 @@ pub(in crate::contact) mod along_path;
 pub(crate) mod shortfall;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use crate::contact::{Frame, Indenter, StepReport, ViscoelasticContact};
+use crate::contact::{Frame, Indenter, Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result, exact_length};
 use crate::geometry::{Gap, Geometry, Missed, evaluate};
-use crate::load::Loads;
+use crate::load::{Load, Loads};
 
 impl ViscoelasticContact {
     /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
@@ -79,11 +80,21 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
     pub fn step_over<'a>(&mut self, cells: [isize; 2], dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
+        self.step_over_unless(None, cells, dt, loads.into().as_slice())
+    }
+
+    /// [`ViscoelasticContact::step_over`], unless another thread sets a flag.
+    pub(crate) fn step_over_unless(
+        &mut self,
+        cancelled: Option<&AtomicBool>,
+        cells: [isize; 2],
+        dt: f64,
+        loads: &[Load],
+    ) -> Result<StepReport> {
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a step over the bodies" });
         }
-        let loads = loads.into();
-        let mut step = self.request_next(dt, loads.as_slice())?;
+        let mut step = Step { cancelled, ..self.request_next(dt, loads)? };
         step.interval.stride = cells;
         self.take(step)
     }

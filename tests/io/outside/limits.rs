@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::surfaces::Pressed;
-use crate::common::{Draws, RandomScene, builder_of, elastic, from_environment};
+use crate::common::{Draws, Features, Scene, builder_of, elastic, from_environment};
 use viscocontact::Error;
 use viscocontact::contact::Warnings;
 use viscocontact::geometry::{Repeated, Sum};
@@ -107,9 +107,9 @@ fn scenes_inside_the_model_give_no_false_alarm() {
     let (mut steps, mut runs) = (0, 0);
     for number in 0..from_environment("OUTSIDE_SCENES", 60) {
         let scene = match number % 3 {
-            0 => RandomScene::new(41, number),
-            1 => RandomScene::sprung(41, number),
-            _ => RandomScene::returning(41, number),
+            0 => Scene::draw(41, number, Features::ANY),
+            1 => Scene::draw(41, number, Features::SPRING),
+            _ => Scene::draw(41, number, Features::RETURNING),
         };
         let mut contact = scene.contact(1e-6);
         let mut run = contact.follow(scene.load(), Stepping::adaptive(1e-2), scene.body.until);

@@ -1,5 +1,8 @@
 //! The levels of a contact: groups with one past each, and the level up to which they are held.
 
+mod distance;
+mod merging;
+
 use crate::error::{Error, Result, StatesError, StepError};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::states::curve::{ElasticStates, Motions};
@@ -9,8 +12,6 @@ const ROUNDING: f64 = 1e-9;
 const SAME_LEVEL: f64 = 1e-15;
 /// Room for so many groups is made at once.
 const GROUPS: usize = 256;
-/// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
-const MORE: [usize; 2] = [8, 8];
 
 /// What is prescribed at the end of a step.
 #[derive(Debug, Clone, Copy)]
@@ -47,7 +48,7 @@ struct Group {
 pub(super) struct Levels {
     history: GroupHistory,
     groups: Vec<Group>,
-    /// Number of groups from which on those with the same past are merged.
+    /// Number of groups from which on they are merged.
     merge_from: usize,
     /// W of each group at the end of the step being tried.
     trial: Vec<f64>,
@@ -290,10 +291,11 @@ impl Levels {
         (self.level, self.force, self.lift) = (0.0, 0.0, 0.0);
     }
 
-    /// Holds the groups up to a level, commits the step, and merges groups with the same past.
+    /// Holds the groups up to a level, and commits the step.
     fn hold(&mut self, level: f64) {
         let stiffness = 1.0 / self.history.rule().compliance();
-        let held = self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL));
+        self.level = level;
+        let held = self.held();
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
         for (k, (group, displacement)) in self.groups.iter_mut().zip(&mut self.trial).enumerate() {
             group.traction = if k < held { (1.0 - *displacement) * stiffness } else { 0.0 };
@@ -305,25 +307,17 @@ impl Levels {
             (bottom, lower) = (group.top, group.motions);
         }
         self.history.commit(&self.trial);
-        (self.level, self.force, self.motions, self.lift) = (level, force, motions, 0.0);
-        if self.groups.len() < self.merge_from {
-            return;
-        }
-        let Some(last) = self.groups.last().copied() else { return };
-        for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
-            // a difference counts with the share of the thinner group, in levels or in depth
-            let [before, own] = [group - 1, group].map(|k| {
-                let ((bottom, lower), Group { top, motions, .. }) = (self.bottom(k), &self.groups[k]);
-                ((top - bottom) / last.top).max((motions.depth - lower.depth) / last.motions.depth)
-            });
-            if self.history.is_like_the_one_before(group, before.min(own)) {
-                self.history.remove(if before < own { group - 1 } else { group });
-                if before >= own {
-                    self.groups[group].traction = self.groups[group - 1].traction;
-                }
-                self.groups.remove(group - 1);
-            }
-        }
-        self.merge_from = self.groups.len() + self.groups.len() / MORE[0] + MORE[1];
+        (self.force, self.motions, self.lift) = (force, motions, 0.0);
+    }
+
+    /// Number of groups that are held.
+    fn held(&self) -> usize {
+        self.groups.partition_point(|group| group.top <= self.level * (1.0 + SAME_LEVEL))
+    }
+
+    /// Σ W Δδ at the end of a step in which all groups are free: the depth that a body must pass to touch.
+    pub(super) fn surface_after(&mut self, dt: f64, interpolant: Interpolant) -> f64 {
+        self.history.predict(dt, interpolant, &mut self.trial);
+        self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum()
     }
 }

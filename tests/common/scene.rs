@@ -12,7 +12,23 @@ use super::random_bodies::{Body, body_of_twenty_decades, random_body};
 use super::random_histories::{Control, RandomHistory, random_history, taps};
 use super::random_returns::{returning_body, returning_history};
 
-pub struct RandomScene {
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Features {
+    /// Whether loads go back and return to a surface that recovers.
+    pub returns: bool,
+    /// Whether a spring drives the body, which taps in some scenes; else a force or a given approach.
+    pub by_spring: bool,
+}
+
+impl Features {
+    pub const ANY: Features = Features { returns: false, by_spring: false };
+    pub const SPRING: Features = Features { returns: false, by_spring: true };
+    pub const RETURNING: Features = Features { returns: true, by_spring: false };
+    pub const RETURNING_BY_SPRING: Features = Features { returns: true, by_spring: true };
+}
+
+pub struct Scene {
     pub name: String,
     pub body: Body,
     pub history: RandomHistory,
@@ -67,91 +83,61 @@ fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Bo
     ("rough sphere", Box::new(Sum::new(Sphere::new(RADIUS).unwrap(), rough)), depth)
 }
 
-impl RandomScene {
+impl Scene {
     /// The scene of this number in the series of this seed.
-    pub fn new(seed: u64, number: u64) -> RandomScene {
-        RandomScene::driven(seed, number, false)
-    }
-
-    /// A scene of this number in the series of this seed, driven by a spring, which taps in some.
-    pub fn sprung(seed: u64, number: u64) -> RandomScene {
-        RandomScene::driven(seed, number, true)
-    }
-
-    fn driven(seed: u64, number: u64, by_spring: bool) -> RandomScene {
-        let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
-        let is_wide = by_spring && draws.chance(0.15);
-        let body = if is_wide { body_of_twenty_decades(&mut draws) } else { random_body(&mut draws) };
-        let grid = random_grid(&mut draws);
-        let reach = random_reach(&mut draws);
-        let (shape, geometry, depth) = random_shape(&mut draws, reach);
-        let kernel = InfluenceKernel::half_space(&grid).unwrap();
-        let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
-        let (touch, force) = scene.answers(depth);
-        scene.control = match draws.below(10) {
-            _ if by_spring => Control::by_spring(&mut draws, touch, depth, force),
-            0..4 => Control::Approach { touch, depth },
-            4 => {
-                let at = [draws.between(-0.15, 0.15) * reach, draws.between(-0.15, 0.15) * reach];
-                Control::EccentricForce(force, at)
+    pub fn draw(seed: u64, number: u64, features: Features) -> Scene {
+        let Features { returns, by_spring } = features;
+        let series = seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(if returns { 1 << 40 } else { 0 });
+        let draws = &mut Draws::new(series);
+        let is_wide = by_spring && !returns && draws.chance(0.15);
+        let body = match returns {
+            true => returning_body(draws),
+            false if is_wide => body_of_twenty_decades(draws),
+            false => random_body(draws),
+        };
+        let grid = random_grid(draws);
+        let reach = random_reach(draws);
+        let (shape, geometry, depth) = match returns && draws.below(6) == 0 {
+            true => rough_sphere(draws, &grid, reach),
+            false => random_shape(draws, reach),
+        };
+        let thickness = (returns && draws.chance(0.2)).then(|| reach * draws.power_of_ten(-0.3, 1.0));
+        let (on, kernel) = match thickness {
+            Some(thickness) => {
+                let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
+                (" on a layer", InfluenceKernel::layer(&grid, layer).unwrap())
             }
+            None => ("", InfluenceKernel::half_space(&grid).unwrap()),
+        };
+        let mut scene = Scene::unloaded(body, geometry, grid, kernel);
+        let (touch, force) = scene.answers(depth);
+        // ten kinds of control; of loads that return, half are approaches
+        let kind = if returns { 0 } else { draws.below(10) };
+        scene.control = match kind {
+            _ if by_spring => Control::by_spring(draws, touch, depth, force),
+            _ if returns && !draws.chance(0.5) => Control::Force(force),
+            0..4 => Control::Approach { touch, depth },
+            4 => Control::EccentricForce(force, [(); 2].map(|()| draws.between(-0.15, 0.15) * reach)),
             _ => Control::Force(force),
         };
-        let (until, tapping) = (scene.body.until, by_spring && draws.chance(0.15));
-        scene.history = match tapping {
-            true => taps(&mut draws, scene.control, until),
-            false => random_history(&mut draws, scene.control, until, scene.body.is_elastic_at_once()),
-        };
-        let stops = (0..1 + draws.below(10)).map(|k| {
-            let part = if k % 2 == 0 { draws.between(0.0, 1.0) } else { draws.power_of_ten(-4.0, 0.0) };
-            part * until
-        });
-        scene.stops = stops.collect();
-        scene.stops.push(until);
-        scene.called(seed, number, shape)
-    }
-
-    /// A scene whose load goes back and returns, of this number in the series of this seed.
-    pub fn returning(seed: u64, number: u64) -> RandomScene {
-        RandomScene::back_and_again(seed, number, false)
-    }
-
-    /// The same, driven by a spring.
-    pub fn returning_by_spring(seed: u64, number: u64) -> RandomScene {
-        RandomScene::back_and_again(seed, number, true)
-    }
-
-    fn back_and_again(seed: u64, number: u64, by_spring: bool) -> RandomScene {
-        let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(1 << 40));
-        let body = returning_body(&mut draws);
-        let grid = random_grid(&mut draws);
-        let reach = random_reach(&mut draws);
-        let (shape, geometry, depth) = match draws.below(6) {
-            0 => rough_sphere(&mut draws, &grid, reach),
-            _ => random_shape(&mut draws, reach),
-        };
-        let layer =
-            draws.chance(0.2).then(|| Layer::bonded_to_rigid(reach * draws.power_of_ten(-0.3, 1.0), 0.5).unwrap());
-        let kernel = match layer {
-            Some(layer) => InfluenceKernel::layer(&grid, layer).unwrap(),
-            None => InfluenceKernel::half_space(&grid).unwrap(),
-        };
-        let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
-        let (touch, force) = scene.answers(depth);
-        scene.control = match by_spring {
-            true => Control::by_spring(&mut draws, touch, depth, force),
-            false if draws.chance(0.5) => Control::Approach { touch, depth },
-            false => Control::Force(force),
-        };
         let until = scene.body.until;
-        scene.history = returning_history(&mut draws, scene.control, until);
-        scene.stops = (0..8).map(|_| until * draws.between(0.0, 1.0)).chain([until]).collect();
-        let shape = if layer.is_some() { format!("{shape} on a layer") } else { shape.into() };
-        scene.called(seed, number, &shape)
+        scene.history = match returns {
+            true => returning_history(draws, scene.control, until),
+            false if by_spring && draws.chance(0.15) => taps(draws, scene.control, until),
+            false => random_history(draws, scene.control, until, scene.body.is_elastic_at_once()),
+        };
+        let count = if returns { 8 } else { 1 + draws.below(10) };
+        let mut part = |k: usize| match returns || k % 2 == 0 {
+            true => draws.between(0.0, 1.0),
+            false => draws.power_of_ten(-4.0, 0.0),
+        };
+        scene.stops = (0..count).map(|k| part(k) * until).collect();
+        scene.stops.push(until);
+        scene.called(seed, number, &format!("{shape}{on}"))
     }
 
-    fn unloaded(body: Body, geometry: Box<dyn Geometry>, grid: Grid, kernel: InfluenceKernel) -> RandomScene {
-        RandomScene {
+    fn unloaded(body: Body, geometry: Box<dyn Geometry>, grid: Grid, kernel: InfluenceKernel) -> Scene {
+        Scene {
             name: String::new(),
             body,
             history: RandomHistory {
@@ -173,7 +159,7 @@ impl RandomScene {
         (touch, stiffness / self.body.material.contact_compliance(self.body.until))
     }
 
-    fn called(mut self, seed: u64, number: u64, shape: &str) -> RandomScene {
+    fn called(mut self, seed: u64, number: u64, shape: &str) -> Scene {
         let by = match self.control {
             Control::Force(_) => "force",
             Control::EccentricForce(..) => "eccentric force",

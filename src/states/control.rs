@@ -1,0 +1,347 @@
+//! Length of the adaptive steps of a run on elastic states.
+//!
+//! A step is taken whole and in two halves, and the halves are kept. Their difference at the end is not enough: a body that parts and
+//! touches within the step, or a surface that recovers while nothing presses on it, does not show there. So the control looks at the load
+//! within the step, ends steps where bodies touch and forces begin or end, and compares the free surface and the strains of all levels.
+
+use crate::contact::StepReport;
+use crate::error::{Result, StepError};
+use crate::load::{Load, LoadHistory};
+use crate::run::SAME_TIME;
+use crate::states::contact::StatesContact;
+use crate::states::levels::Demand;
+
+/// First step after a jump or a corner, over the time to the next one.
+const FIRST_STEP: f64 = 1e-4;
+/// Rounding of times: no step is shorter than this part of the time.
+const SHORTEST: f64 = 8.0 * f64::EPSILON;
+/// Limits of the ratio of a step to the one before.
+const MAX_GROWTH: f64 = 4.0;
+const MIN_GROWTH: f64 = 0.1;
+/// Share of the tolerance that the error of a step aims at: errors of several steps add up, more so under given forces, where nothing brings
+/// the depth back.
+const AIM: f64 = 0.15;
+const AIM_OF_FORCE: f64 = 0.1;
+/// A step may have so many times the error that it aims at.
+const ALLOWED: f64 = 3.0;
+/// Order of a corrected step, by which its length is chosen.
+const ORDER: f64 = 3.0;
+/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
+/// curvature.
+const OF_HALVES: f64 = 1.0 / 3.0;
+/// Where there is no order, in a first step and one in which the force ends, halves may be no better than the whole.
+const WITHOUT_ORDER: f64 = 2.0;
+/// Number of equal parts of a run, and of a step, at which the load is looked at.
+const PARTS_OF_RUN: u32 = 4096;
+const PARTS: usize = 8;
+/// Greatest deviation of the load from a parabola within a step, over the greatest load.
+const BEND: f64 = 0.03;
+/// Overshoot of the step that ends where bodies touch, in tolerances.
+const OVERSHOOT: f64 = 0.01;
+/// Bodies that touch this early in a step, as a part of it, touch at its start.
+const AT_START: f64 = 1e-3;
+/// Contacts that get smaller than this part of the greatest level within a step are looked at inside its halves too.
+const SHALLOW: f64 = 0.3;
+/// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run will make of them.
+const EXPECTED: f64 = 0.1;
+/// Groups of levels merge with this share of the tolerance.
+const MERGING: f64 = 0.01;
+
+/// Chooses the adaptive steps.
+#[derive(Debug, Clone)]
+pub(super) struct StepControl {
+    until: f64,
+    /// Length of the next step; 0 after a jump or a corner.
+    next: f64,
+    /// Time of the last jump or corner.
+    corner: f64,
+    /// Whether forces are given throughout the run.
+    by_force: bool,
+    /// Greatest depth and force of the run, for errors relative to them.
+    greatest: [f64; 2],
+    /// Times and loads at equal parts of the run, and the greatest of them.
+    loads: Vec<(f64, f64)>,
+    greatest_load: f64,
+    /// Times and loads within the step being tried at which it may have to end.
+    points: Vec<(f64, f64)>,
+    pub(super) rejected: u64,
+    /// The step taken whole, in halves, and after the first half.
+    whole: StatesContact,
+    halves: StatesContact,
+    middle: StatesContact,
+}
+
+impl StepControl {
+    /// For a run to the time `until`.
+    pub(super) fn new(contact: &StatesContact, until: f64) -> StepControl {
+        let (loads, points) = (Vec::with_capacity(PARTS_OF_RUN as usize + 1), Vec::with_capacity(2 * PARTS));
+        let [whole, halves, middle] = [(); 3].map(|()| contact.clone());
+        let (next, corner, by_force, greatest, greatest_load, rejected) = (0.0, 0.0, true, [0.0; 2], 0.0, 0);
+        StepControl {
+            until,
+            next,
+            corner,
+            by_force,
+            greatest,
+            loads,
+            greatest_load,
+            points,
+            rejected,
+            whole,
+            halves,
+            middle,
+        }
+    }
+
+    /// The next step starts at a jump or a corner of the load.
+    pub(super) fn restart(&mut self) {
+        self.next = 0.0;
+    }
+
+    /// Takes the longest step that the tolerance allows, to the time `stop` at most. If it fails, the contact stays as it was.
+    pub(super) fn step(
+        &mut self,
+        contact: &mut StatesContact,
+        history: &dyn LoadHistory,
+        tolerance: f64,
+        stop: f64,
+    ) -> Result<StepReport> {
+        let (now, is_first) = (contact.time(), self.next == 0.0);
+        let shortest = SHORTEST * stop;
+        if stop - now <= 2.0 * shortest {
+            return contact.step_to(stop, stop - now, load_at(history, stop)?);
+        }
+        self.sample(contact, history);
+        if is_first {
+            self.corner = now;
+        }
+        let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.next }.max(shortest);
+        let aim = if self.by_force { AIM_OF_FORCE } else { AIM } * tolerance;
+        let mut last: Option<(f64, f64)> = None;
+        loop {
+            if length < shortest {
+                return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
+            }
+            let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
+            let mut loads = [0.0; PARTS + 1];
+            for (k, load) in loads.iter_mut().enumerate() {
+                *load = value(contact, load_at(history, part([now, end], k as f64))?)?;
+            }
+            if self.bend([now, end], &loads) > BEND * self.greatest_load && end - now > 2.0 * shortest {
+                length = 0.5 * (end - now);
+                continue;
+            }
+            let event = self.event(contact, history, [now, end], &loads, tolerance)?;
+            end = event.unwrap_or(end);
+            let (report, difference) = self.compare(contact, history, [now, end])?;
+            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(history, end);
+            let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
+            let order = match last {
+                _ if is_first => 1.0,
+                Some((length, before)) if 0.0 < error && error < before => {
+                    ((before / error).ln() / (length / (end - now)).ln()).clamp(1.0, ORDER)
+                }
+                Some(_) => 1.0,
+                None => ORDER,
+            };
+            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, MAX_GROWTH);
+            if error <= ALLOWED * aim {
+                self.next = match event {
+                    Some(_) => growth.clamp(0.5, 1.0) * length,
+                    None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
+                };
+                self.greatest = self.greatest_with(report.force);
+                contact.copy_from(&self.halves);
+                contact.merge(MERGING * tolerance);
+                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
+            }
+            self.rejected += 1;
+            last = Some((end - now, error));
+            length = growth.min(0.5) * (end - now);
+        }
+    }
+
+    /// Looks at the load at equal parts of the run, once.
+    fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) {
+        let start = contact.time();
+        let time = |k: u32| start + (self.until - start) * f64::from(k) / f64::from(PARTS_OF_RUN);
+        if self.loads.is_empty() {
+            // a load that is refused fails the step to it
+            let load = |time: f64| value(contact, history.at(time)).ok().filter(|load| load.is_finite());
+            self.loads.extend((0..=PARTS_OF_RUN).filter_map(|k| Some((time(k), load(time(k))?))));
+            self.by_force = (0..=PARTS_OF_RUN).all(|k| is_force(history, time(k)));
+            self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
+        }
+    }
+
+    /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
+    /// between the equal parts of the step. How far apart bodies are does not matter where this is farther than the greatest depth.
+    fn bend(&mut self, [now, end]: [f64; 2], loads: &[f64; PARTS + 1]) -> f64 {
+        self.greatest_load = loads.iter().copied().fold(self.greatest_load, f64::max);
+        let near = |load: f64| load.max(-self.greatest_load);
+        let [a, b, c] = [0, PARTS / 2, PARTS].map(|k| near(loads[k]));
+        let off = |s: f64, load: f64| {
+            let parabola = a * (1.0 - s) * (1.0 - 2.0 * s) + 4.0 * b * s * (1.0 - s) + c * s * (2.0 * s - 1.0);
+            (near(load) - parabola).abs()
+        };
+        let own = loads.iter().enumerate().map(|(k, load)| off(k as f64 / PARTS as f64, *load));
+        let after = self.loads.partition_point(|load| load.0 <= now);
+        let others = self.loads[after..].iter().take_while(|load| load.0 < end);
+        if loads.iter().all(|load| *load <= 0.0) && others.clone().any(|(_, load)| *load > 0.0) {
+            return f64::INFINITY;
+        }
+        own.chain(others.map(|(time, load)| off((time - now) / (end - now), *load))).fold(0.0, f64::max)
+    }
+
+    /// The first time within a step at which bodies that are apart touch, or a force begins or ends. A surface that nothing presses on only
+    /// sinks.
+    fn event(
+        &mut self,
+        contact: &StatesContact,
+        history: &dyn LoadHistory,
+        [now, end]: [f64; 2],
+        loads: &[f64; PARTS + 1],
+        tolerance: f64,
+    ) -> Result<Option<f64>> {
+        let by_force = is_force(history, end);
+        if !by_force && contact.level() > 0.0 {
+            return Ok(None);
+        }
+        // the load at equal parts, and at its tops between
+        let slope = |k: usize| match k {
+            0 => 4.0 * loads[1] - 3.0 * loads[0] - loads[2],
+            PARTS => 3.0 * loads[k] - 4.0 * loads[k - 1] + loads[k - 2],
+            _ => loads[k + 1] - loads[k - 1],
+        };
+        self.points.clear();
+        for k in 1..=PARTS {
+            let (rise, fall) = (slope(k - 1), -slope(k));
+            if rise > 0.0 && fall > 0.0 {
+                let top = part([now, end], (k - 1) as f64 + rise / (rise + fall));
+                self.points.push((top, value(contact, load_at(history, top)?)?));
+            }
+            self.points.push((part([now, end], k as f64), loads[k]));
+        }
+        let scratch = &mut self.whole;
+        scratch.copy_from(contact);
+        let mut excess = |time: f64, load: f64| -> Result<f64> {
+            Ok(if by_force { load } else { load - scratch.surface_at(time)? })
+        };
+        let top = self.points.iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most));
+        if !by_force && excess(end, top)? <= 0.0 {
+            return Ok(None);
+        }
+        let overshoot =
+            if by_force { 0.0 } else { OVERSHOOT * tolerance * self.greatest[0].max(1e-3 * self.greatest_load) };
+        let (mut low, mut presses) = (now, by_force && loads[0] > 0.0);
+        for &(time, load) in &self.points {
+            let (mut high, mut over) = (time, excess(time, load)?);
+            if (over > 0.0) != presses {
+                let near = now + if by_force { SAME_TIME } else { AT_START } * (end - now);
+                while high > near && (by_force || over > overshoot) {
+                    let middle = 0.5 * (low + high);
+                    if middle <= low || middle >= high {
+                        break;
+                    }
+                    let there = excess(middle, value(contact, load_at(history, middle)?)?)?;
+                    if (there > 0.0) == presses { low = middle } else { (high, over) = (middle, there) }
+                }
+                presses = !presses;
+                let event = if by_force && presses { low } else { high };
+                if near < event && event < end - SAME_TIME * (end - now) {
+                    return Ok(Some(event));
+                }
+            }
+            low = time;
+        }
+        Ok(None)
+    }
+
+    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth and force, relative to values that
+    /// are not small in this run.
+    fn compare(
+        &mut self,
+        contact: &StatesContact,
+        history: &dyn LoadHistory,
+        [now, end]: [f64; 2],
+    ) -> Result<(StepReport, f64)> {
+        let StepControl { whole, halves, middle, .. } = self;
+        let to = |contact: &mut StatesContact, time: f64| {
+            contact.advance(time, time - contact.time(), load_at(history, time)?)
+        };
+        let half = 0.5 * (end - now);
+        whole.copy_from(contact);
+        to(whole, end)?;
+        halves.copy_from(contact);
+        to(halves, now + half)?;
+        middle.copy_from(halves);
+        let report = to(halves, end)?;
+
+        let mut found = [[whole.depth(), halves.depth()], [whole.force(), halves.force()]];
+        if whole.level() == 0.0 && halves.level() == 0.0 {
+            found = [[0.0; 2]; 2];
+        }
+        let cuts = [middle.level(), halves.level()];
+        let mut of_surface = whole.distance(halves, contact.level(), cuts, (end - self.corner) / half);
+        if self.by_force {
+            of_surface[1] = 0.0;
+        }
+        let expected = halves.expected(contact.demand(load_at(history, end)?)?, self.greatest_load, self.until / half);
+        let greatest = self.greatest_with(report.force);
+        let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
+        let StepControl { whole, halves, middle, .. } = self;
+        let scales = [halves.depth(), report.force];
+        let scales = [0, 1].map(|k| f64::abs(scales[k]).max(0.1 * greatest[k]));
+        let mut worst = 0.0f64;
+        let mut see = |difference: f64, scale: f64| {
+            if scale > 0.0 {
+                worst = worst.max(difference.abs() / scale);
+            }
+        };
+        for k in 0..2 {
+            see(found[k][0] - found[k][1], scales[k]);
+            see(of_surface[k], greatest[k]);
+        }
+        let levels = [contact.level(), cuts[0], cuts[1]];
+        let deepest = levels.into_iter().fold(0.0, f64::max);
+        let presses = || -> Result<bool> { Ok(value(contact, load_at(history, now + half)?)? > 0.0) };
+        let is_shallow = levels.iter().any(|level| *level < SHALLOW * deepest);
+        if is_shallow || deepest == 0.0 && is_force(history, end) && presses()? {
+            for start in [contact, middle] {
+                whole.copy_from(start);
+                let [eighth, quarter] = [0.25, 0.5].map(|part| start.time() + part * half);
+                let one = whole.outcome(quarter, load_at(history, quarter)?)?;
+                to(whole, eighth)?;
+                let two = whole.outcome(quarter, load_at(history, quarter)?)?;
+                (0..2).for_each(|k| see(one[k] - two[k], scales[k]));
+            }
+        }
+        Ok((report, worst))
+    }
+
+    /// The greatest depth and force of the run, with those of the step being tried. Depths without contact are no scale.
+    fn greatest_with(&self, force: f64) -> [f64; 2] {
+        let depth = if force == 0.0 { 0.0 } else { self.halves.depth().abs() };
+        [self.greatest[0].max(depth), self.greatest[1].max(force)]
+    }
+}
+
+/// The load at a time, or just before it where it jumps.
+pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
+    history.checked_before(time, false)
+}
+
+fn is_force(history: &dyn LoadHistory, time: f64) -> bool {
+    matches!(history.before(time), Load::Force { .. })
+}
+
+/// Force, or depth of the load point or of the far end of its spring.
+fn value(contact: &StatesContact, load: Load) -> Result<f64> {
+    let (Demand::Force(value) | Demand::Depth { depth: value, .. }) = contact.demand(load)?;
+    Ok(value)
+}
+
+/// The end of one of the equal parts of a step.
+fn part([now, end]: [f64; 2], k: f64) -> f64 {
+    if k == PARTS as f64 { end } else { now + (end - now) * k / PARTS as f64 }
+}

@@ -1,0 +1,70 @@
+//! How far apart two outcomes of one step are, and what an error is measured against.
+
+use crate::states::curve::ElasticStates;
+use crate::states::levels::{Demand, Group, Levels, ROUNDING};
+
+/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, and counts so much.
+const SWEPT: f64 = 0.05;
+/// Strains of levels that were swept count as far as they last for so many halves of the step.
+const LASTING: i32 = 8;
+
+impl Levels {
+    /// Depth and force of an undisturbed contact under a load of this kind and size, the depth as soon as it acts, the force after so many
+    /// steps like the last one.
+    pub(in crate::states) fn expected(
+        &self,
+        states: &ElasticStates,
+        demand: Demand,
+        size: f64,
+        steps: f64,
+    ) -> [f64; 2] {
+        match demand {
+            Demand::Force(_) => [states.depth(size * self.history.rule().compliance()), size],
+            Demand::Depth { give, .. } => {
+                let stiffness = self.history.stiffness_over(steps);
+                let level = states.level_where(give * stiffness, size);
+                [states.depth(level), stiffness * level]
+            }
+        }
+    }
+
+    /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|
+    /// from below over the compliance, for X = W and X the strains as far as they can raise a free surface. This is the most that the
+    /// difference can ever add to a depth and to a force. The `cuts` are those of the other outcome.
+    pub(in crate::states) fn distance(
+        &mut self,
+        states: &ElasticStates,
+        other: &Levels,
+        start: f64,
+        cuts: [f64; 2],
+        steps: f64,
+    ) -> [f64; 2] {
+        cuts.into_iter().for_each(|level| self.cut_at(states, level));
+        let all = [start, self.level, cuts[0], cuts[1]];
+        let [from, to] = [all.into_iter().fold(start, f64::min), all.into_iter().fold(start, f64::max)];
+        let mut worst = [0.0f64; 2];
+        for ((_, own), ([weight, decay], others)) in self.history.strains().zip(other.history.strains()) {
+            let swept = SWEPT * decay.powi(LASTING);
+            let (mut k, mut sums) = (0, [0.0f64; 2]);
+            // least and greatest sum over the depth below a level, of levels that were swept and of others
+            let mut range = [[0.0f64; 2]; 2];
+            for (group, Group { top, motions, .. }) in self.groups.iter().enumerate() {
+                let (bottom, lower) = self.bottom(group);
+                while other.groups.get(k).is_some_and(|group| group.top < top * (1.0 - ROUNDING)) {
+                    k += 1;
+                }
+                let difference = weight * (own(group) - if k < other.groups.len() { others(k) } else { 0.0 });
+                sums[0] += difference * (motions.depth - lower.depth);
+                sums[1] += difference * (top - bottom);
+                let is_swept = from * (1.0 + ROUNDING) < *top && *top < to * (1.0 - ROUNDING);
+                worst[1] = worst[1].max(if is_swept { swept } else { 1.0 } * sums[1].abs());
+                let [least, most] = &mut range[usize::from(is_swept)];
+                (*least, *most) = (least.min(sums[0]), most.max(sums[0]));
+            }
+            for ([least, most], weight) in range.into_iter().zip([1.0, swept]) {
+                worst[0] = worst[0].max(weight * (sums[0] - least).max(most - sums[0]));
+            }
+        }
+        [worst[0], worst[1] * other.history.stiffness_over(steps)]
+    }
+}

@@ -1,0 +1,369 @@
+//! Does every contact keep the same promises along a run? Each behaviour goes through a contact in space and one on elastic states.
+
+use std::error::Error as _;
+use std::fs;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use viscocontact::Error;
+use viscocontact::load::LoadError;
+use viscocontact::output::Format;
+use viscocontact::prelude::*;
+use viscocontact::run::RunContact;
+
+use crate::common::{Draws, Temporary};
+
+const RADIUS: f64 = 10.0e-3;
+
+fn rubber() -> Material {
+    Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap())
+}
+
+fn in_space() -> ViscoelasticContact {
+    let builder = ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap());
+    builder.geometry(&Sphere::new(RADIUS).unwrap()).material(rubber()).build().unwrap()
+}
+
+fn on_states() -> StatesContact {
+    StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &rubber()).unwrap()
+}
+
+/// A kind of contact: a new one, and its runs.
+struct Kind<C: RunContact + 'static> {
+    new: fn() -> C,
+    follow: fn(C, Box<dyn LoadHistory>, Stepping, f64) -> Run<'static, C>,
+    /// The approach at which the body touches.
+    touch: f64,
+}
+
+impl<C: RunContact + Send> Kind<C> {
+    fn run(&self, load: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static, C> {
+        (self.follow)((self.new)(), Box::new(load), stepping, until)
+    }
+}
+
+const STEPPINGS: [Stepping; 2] = [Stepping::Fixed { dt: 0.13 }, Stepping::Adaptive { tolerance: 1e-3 }];
+
+fn hold(force: f64) -> StepLoad {
+    StepLoad::new(Load::force(force)).unwrap()
+}
+
+/// Ends, forces and approaches of all steps.
+fn steps<C: RunContact>(mut run: Run<'static, C>) -> Vec<[f64; 3]> {
+    let mut steps = Vec::new();
+    while let Some(report) = run.next_step().unwrap() {
+        steps.push([report.time, report.force, report.approach]);
+    }
+    steps
+}
+
+/// Runs the behaviours below through each kind of contact.
+macro_rules! behaviours {
+    ($($name:ident: $kind:ident, $generic:ident => $check:block)*) => {$(
+        #[test]
+        fn $name() {
+            fn check<$generic: RunContact + Send>($kind: &Kind<$generic>) $check
+            let grid = Grid::square(24, 4.0e-3).unwrap();
+            let touch = Sphere::new(RADIUS).unwrap().initial_gap(0.5 * grid.spacing()[0], 0.5 * grid.spacing()[1]);
+            check(&Kind { new: in_space, follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until), touch });
+            check(&Kind {
+                new: on_states,
+                follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until),
+                touch: 0.0,
+            });
+        }
+    )*};
+}
+
+behaviours! {
+    steps_too_short_to_change_the_time_are_refused: kind, C => {
+        for dt in [1e-30, 1e-22, 1e-18] {
+            let mut contact = (kind.new)();
+            contact.step(0.0, Load::force(0.5)).unwrap();
+            contact.step(1.0, Load::force(0.5)).unwrap();
+            let mut run = (kind.follow)(contact, Box::new(hold(0.5)), Stepping::fixed(dt), 2.0);
+            // a first step of length zero may apply the load
+            let error = (0..2).find_map(|_| run.next_step().err()).unwrap();
+            assert!(matches!(error, Error::OutOfRange { field: "fixed step", .. }), "{error}");
+            assert_eq!(run.contact().time(), 1.0);
+        }
+    }
+
+    invalid_runs_are_refused: kind, C => {
+        let refused = |stepping, until, name: &str| {
+            let error = kind.run(hold(0.5), stepping, until).next_step().unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { field, .. } if field == name), "{error}");
+        };
+        refused(Stepping::fixed(0.1), -1.0, "end of the run");
+        refused(Stepping::fixed(0.1), f64::NAN, "end of the run");
+        refused(Stepping::fixed(0.0), 1.0, "fixed step");
+        refused(Stepping::fixed(f64::INFINITY), 1.0, "fixed step");
+        refused(Stepping::adaptive(0.2), 1.0, "tolerance of the adaptive steps");
+        let run = || kind.run(hold(0.5), Stepping::fixed(0.1), 1.0);
+        let error = run().stop_at([f64::NAN]).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { field: "time to stop at or to sample", .. }), "{error}");
+        let error = run().sample_at(Times::every(0.0)).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { field: "interval of times", .. }), "{error}");
+        let error = run().stop_when(|contact| contact.force(), Crossing::Up(f64::NAN)).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { field: "value of an event", .. }), "{error}");
+        let load = FnHistory::new(|t| Load::force(0.5 - t));
+        let mut run = kind.run(load, Stepping::fixed(0.2), 1.0);
+        let error = std::iter::from_fn(|| Some(run.next_step())).find_map(Result::err).unwrap();
+        assert!(matches!(error, Error::Load(LoadError::OutOfRange { .. })), "{error}");
+    }
+
+    times_come_as_arrays_vectors_and_slices: kind, C => {
+        for stepping in STEPPINGS {
+            let times = vec![0.7, 0.31, 2.0];
+            let stopped = |times: Times| steps(kind.run(hold(0.5), stepping, 1.0).stop_at(times).unwrap());
+            let found = stopped(Times::from(times.clone()));
+            assert!([0.31, 0.7, 1.0].iter().all(|time| found.iter().any(|step| step[0] == *time)), "{found:?}");
+            assert_eq!(found, stopped(Times::from([0.7, 0.31, 2.0])));
+            assert_eq!(found, stopped(Times::from(&times[..])));
+        }
+    }
+
+    samples_leave_the_steps_and_know_whether_they_were_asked_for: kind, C => {
+        for stepping in STEPPINGS {
+            let times = [0.05, 0.31, 0.62, 1.9];
+            let load = || Sinusoid::about(Load::force(0.4), 0.3, 0.6).unwrap();
+            let mut run = kind.run(load(), stepping, 2.0).sample_at(times).unwrap();
+            let (mut found, mut ends, mut asked) = (Vec::new(), 0, Vec::new());
+            while let Some(report) = run.next_step().unwrap() {
+                found.push([report.time, report.force, report.approach]);
+                for sample in run.samples() {
+                    let sample = sample.unwrap();
+                    let (report_of, contact) = (sample.report(), sample.contact());
+                    assert_eq!([report_of.time, report_of.force], [contact.time(), contact.force()]);
+                    assert_eq!(report_of.time_error, report.time_error);
+                    let force = if let Load::Force { normal, .. } = load().at(contact.time()) { normal } else { f64::NAN };
+                    assert!((contact.force() - force).abs() <= 1e-9, "{} {force}", contact.force());
+                    ends += usize::from(sample.is_end_of_step());
+                    asked.extend(sample.is_asked_for().then_some(report_of.time));
+                }
+            }
+            assert_eq!(ends, found.len());
+            assert_eq!(asked, times);
+            assert_eq!(found, steps(kind.run(load(), stepping, 2.0)));
+        }
+    }
+
+    a_flag_ends_a_step_and_the_run_goes_on: kind, C => {
+        for stepping in STEPPINGS {
+            let plain = steps(kind.run(hold(0.5), stepping, 2.0));
+            let flag = Arc::new(AtomicBool::new(false));
+            let mut run = kind.run(hold(0.5), stepping, 2.0).cancelled_by(Arc::clone(&flag));
+            let mut found = Vec::new();
+            loop {
+                flag.store(true, Ordering::Relaxed);
+                let now = run.contact().time();
+                if found.len() < plain.len() {
+                    assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
+                    assert_eq!((run.contact().time(), run.samples().count()), (now, 0));
+                }
+                flag.store(false, Ordering::Relaxed);
+                let Some(report) = run.next_step().unwrap() else { break };
+                found.push([report.time, report.force, report.approach]);
+            }
+            assert_eq!(found, plain);
+        }
+    }
+
+    progress_counts_all_steps: kind, C => {
+        for stepping in STEPPINGS {
+            let mut run = kind.run(hold(0.5), stepping, 4.0);
+            let mut count = 0;
+            while let Some(report) = run.next_step().unwrap() {
+                count += 1;
+                let progress = run.progress();
+                assert_eq!((progress.steps, progress.time, progress.share_of_time()), (count, report.time, report.time / 4.0));
+            }
+            assert!(count > 3 && run.progress().share_of_decades() == 1.0);
+            assert_eq!(run.into_contact().time(), 4.0);
+        }
+    }
+
+    touch_and_separation_are_events: kind, C => {
+        // the body first touches at a known time; it parts where the force has just become 0
+        let load = || Sinusoid::about(Load::approach(kind.touch), 20.0e-6, 0.5).unwrap();
+        for stepping in STEPPINGS {
+            let run = kind.run(load(), stepping, 8.0).stop_when(|contact| contact.force(), Crossing::Down(0.0)).unwrap();
+            let mut run = run.stop_when(|contact| contact.force(), Crossing::Up(0.0)).unwrap();
+            let (mut parted, mut before, mut last) = (0, 0.0, 0.0);
+            while let Some(report) = run.next_step().unwrap() {
+                if run.events()[0].is_met() {
+                    parted += 1;
+                    assert!(report.force <= 1e-4 * before && before > 0.0, "{:e} {before}", report.force);
+                    let just_before = run.within_step(last + (1.0 - 1e-4) * (report.time - last)).unwrap();
+                    assert!(just_before.force() > 0.0, "{:e}", just_before.force());
+                }
+                (before, last) = (report.force, report.time);
+            }
+            assert_eq!((parted, run.events()[0].times().len()), (4, 4));
+            let touches = run.events()[1].times();
+            assert_eq!(touches.len(), 4, "{touches:?}");
+            assert!(touches[0] < 2e-3, "{touches:?}");
+            for (touch, part) in touches.iter().skip(1).zip(run.events()[0].times()) {
+                assert!(touch > part, "{touches:?}");
+            }
+        }
+    }
+
+    crossings_are_found_to_a_millionth_of_a_step: kind, C => {
+        // forces are prescribed, so that all times are known: also of two crossings within a step, and at its start or end
+        let (mean, amplitude) = (0.3, 0.2);
+        let load = || Sinusoid::about(Load::force(mean), amplitude, 1.0).unwrap();
+        for (dt, until) in [(0.5, 4.0), (0.07, 3.0), (0.25, 3.0)] {
+            for level in [0.45, 0.3 + 0.2 * 0.7, 0.15, 0.3] {
+                for crossing in [Crossing::Up(level), Crossing::Down(level)] {
+                    let run = kind.run(load(), Stepping::fixed(dt), until);
+                    let mut run = run.stop_when(|contact| contact.force(), crossing).unwrap();
+                    while run.next_step().unwrap().is_some() {}
+                    let angle = ((level - mean) / amplitude).asin() / std::f64::consts::TAU;
+                    let phase = if let Crossing::Up(_) = crossing { angle } else { 0.5 - angle };
+                    // the sine may begin and end at the value itself
+                    let inside = |time: &f64| *time > 1e-5 && *time < until - 1e-5;
+                    let expected: Vec<f64> = (-1..10).map(|k| f64::from(k) + phase).filter(inside).collect();
+                    let found: Vec<f64> = run.events()[0].times().iter().copied().filter(inside).collect();
+                    assert_eq!(found.len(), expected.len(), "{dt} {crossing:?}: {found:?} {expected:?}");
+                    for (found, expected) in found.iter().zip(&expected) {
+                        assert!((found - expected).abs() <= 2e-6 * dt, "{dt} {crossing:?}: {found} {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    events_of_free_quantities: kind, C => {
+        // a body that sinks under a held force passes an approach once
+        for stepping in STEPPINGS {
+            let [first, .., end] = steps(kind.run(hold(0.5), stepping, 5.0))[..] else { panic!("few steps") };
+            let value = first[2] + Draws::new(7).between(0.2, 0.8) * (end[2] - first[2]);
+            let run = kind.run(hold(0.5), stepping, 5.0).stop_when(|contact| contact.approach(), Crossing::Up(value)).unwrap();
+            // met never, and true from the beginning
+            let run = run.stop_when(|contact| contact.approach(), Crossing::Down(value)).unwrap();
+            let run = run.stop_when(|contact| contact.contact_area(), Crossing::Up(1.0)).unwrap();
+            let mut run = run.stop_when(|contact| contact.force(), Crossing::Down(0.6)).unwrap();
+            let mut at = f64::NAN;
+            while run.next_step().unwrap().is_some() {
+                if run.events()[0].is_met() {
+                    at = run.contact().approach();
+                }
+            }
+            // an adaptive step to the event is another step than the one in which it was found
+            let allowed = if let Stepping::Adaptive { tolerance } = stepping { tolerance } else { 1e-6 };
+            assert!((at - value).abs() <= allowed * value, "{at} {value}");
+            let counts: Vec<usize> = run.events().iter().map(|event| event.times().len()).collect();
+            assert_eq!(counts, [1, 0, 0, 0]);
+            assert!(run.events()[3].is_beyond() && !run.events()[2].is_beyond());
+        }
+    }
+
+    errors_of_users_come_out_of_the_step: kind, C => {
+        #[derive(Debug, PartialEq)]
+        struct Silent(f64);
+        impl std::fmt::Display for Silent {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "the sensor gave nothing after {} s", self.0)
+            }
+        }
+        impl std::error::Error for Silent {}
+        for stepping in STEPPINGS {
+            let load = FnHistory::fallible(|t| if t < 1.0 { Ok(Load::force(0.5)) } else { Err(Silent(1.0)) });
+            // adaptive runs look at the whole history when they begin
+            let mut run = kind.run(load, stepping, 2.0);
+            let error = std::iter::from_fn(|| Some(run.next_step())).find_map(Result::err).unwrap();
+            assert!(matches!(error, Error::User(_)), "{error}");
+            assert_eq!(error.source().unwrap().downcast_ref(), Some(&Silent(1.0)));
+            let (now, error) = (run.contact().time(), run.next_step().unwrap_err());
+            assert_eq!((run.contact().time(), error.to_string()), (now, "the load history failed".to_owned()));
+        }
+    }
+}
+
+/// Gaps and creep functions that fail.
+#[test]
+fn errors_of_gaps_and_creep_come_out_as_themselves() {
+    let build = |gap: bool, creep: bool| {
+        let gap = FnGeometry::fallible(move |x1, x2| if gap { "x".parse() } else { Ok((x1 * x1 + x2 * x2) / 2.0e-2) });
+        let creep =
+            FnRheology::fallible(move |t| if creep && t > 0.0 { "x".parse() } else { Ok(1.0e-6 * (1.0 + t.ln_1p())) });
+        let builder = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?).geometry(&gap);
+        let settings = Settings::default().with_time_rule(TimeRule::Rectangle);
+        let mut contact = builder.material(Material::incompressible(creep)).settings(settings).build()?;
+        contact.step(0.0, Load::force(0.5))?;
+        contact.step(0.1, Load::force(0.5))?;
+        contact.step(0.1, Load::force(0.5))
+    };
+    build(false, false).unwrap();
+    for (gap, creep) in [(true, false), (false, true)] {
+        let error = build(gap, creep).unwrap_err();
+        assert!(matches!(error, Error::User(_)), "{error}");
+        assert!(error.source().unwrap().is::<std::num::ParseFloatError>());
+    }
+}
+
+/// A run that is interrupted at any step and resumed writes the files of one that is not: rows and frames after the save are cut off.
+#[test]
+fn a_resumed_run_continues_its_files() {
+    let load = PiecewiseLinear::new(&[
+        (0.0, Load::force(0.2)),
+        (0.5, Load::force(0.6)),
+        (0.5, Load::force(0.3)),
+        (1.0, Load::force(0.3)),
+    ])
+    .unwrap();
+    let (metadata, fields) = (Metadata::new("Ball on rubber"), [Field::Pressure]);
+    for format in [Format::Vtk, Format::Npz] {
+        for stepping in STEPPINGS {
+            let folder = Temporary::folder("resumed-run");
+            // runs to the end, or saves before the step `interrupted` and takes some more
+            let go_on = |name: &str, interrupted: Option<usize>| {
+                let (saved, table, frames) =
+                    (folder.join(format!("{name}.state")), folder.join(format!("{name}.csv")), folder.join(name));
+                let mut contact = in_space();
+                if saved.exists() {
+                    contact.resume(&saved).unwrap();
+                }
+                let mut table = CsvHistory::create_or_continue(table, &metadata, &contact, &[]).unwrap();
+                let mut series = FrameSeries::create_or_continue(frames, format, &metadata, &fields, &contact).unwrap();
+                let mut run = contact.follow(&load, stepping, 1.0);
+                let mut steps = run.progress().steps as usize;
+                loop {
+                    if Some(steps) == interrupted {
+                        run.save(&saved).unwrap();
+                    }
+                    let Some(report) = run.next_step().unwrap() else { break };
+                    steps += 1;
+                    table.record(run.contact(), &report, &[]).unwrap();
+                    series.record(run.contact()).unwrap();
+                    if interrupted.is_some_and(|step| steps == step + 3) {
+                        break;
+                    }
+                }
+                assert_eq!(run.progress().steps as usize, steps);
+                run.progress()
+            };
+            let whole = go_on("whole", None);
+            assert!(whole.steps > 8);
+            for step in 1..whole.steps as usize {
+                let name = format!("resumed-{step}");
+                go_on(&name, Some(step));
+                assert_eq!(go_on(&name, None), whole);
+                let read = |path: String| fs::read(folder.join(path)).unwrap();
+                assert_eq!(read(format!("{name}.csv")), read("whole.csv".into()), "after {step} steps");
+                let frames = |name: &str| {
+                    let mut paths: Vec<_> =
+                        fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+                    paths.sort();
+                    paths
+                };
+                assert_eq!(frames(&name), frames("whole"));
+                for frame in frames(&name) {
+                    let of = |name: &str| fs::read(folder.join(name).join(&frame)).unwrap();
+                    assert!(of(&name) == of("whole"), "{frame:?} after {step} steps");
+                }
+            }
+        }
+    }
+}
