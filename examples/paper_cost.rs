@@ -13,12 +13,15 @@ mod support;
 
 use std::error::Error;
 use std::fs;
+use std::hint::black_box;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Parser;
 use step_loaded_sphere::{StepLoadedSphere, errors};
 use viscocontact::Result;
+use viscocontact::Workspace;
 use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
 use viscocontact::prelude::*;
 
@@ -73,14 +76,68 @@ fn seconds_so_far(start: Instant) -> f64 {
     times.ok().filter(|&seconds| seconds > 0.0).unwrap_or_else(|| start.elapsed().as_secs_f64())
 }
 
-/// Ways to compute the scene.
-const WAYS: [&str; 3] = ["paper, literally", "paper, convolutions kept", "default"];
+/// A way to compute the scene.
+#[derive(Clone, Copy)]
+struct Way {
+    name: &'static str,
+    settings: Settings,
+    /// Whether each step convolves all past increments of the pressure anew.
+    literally: bool,
+}
 
-fn settings(way: usize) -> Settings {
-    match way {
-        0 => Settings::paper_literal(),
-        1 => Settings::paper(),
-        _ => Settings::default(),
+impl Way {
+    fn new(name: &'static str, settings: Settings) -> Way {
+        Way { name, settings, literally: false }
+    }
+
+    /// [`Settings::paper`] at the cost that the source paper states.
+    fn literal() -> Way {
+        Way { literally: true, ..Way::new("paper, literally", Settings::paper()) }
+    }
+
+    fn all() -> [Way; 3] {
+        let kept = Way::new("paper, convolutions kept", Settings::paper());
+        [Way::literal(), kept, Way::new("default", Settings::default())]
+    }
+}
+
+/// The past as Eq. 11 is written: all increments of the pressure with their times. Its displacement equals the displacement that
+/// [`Settings::paper`] finds from convolutions that it keeps, in a small part of the time.
+struct Past {
+    kernel: Arc<InfluenceKernel>,
+    work: Workspace,
+    increments: Vec<(f64, Vec<f64>)>,
+    /// The pressure so far, the convolution of an increment, and the sum of all.
+    pressure: Vec<f64>,
+    image: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+impl Past {
+    fn new(contact: &ViscoelasticContact) -> Result<Past> {
+        let kernel = Arc::clone(contact.kernel());
+        let empty = || vec![0.0; contact.grid().len()];
+        let (work, increments) = (kernel.workspace()?, Vec::new());
+        Ok(Past { kernel, work, increments, pressure: empty(), image: empty(), displacement: empty() })
+    }
+
+    /// The displacement at a time due to all increments so far; returns the number of convolutions.
+    fn superpose(&mut self, time: f64, material: &Material) -> Result<usize> {
+        self.displacement.fill(0.0);
+        for (then, increment) in &self.increments {
+            self.kernel.convolve(increment, &mut self.image, &mut self.work)?;
+            let creep = material.contact_compliance(time - then);
+            self.displacement.iter_mut().zip(&self.image).for_each(|(u, v)| *u += creep * v);
+        }
+        black_box(&self.displacement);
+        Ok(self.increments.len())
+    }
+
+    /// Adds the increment of a step.
+    fn add(&mut self, contact: &ViscoelasticContact) {
+        let increment = contact.pressure().iter().zip(&self.pressure).map(|(now, before)| now - before).collect();
+        self.increments.push((contact.time(), increment));
+        self.pressure.copy_from_slice(contact.pressure());
     }
 }
 
@@ -97,22 +154,32 @@ struct Cost {
 
 /// The least time of a run within `repeat` seconds. The system measures processor times in milliseconds: short runs are
 /// repeated for a tenth of a second, and their mean counts as one.
-fn cost(cells: usize, steps: usize, settings: Settings, repeat: f64) -> Result<Cost> {
-    let scene = StepLoadedSphere::maxwell();
+fn cost(cells: usize, steps: usize, way: Way, repeat: f64) -> Result<Cost> {
+    let (scene, settings) = (StepLoadedSphere::maxwell(), way.settings);
     let memory = ViscoelasticContact::builder(scene.grid(cells)?)
         .geometry(&Sphere::new(scene.radius)?)
         .material(scene.material.clone())
         .settings(settings)
         .memory()?;
-    let bytes = (memory.total() + memory.each_step * (steps as u64 + 1)) as f64;
+    // taken literally, the past needs one field more: the convolution of an increment
+    let fields = 8 * (cells * cells) as u64 * u64::from(way.literally);
+    let bytes = (memory.total() + fields + memory.each_step * (steps as u64 + 1)) as f64;
     let (mut least, mut all, mut batch) = (f64::INFINITY, 0.0, (0.0, 0.0));
     loop {
         let mut contact = scene.contact(cells, settings)?;
         contact.step(0.0, Load::force(scene.force))?;
+        let mut past = if way.literally { Some(Past::new(&contact)?) } else { None };
+        past.iter_mut().for_each(|past| past.add(&contact));
         let (clock, mut convolutions, mut of_the_past) = (Instant::now(), 0.0, 0.0);
         let start = seconds_so_far(clock);
         for _ in 0..steps {
-            let report = contact.step(scene.duration / steps as f64, Load::force(scene.force))?;
+            let dt = scene.duration / steps as f64;
+            if let Some(past) = &mut past {
+                let repeated = past.superpose(contact.time() + dt, contact.material())? as f64;
+                (convolutions, of_the_past) = (convolutions + repeated, of_the_past + repeated);
+            }
+            let report = contact.step(dt, Load::force(scene.force))?;
+            past.iter_mut().for_each(|past| past.add(&contact));
             convolutions += report.convolution_equivalents();
             if settings.solver() == Solver::PolonskyKeer {
                 of_the_past += (report.convolutions - 2 * report.iterations - 1) as f64;
@@ -173,34 +240,34 @@ fn sweep(
     let mut chart = Chart::new(format!("Time of a run, {of}"), symbol, "processor time [s]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     println!("\n{of}\n| way | {symbol} | convolutions | of the past | seconds | MB |\n|---|---|---|---|---|---|");
-    let progress = support::progress((WAYS.len() * runs.len()) as u64);
-    let mut fits = Vec::new();
-    for (way, color) in (0..WAYS.len()).zip(COLORS) {
+    let (ways, mut fits) = (Way::all(), Vec::new());
+    let progress = support::progress((ways.len() * runs.len()) as u64);
+    for (way, color) in ways.into_iter().zip(COLORS) {
         let mut costs: Vec<(f64, Cost)> = Vec::new();
         for &(x, cells, steps) in runs {
             progress.inc(1);
             let likely = costs.last().map_or(0.0, |(last, cost)| cost.seconds * (x / last).powf(growth));
             if likely > args.longest {
-                progress.suspend(|| println!("| {} | {x} | left out, likely {likely:.0} s | | | |", WAYS[way]));
+                progress.suspend(|| println!("| {} | {x} | left out, likely {likely:.0} s | | | |", way.name));
                 break;
             }
-            let cost = cost(cells, steps, settings(way), args.repeat)?;
+            let cost = cost(cells, steps, way, args.repeat)?;
             let Cost { convolutions, of_the_past, seconds, bytes } = cost;
             let mb = 1e-6 * bytes;
             progress.suspend(|| {
-                println!("| {} | {x} | {convolutions:.0} | {of_the_past:.0} | {seconds:.3} | {mb:.1} |", WAYS[way]);
+                println!("| {} | {x} | {convolutions:.0} | {of_the_past:.0} | {seconds:.3} | {mb:.1} |", way.name);
             });
-            table.serialize((WAYS[way], cells, steps, convolutions, of_the_past, seconds, bytes))?;
+            table.serialize((way.name, cells, steps, convolutions, of_the_past, seconds, bytes))?;
             costs.push((x, cost));
         }
         let points = |of: fn(&Cost) -> f64| costs.iter().map(|(x, cost)| (*x, of(cost))).collect::<Vec<_>>();
-        chart.add(WAYS[way], color, Style::LineAndDots, points(|cost| cost.seconds));
+        chart.add(way.name, color, Style::LineAndDots, points(|cost| cost.seconds));
         let of_all = |range: std::ops::RangeFrom<usize>| {
             let of: [fn(&Cost) -> f64; 3] = [|cost| cost.convolutions, |cost| cost.seconds, |cost| cost.bytes];
             of.map(|of| exponent(&points(of)[range.clone()]))
         };
         let late = costs.len().saturating_sub(3);
-        fits.push((WAYS[way], of_all(0..), costs[late].0, of_all(late..)));
+        fits.push((way.name, of_all(0..), costs[late].0, of_all(late..)));
     }
     progress.finish_and_clear();
     println!(
@@ -270,12 +337,12 @@ fn causes(args: &Args) -> Result<(), Box<dyn Error>> {
     let (cells, steps) = (if args.quick { 32 } else { 256 }, args.steps_of_cells);
     let paper = Settings::paper();
     let chain = [
-        ("paper, literally", settings(0)),
-        ("convolutions of the past kept", paper),
-        ("active set in place of Polonsky–Keer", paper.with_solver(Solver::ActiveSet)),
-        ("exponential time rule", Settings::default().with_symmetry(false).with_window(false)),
-        ("symmetry", Settings::default().with_window(false)),
-        ("window (default)", Settings::default()),
+        Way::literal(),
+        Way::new("convolutions of the past kept", paper),
+        Way::new("active set in place of Polonsky–Keer", paper.with_solver(Solver::ActiveSet)),
+        Way::new("exponential time rule", Settings::default().with_symmetry(false).with_window(false)),
+        Way::new("symmetry", Settings::default().with_window(false)),
+        Way::new("window (default)", Settings::default()),
     ];
     println!(
         "\n{cells}² cells, {steps} steps\n| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|"
@@ -284,8 +351,8 @@ fn causes(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut table =
         "| | ms per step | convolution equivalents per step | factor | MB |\n|---|---|---|---|---|\n".to_owned();
     let mut rows = Vec::new();
-    for (name, settings) in chain {
-        let Cost { convolutions, seconds, bytes, .. } = cost(cells, steps, settings, args.repeat)?;
+    for way in chain {
+        let (name, Cost { convolutions, seconds, bytes, .. }) = (way.name, cost(cells, steps, way, args.repeat)?);
         let factor = last.map_or(1.0, |last: f64| last / seconds);
         let [ms, each] = [1e3 * seconds, convolutions].map(|value| value / steps as f64);
         let row = format!("| {name} | {ms:.2} | {each:.1} | {factor:.2} | {:.1} |", 1e-6 * bytes);

@@ -48,7 +48,7 @@ impl Lines {
 #[derive(Clone)]
 pub(crate) struct Plane {
     /// Transforms along x1 and x2.
-    pub(crate) along: [Lines; 2],
+    along: [Lines; 2],
 }
 
 debug_by!(self: Plane => periods: self.periods());

@@ -78,13 +78,9 @@ impl GrowingSphere {
                 what: "the solution for a growing contact",
             }));
         }
-        let given = match load.at(0.0) {
-            Load::Force { .. } => None,
-            Load::Approach { .. } => Some("an approach"),
-            Load::Spring { .. } => Some("a spring"),
-        };
-        if let Some(given) = given {
-            let (field, needed) = ("the growing sphere", "a force");
+        let [given, _] = load.at(0.0).kind();
+        let (field, needed) = ("the growing sphere", "a force");
+        if given != needed {
             return Err(LoadError::WrongKind { field, needed, given }.into());
         }
         let relaxation = creep.relaxation();

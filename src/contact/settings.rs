@@ -42,8 +42,6 @@ pub struct Settings {
     window: bool, with_window;
     /// The frame of the grid (default: [`Frame::Bodies`]).
     frame: Frame, with_frame;
-    /// Whether the rectangle rule convolves all past increments in each step, as in [`Settings::paper_literal`] (default: false).
-    repeats_past: bool;
 }
 }
 
@@ -132,7 +130,6 @@ impl Default for Settings {
             symmetry: true,
             window: true,
             frame: Frame::Bodies,
-            repeats_past: false,
         }
     }
 }
@@ -146,8 +143,8 @@ impl TimeRule {
 
 impl Settings {
     /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
-    /// comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept.
-    /// [`Settings::paper_literal`] repeats them in each step.
+    /// comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept. The example
+    /// `paper_cost` repeats them in each step.
     pub fn paper() -> Settings {
         Settings {
             solver: Solver::PolonskyKeer,
@@ -156,13 +153,6 @@ impl Settings {
             window: false,
             ..Settings::default()
         }
-    }
-
-    /// [`Settings::paper`] at the cost that the source paper states (section 4), O(N_t² N₁N₂ log(N₁N₂)): the history is kept
-    /// as pressures, and each step convolves all past increments anew, as Eq. 11 is written. The pressures equal the
-    /// pressures of [`Settings::paper`] to within rounding. For comparisons of cost only.
-    pub fn paper_literal() -> Settings {
-        Settings { repeats_past: true, ..Settings::paper() }
     }
 
     /// How the displacement changes within a step of given length.
@@ -205,7 +195,6 @@ mod tests {
             symmetry: false,
             window: false,
             frame: Frame::Indenter,
-            repeats_past: false,
         }
     }
 

@@ -12,9 +12,9 @@ pub enum LoadError {
         /// Which history or table.
         field: &'static str,
         /// Kind of the first load.
-        first: &'static str,
+        first: String,
         /// Kind of the load that differs.
-        second: &'static str,
+        second: String,
     },
 
     /// The kind of load is not the one that a reference solution needs.

@@ -6,9 +6,8 @@ use crate::error::{Error, MaterialError, Result, StepError};
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::history::HistoryInputs;
 use crate::hereditary::interval::Interval;
-use crate::kernel::{LocalKernel, Workspace};
 
-/// The end of a step to which its increment is assigned, and what it is an increment of.
+/// The end of a step to which its increment is assigned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Weighting {
@@ -17,15 +16,12 @@ pub(crate) enum Weighting {
     End,
     /// At the start: u(t_n) = Σ C(t_n − t_(k−1)) (v_k − v_(k−1)). First order and L-stable.
     Start,
-    /// At the end, by increments of p: u(t_n) = Σ C(t_n − t_k) K (p_k − p_(k−1)), each convolved anew in every step. The same
-    /// sum as of `End`, at the cost that the source paper states (section 4).
-    EndUncached,
 }
 
 /// Cells summed together, so that they stay in the fastest cache while the increments stream by.
 const BLOCK: usize = 2048;
 
-/// The past as all increments of v = K p, one field per step, no transforms; or of p, each convolved anew in every step.
+/// The past as all increments of v = K p, one field per step, no transforms.
 #[derive(Debug, Educe)]
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -35,9 +31,6 @@ pub(crate) struct DirectSum {
     /// What each increment contributes to u_old of the step predicted last, per unit of v.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     weights: Vec<f64>,
-    /// The convolution of one increment of p.
-    #[cfg_attr(feature = "checkpoint", serde(skip))]
-    image: Vec<f64>,
 }
 
 /// What a step has added.
@@ -53,34 +46,27 @@ struct Increment {
 
 impl DirectSum {
     pub(crate) fn new(weighting: Weighting) -> DirectSum {
-        DirectSum { weighting, increments: Vec::new(), weights: Vec::new(), image: Vec::new() }
+        DirectSum { weighting, increments: Vec::new(), weights: Vec::new() }
     }
 
     /// A copy; `map` gives its fields, one for each field here.
     pub(super) fn map(&self, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> DirectSum {
-        let DirectSum { weighting, ref increments, ref weights, ref image } = *self;
+        let DirectSum { weighting, ref increments, ref weights } = *self;
         let increment = |&Increment { time, ref change }: &Increment| {
             let change = map(Field::single(change, Role::Lasting { source: None }));
             Increment { time, change }
         };
         let increments = increments.iter().map(increment).collect();
-        let image = map(Field { values: image, per_cell: usize::from(self.is_uncached()), role: Role::Work });
-        DirectSum { weighting, increments, weights: weights.clone(), image }
+        DirectSum { weighting, increments, weights: weights.clone() }
     }
 
-    /// Whether the stored increments are increments of p.
-    fn is_uncached(&self) -> bool {
-        self.weighting == Weighting::EndUncached
-    }
-
-    /// Writes u_old over `u_old`; returns c and the number of convolutions taken.
+    /// Writes u_old over `u_old`; returns c.
     pub(super) fn predict(
         &mut self,
         Interval { time, reduced, dt, .. }: Interval,
         HistoryInputs { material, history_limit: limit, .. }: HistoryInputs<'_>,
-        (kernel, work): (&LocalKernel, &mut Workspace),
         u_old: &mut [f64],
-    ) -> Result<(f64, usize)> {
+    ) -> Result<f64> {
         let bytes = (self.increments.len() + 1).saturating_mul(std::mem::size_of_val(u_old));
         if bytes > limit {
             return Err(Error::Step(StepError::HistoryFull { time, steps: self.increments.len(), bytes, limit }));
@@ -102,31 +88,21 @@ impl DirectSum {
             oldest = older;
             self.weights.push(younger - newest);
         }
-        let past = || self.increments.iter().rev().zip(&self.weights);
-        if self.is_uncached() {
-            u_old.fill(0.0);
-            for (Increment { change, .. }, &weight) in past() {
-                kernel.apply(change, &mut self.image, work);
-                u_old.iter_mut().zip(&self.image).for_each(|(old, &dv)| *old += weight * dv);
-            }
-            return Ok((newest, self.increments.len()));
-        }
         for (block, old) in u_old.chunks_mut(BLOCK).enumerate() {
             old.fill(0.0);
             let first = block * BLOCK;
-            for (Increment { change, .. }, &weight) in past() {
+            for (Increment { change, .. }, &weight) in self.increments.iter().rev().zip(&self.weights) {
                 for (old, &dv) in old.iter_mut().zip(&change[first..]) {
                     *old += weight * dv;
                 }
             }
         }
-        Ok((newest, 0))
+        Ok(newest)
     }
 
-    /// Takes the step of length `dt` that ends at the reduced time `end` into the past, given p and v at its start and at its end.
-    pub(super) fn commit(&mut self, (end, dt): (f64, f64), [pressure, potential]: [[&[f64]; 2]; 2]) {
+    /// Takes the step of length `dt` that ends at the reduced time `end` into the past, given v at its start and at its end.
+    pub(super) fn commit(&mut self, (end, dt): (f64, f64), [before, after]: [&[f64]; 2]) {
         let time = if self.weighting == Weighting::Start { end - dt } else { end };
-        let [before, after] = if self.is_uncached() { pressure } else { potential };
         let change = after.iter().zip(before).map(|(new, old)| new - old).collect();
         self.increments.push(Increment { time, change });
     }

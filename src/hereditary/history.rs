@@ -220,11 +220,11 @@ impl History {
             }
             Rule::DirectSum(own) => {
                 let RememberedField { now, trial, .. } = displacement;
-                let (c, convolutions) = own.predict(step, inputs, (kernel, work), trial)?;
+                let c = own.predict(step, inputs, trial)?;
                 if c == 0.0 {
                     trial.copy_from_slice(now); // the sum is the same but for rounding
                 }
-                Ok((c, convolutions))
+                Ok((c, 0))
             }
         }
     }
@@ -262,16 +262,16 @@ impl History {
         self.displacement.recovery(&own.tried, wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
-    /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` is true if
-    /// anything has ever been displaced.
-    pub(crate) fn commit(&mut self, step: Interval, pressed: [[&[f64]; 2]; 2], touched: bool) {
+    /// Accepts the step predicted last, given v = K p at its start and at its end; `touched` is true if anything has ever
+    /// been displaced.
+    pub(crate) fn commit(&mut self, step: Interval, potentials: [&[f64]; 2], touched: bool) {
         if let Some(frame) = self.frame.as_mut().filter(|_| step.stride != [0; 2]) {
             frame.shift_start(step.stride, &mut self.displacement);
         }
         let (rule, fields) = self.parts();
         match rule {
             Rule::Exponential(own) => own.commit(),
-            Rule::DirectSum(own) if touched => own.commit((step.reduced, step.dt), pressed),
+            Rule::DirectSum(own) if touched => own.commit((step.reduced, step.dt), potentials),
             Rule::DirectSum(_) => {}
         }
         fields.for_each(RememberedField::commit);

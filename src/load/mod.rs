@@ -228,23 +228,20 @@ impl Load {
         }
     }
 
-    /// The kind of load: prescribed and free quantities in words.
-    fn kind(&self) -> &'static str {
-        let free = self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
-        match (self, free) {
-            (Load::Force { .. }, [false, false]) => "a force, tilts prescribed",
-            (Load::Force { .. }, [true, false]) => "a force, tilt along x1 free",
-            (Load::Force { .. }, [false, true]) => "a force, tilt along x2 free",
-            (Load::Force { .. }, [true, true]) => "a force, tilts free",
-            (Load::Approach { .. }, [false, false]) => "an approach, tilts prescribed",
-            (Load::Approach { .. }, [true, false]) => "an approach, tilt along x1 free",
-            (Load::Approach { .. }, [false, true]) => "an approach, tilt along x2 free",
-            (Load::Approach { .. }, [true, true]) => "an approach, tilts free",
-            (Load::Spring { .. }, [false, false]) => "a spring, tilts prescribed",
-            (Load::Spring { .. }, [true, false]) => "a spring, tilt along x1 free",
-            (Load::Spring { .. }, [false, true]) => "a spring, tilt along x2 free",
-            (Load::Spring { .. }, [true, true]) => "a spring, tilts free",
-        }
+    /// The kind of load in words: what it controls, and which tilts are free.
+    pub(crate) fn kind(&self) -> [&'static str; 2] {
+        let control = match self {
+            Load::Force { .. } => "a force",
+            Load::Approach { .. } => "an approach",
+            Load::Spring { .. } => "a spring",
+        };
+        let tilts = match self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. })) {
+            [false, false] => "tilts prescribed",
+            [true, false] => "tilt along x1 free",
+            [false, true] => "tilt along x2 free",
+            [true, true] => "tilts free",
+        };
+        [control, tilts]
     }
 
     /// Accepts valid loads of one kind, which can be interpolated.
@@ -254,7 +251,8 @@ impl Load {
             load.validate()?;
             let first = *kind.get_or_insert(load.kind());
             if load.kind() != first {
-                return Err(LoadError::MixedKinds { field, first, second: load.kind() }.into());
+                let [first, second] = [first, load.kind()].map(|kind| kind.join(", "));
+                return Err(LoadError::MixedKinds { field, first, second }.into());
             }
         }
         Ok(())

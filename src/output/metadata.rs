@@ -129,7 +129,6 @@ fn settings(settings: &Settings) -> String {
         symmetry,
         window,
         frame,
-        repeats_past,
     } = *settings;
     object([
         ("tolerance", number(tolerance)),
@@ -142,7 +141,6 @@ fn settings(settings: &Settings) -> String {
         ("symmetry", symmetry.to_string()),
         ("window", window.to_string()),
         ("frame", text(&format!("{frame:?}"))),
-        ("repeats_past", repeats_past.to_string()),
     ])
 }
 

@@ -30,8 +30,6 @@
 //! can be repeated.
 
 mod csv;
-#[cfg(feature = "npy")]
-mod deferred;
 mod field;
 mod field_values;
 mod metadata;

@@ -100,7 +100,7 @@ fn scene(random: &mut ChaCha8Rng) -> Scene {
         lopsided: one_of(random, &[true, false, false]),
         terms: one_of(random, &[0, 1, 2, 5, 12]),
         fitted: one_of(random, &[true, false, false]),
-        settings: one_of(random, &[Settings::default(), Settings::paper_literal()])
+        settings: Settings::default()
             .with_solver(solver)
             .with_time_rule(time_rule)
             .with_frame(frame)

@@ -64,7 +64,6 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         contact.step(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
     };
     let direct = whole.with_time_rule(TimeRule::Backward);
-    let uncached = Settings::paper_literal();
     let layer = move || {
         let layer = Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap();
         let kernel = Arc::new(InfluenceKernel::layer(&grid(), layer).unwrap());
@@ -93,7 +92,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
             Box::new(with(direct)),
             Box::new(|c, k| c.step(0.02, Load::force(0.3 + 0.01 * f64::from(k))).unwrap()),
         ),
-        ("uncached sum", Box::new(with(uncached)), Box::new(wandering)),
+        ("paper", Box::new(with(Settings::paper())), Box::new(wandering)),
         ("layer", Box::new(layer), Box::new(wandering)),
         ("warming", Box::new(warming), Box::new(wandering)),
         (

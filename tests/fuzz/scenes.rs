@@ -31,7 +31,7 @@ fn settings(source: &mut Source) -> Settings {
     let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
     use TimeRule::{Backward, Exponential, Rectangle};
     let rules = [Exponential, Exponential, Exponential, Rectangle, Rectangle, Backward];
-    let basis = if source.chance(0.2) { Settings::paper_literal() } else { Settings::default() };
+    let basis = if source.chance(0.2) { Settings::paper() } else { Settings::default() };
     basis
         .with_tolerance(source.scale(1e-10, 1e-2))
         .with_max_iterations(source.choose(&[1, 3, 30, 200, 200, 200, 0]))

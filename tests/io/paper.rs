@@ -162,7 +162,7 @@ fn items_of_the_page_exist() {
             ViscoelasticContact::force, ViscoelasticContact::gap_into, ViscoelasticContact::moment,
             ViscoelasticContact::pressure, ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
             contact::Builder::another_body,
-            contact::Settings::paper, contact::Settings::paper_literal, load::Load::eccentric_force, load::Load::force,
+            contact::Settings::paper, load::Load::eccentric_force, load::Load::force,
             rheology::Material::contact_compliance, states::ElasticStates::cone, states::ElasticStates::power,
             states::ElasticStates::sphere
     );

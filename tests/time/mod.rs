@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod cancelled;
+mod cost;
 mod fixed_steps;
 mod follow;
 mod honest;
@@ -21,4 +22,3 @@ mod states_outside;
 mod states_population;
 mod temperature;
 mod time_rules;
-mod uncached;

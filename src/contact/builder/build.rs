@@ -310,7 +310,6 @@ fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> 
         TimeRule::Rectangle if glassy == 0.0 => {
             Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what: "the rectangle rule" }))
         }
-        TimeRule::Rectangle if settings.repeats_past => Ok(History::direct_sum(Weighting::EndUncached)),
         TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
         TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),
     }

@@ -22,7 +22,7 @@ use crate::{Grid, memory};
 /// | | |
 /// |---|---|
 /// | state and trial step | 73 |
-/// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken ([`Settings::paper_literal`](crate::contact::Settings::paper_literal) 8 more) |
+/// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken |
 /// | displacement outside a window | 16, and the history again |
 /// | solver | 29, as [`Solver::PolonskyKeer`]; for each body 0.02 more |
 /// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |

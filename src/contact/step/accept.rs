@@ -18,9 +18,8 @@ impl Computation {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
         let touched = !state.is_undisturbed() || contact_cells > 0 || state.attracts;
-        let (before, after) = (&state.current.solution, &trial.solution);
-        let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
-        state.history.commit(interval, pressed, touched);
+        let potentials = [&state.current.solution, &trial.solution].map(|solution| &solution.potential[..]);
+        state.history.commit(interval, potentials, touched);
         if step.indenter.id() != state.indenter.id() {
             // where the indenter was within the step is not known
             state.history.forget_start();

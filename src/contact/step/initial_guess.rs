@@ -197,19 +197,21 @@ pub(super) fn fill_guess(
     prediction: impl Fn(f64, f64) -> f64 + Sync,
 ) {
     let (now, before, guess) = (&state.current.solution, &state.previous.solution, &mut trial.solution);
-    let fill = |guess: &mut [f64], now: &[f64], before: &[f64]| {
-        for_each_band([guess], |first, [guesses]| {
-            for ((guess, &now), &before) in guesses.iter_mut().zip(&now[first..]).zip(&before[first..]) {
-                *guess = prediction(now, before);
-            }
-        });
-    };
-    fill(&mut guess.pressure, &now.pressure, &before.pressure);
+    fill(&mut guess.pressure, [&now.pressure, &before.pressure], &prediction);
     if !state.extrapolation.refresh_is_due() {
-        fill(&mut guess.potential, &now.potential, &before.potential);
+        fill(&mut guess.potential, [&now.potential, &before.potential], &prediction);
     } else if window.needs_potential() {
         let (kernel, work) = (&window.kernel, &mut window.work);
         kernel.apply(&guess.pressure, &mut guess.potential, work);
         guess.counts.convolutions += 1;
     }
+}
+
+/// Writes the prediction of each cell from its values in the last two states.
+pub(super) fn fill(guess: &mut [f64], [now, before]: [&[f64]; 2], prediction: &(impl Fn(f64, f64) -> f64 + Sync)) {
+    for_each_band([guess], |first, [guesses]| {
+        for ((guess, &now), &before) in guesses.iter_mut().zip(&now[first..]).zip(&before[first..]) {
+            *guess = prediction(now, before);
+        }
+    });
 }

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use crate::contact::{Scene, State, Step, Trial};
 use crate::geometry::Gap;
 use crate::load::Load;
+use crate::quadrature::bisect;
 use crate::solver::{ModeCoefficients, Outcome};
 
 /// Greatest number of forces that are tried.
@@ -82,12 +83,9 @@ pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<
                 let cells = rows.count(heights().filter(|&height| height <= level).count()) as f64;
                 0.5 * depth * (cells * area).sqrt() / (0.375 * PI.sqrt() * c)
             };
-            let (mut low, mut high) = (0.0, (drive - lowest).max(0.0));
-            for _ in 0..HALVINGS {
-                let depth = 0.5 * (low + high);
-                if depth + give * carried(depth) < drive - lowest { low = depth } else { high = depth }
-            }
-            if high > 0.0 && c > 0.0 { carried(high) } else { 0.0 }
+            let is_short = |depth: f64| depth + give * carried(depth) < drive - lowest;
+            let depth = bisect(0.0, (drive - lowest).max(0.0), HALVINGS, is_short)[1];
+            if depth > 0.0 && c > 0.0 { carried(depth) } else { 0.0 }
         };
         trial.free[body].total = force.max(0.0) / area;
         trial.springs[body] = TriedSpring::default();

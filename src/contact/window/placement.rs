@@ -8,6 +8,7 @@ use crate::error::{RanksError, Result};
 use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::load::{Load, Tilt};
+use crate::quadrature::bisect;
 use crate::solver::RigidMotion;
 
 /// Bisections for the approach at first contact, an estimate.
@@ -89,18 +90,15 @@ fn level(scene: &Scene, all: &Region, indenter: &Indenter, body: usize, force_ti
     let heights =
         || gap.above.iter().enumerate().filter(|(k, h)| h.is_finite() && gap.owner(*k) == body).map(|(_, h)| *h);
     let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
-    let (mut low, mut high) = (lowest, rows.greatest(heights().fold(lowest, f64::max)));
+    let highest = rows.greatest(heights().fold(lowest, f64::max));
     let force = 0.375 * PI.sqrt() * force_times_compliance;
     let cells_below = |level: f64| (images * rows.count(heights().filter(|&h| h <= level).count())) as f64;
     let rise = |level: f64| force / (cells_below(level) * scene.grid.cell_area()).sqrt();
-    if high - lowest < rise(high) {
-        return [lowest, rise(high)]; // all of it is pressed
+    let is_low = |level: f64| level - lowest < rise(level);
+    if is_low(highest) {
+        return [lowest, rise(highest)]; // all of it is pressed
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if middle - lowest < rise(middle) { low = middle } else { high = middle }
-    }
-    [lowest, high - lowest]
+    [lowest, bisect(lowest, highest, HALVINGS, is_low)[1] - lowest]
 }
 
 /// Cells that a region holds beyond the reach of contact, so that it need not grow every step.

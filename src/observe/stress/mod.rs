@@ -1,7 +1,6 @@
 //! The stress below the surface of a half-space.
 
 mod greatest;
-mod line;
 mod plane;
 mod rectangle;
 mod section;
@@ -21,7 +20,6 @@ use crate::fft::Plane;
 use crate::kernel::{HalfSpace, fast_length};
 use crate::observe::profile::line_through;
 use crate::{Grid, InfluenceKernel, memory};
-use line::LineBelow;
 use rectangle::Weights;
 use rectangle::corner;
 use waves::Wave;
@@ -59,8 +57,8 @@ const FARTHEST: f64 = 1e40;
 /// further one: (1 + qz) e^(−qz)/π for the wave q = 2π/side.
 ///
 /// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded grid, on as
-/// many threads as the pool has (feature `rayon`, with the same result); a section at most as many closed forms per depth, and
-/// an eighth of the transforms; a point one closed form per loaded cell.
+/// many threads as the pool has (feature `rayon`, with the same result); a section takes a plane per depth; a point one closed
+/// form per loaded cell.
 ///
 /// ```
 /// use viscocontact::{observe::Stress, prelude::*};
@@ -201,20 +199,12 @@ impl SubsurfaceStress {
         self.check_depths(depths)?;
         let cells = self.grid.cells()[axis];
         let mut values = memory::field("the stress on a section", cells * depths.len(), Stress::default())?;
-        if let HalfSpace::Line { .. } = self.body {
-            // a plane is a line
-            let mut plane = vec![Stress::default(); self.grid.len()];
-            let mut buffers = self.buffers();
-            for (layer, &depth) in depths.iter().enumerate() {
-                buffers.fill_plane(self, depth, &mut plane);
-                let cell = |k: usize| if self.grid.cells()[axis] > 1 { k } else { line };
-                (0..cells).for_each(|k| values[k * depths.len() + layer] = plane[cell(k)]);
-            }
-        } else {
-            let mut below = LineBelow::new(self, axis, line)?;
-            for (layer, &depth) in depths.iter().enumerate() {
-                below.at_depth(depth, |k, stress| values[k * depths.len() + layer] = stress);
-            }
+        let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
+        let (mut buffers, n2) = (self.buffers(), self.grid.cells()[1]);
+        let cell = |k: usize| if axis == 0 { k * n2 + line } else { line * n2 + k };
+        for (layer, &depth) in depths.iter().enumerate() {
+            buffers.fill_plane(self, depth, &mut plane);
+            (0..cells).for_each(|k| values[k * depths.len() + layer] = plane[cell(k)]);
         }
         Ok(StressSection {
             along,

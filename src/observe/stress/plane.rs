@@ -10,7 +10,7 @@ use crate::fft::{Plane, for_each_line_share};
 use crate::kernel::HalfSpace;
 
 /// Signs of the components 11, 22, 33, 12, 13, 23 where x1 or x2 changes its sign.
-pub(super) const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, -1.0, 1.0, -1.0]];
+const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, -1.0, 1.0, -1.0]];
 
 /// Buffers for planes.
 pub(super) struct Buffers {
@@ -79,7 +79,7 @@ impl Buffers {
 }
 
 /// Sets the two components of a pair.
-pub(super) fn set_pair(stress: &mut Stress, pair: usize, Complex64 { re, im }: Complex64) {
+fn set_pair(stress: &mut Stress, pair: usize, Complex64 { re, im }: Complex64) {
     match pair {
         0 => (stress.s11, stress.s22) = (re, im),
         1 => (stress.s33, stress.s12) = (re, im),
@@ -88,7 +88,7 @@ pub(super) fn set_pair(stress: &mut Stress, pair: usize, Complex64 { re, im }: C
 }
 
 /// The two components of a pair, as real and imaginary part.
-pub(super) fn pair_of(components: [f64; 6], pair: usize) -> Complex64 {
+fn pair_of(components: [f64; 6], pair: usize) -> Complex64 {
     Complex64::new(components[2 * pair], components[2 * pair + 1])
 }
 
@@ -161,7 +161,7 @@ fn add_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, sum: &mut [C
 }
 
 /// The factors of all pairs of components below a wave.
-pub(super) fn pairs_below_wave(waves: [Wave; 2], depth: f64, weights: Weights) -> [Complex64; 3] {
+fn pairs_below_wave(waves: [Wave; 2], depth: f64, weights: Weights) -> [Complex64; 3] {
     let i = Complex64::i();
     let s = below_wave(waves.map(|wave| wave.q), depth, weights);
     // the slope of an alternating wave vanishes at the centres

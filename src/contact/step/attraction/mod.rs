@@ -24,7 +24,7 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::constraints::converged;
 use crate::contact::step::gap::RigidBodies;
-use crate::contact::step::initial_guess::begin;
+use crate::contact::step::initial_guess::{begin, fill};
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::step::spring::{TriedSpring, solve_with_springs};
 use crate::contact::window::Window;
@@ -211,17 +211,10 @@ impl AttractedStep<'_> {
             reach = 0.0;
         }
         trial.reach = reach;
-        let solution = &mut trial.solution;
-        for (guesses, now, before) in [
-            (&mut solution.pressure, &now.pressure, &before.pressure),
-            (&mut solution.attraction, &now.attraction, &before.attraction),
-            (&mut solution.potential, &now.potential, &before.potential),
-        ] {
-            for_each_band([guesses], |first, [guesses]| {
-                let states = now[first..].iter().zip(&before[first..]);
-                guesses.iter_mut().zip(states).for_each(|(guess, (now, before))| *guess = now + reach * (now - before));
-            });
-        }
+        let (solution, extrapolated) = (&mut trial.solution, |now: f64, before: f64| now + reach * (now - before));
+        fill(&mut solution.pressure, [&now.pressure, &before.pressure], &extrapolated);
+        fill(&mut solution.attraction, [&now.attraction, &before.attraction], &extrapolated);
+        fill(&mut solution.potential, [&now.potential, &before.potential], &extrapolated);
     }
 
     /// Writes the guess of a first step: no pressure, and s of undeformed bodies, which just touch under a force.
