@@ -93,7 +93,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     ];
     let progress = support::progress(3 * 100);
     for (n, (name, course)) in courses.into_iter().enumerate() {
-        let temperature = TemperatureHistory::table(law, &course)?;
+        let temperature = TemperatureHistory::table(law.clone(), &course)?;
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(&Sphere::new(args.radius)?)
             .material(material.clone())

@@ -176,7 +176,7 @@ mod grid;
 #[cfg(all(doc, any(not(doctest), all(feature = "checkpoint", feature = "npy", feature = "plot"))))]
 pub mod guide;
 mod hereditary;
-mod input;
+pub mod input;
 mod kernel;
 #[cfg(feature = "laws")]
 pub mod laws;

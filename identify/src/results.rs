@@ -96,32 +96,28 @@ impl Summary {
     ///
     /// # Errors
     /// [`Error::Unwritable`].
-    pub fn write_csv(summaries: &[Summary], to: impl Write) -> Result<()> {
-        let unwritable = |error: csv::Error| Error::Unwritable { reason: error.to_string() };
-        let mut table = csv::Writer::from_writer(to);
-        table.write_record(COLUMNS).map_err(unwritable)?;
+    pub fn write_csv(summaries: &[Summary], mut to: impl Write) -> Result<()> {
+        let unwritable = |error: std::io::Error| Error::Unwritable { reason: error.to_string() };
+        let mut write = |fields: &[String]| {
+            let quoted = |field: &String| match field.contains([',', '"']) {
+                true => format!("\"{}\"", field.replace('"', "\"\"")),
+                false => field.clone(),
+            };
+            writeln!(to, "{}", fields.iter().map(quoted).collect::<Vec<_>>().join(","))
+        };
+        write(&COLUMNS.map(str::to_owned)).map_err(unwritable)?;
         for summary in summaries {
             let warnings: Vec<String> = summary.warnings.iter().map(|warning| warning.to_string()).collect();
             for Estimate { name, value, scale, deviation, robust_deviation, interval, .. } in &summary.estimates {
                 let [low, high] = interval.map(|limit| limit.to_string());
-                table
-                    .write_record([
-                        summary.model.to_string(),
-                        summary.aicc.to_string(),
-                        name.clone(),
-                        value.to_string(),
-                        unit(name).to_owned(),
-                        deviation.to_string(),
-                        format!("{scale:?}"),
-                        robust_deviation.to_string(),
-                        low,
-                        high,
-                        warnings.join("; "),
-                    ])
+                let (model, aicc, scale) = (summary.model.to_string(), summary.aicc.to_string(), format!("{scale:?}"));
+                let [value, deviation, robust] = [value, deviation, robust_deviation].map(f64::to_string);
+                let (unit, warnings) = (unit(name).to_owned(), warnings.join("; "));
+                write(&[model, aicc, name.clone(), value, unit, deviation, scale, robust, low, high, warnings])
                     .map_err(unwritable)?;
             }
         }
-        table.flush().map_err(|error| Error::Unwritable { reason: error.to_string() })
+        to.flush().map_err(unwritable)
     }
 
     /// Writes some fits as a JSON array of objects with the names of the fields of [`Summary`].

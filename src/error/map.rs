@@ -171,11 +171,48 @@ pub enum MapError {
     },
 
     /// The points of a file cover too little of the regular grid that their spacing suggests: they are scattered.
-    #[error("{points} points are less than 1 % of a regular grid of {} x {}: they are scattered, not a map", .cells[0], .cells[1])]
+    #[error("{points} points are too few for the regular grid of {} x {} that their distances suggest: they are scattered, not a map", .cells[0], .cells[1])]
     Sparse {
         /// Number of points.
         points: usize,
         /// Number of points of that grid along x and y.
         cells: [usize; 2],
+    },
+
+    /// A text is not a matrix of heights: its two columns are a profile, or its first row and column are coordinates.
+    #[error(
+        "{}", if *.profile {
+            format!("two columns of {rows} rows, of which the first ascends evenly, are a profile: use HeightMap::from_profile, or HeightMap::new if it is a matrix")
+        } else {
+            "the first row and column look like coordinates or an index, and their corner is empty: remove them, or use HeightMap::from_xyz".into()
+        }
+    )]
+    NotAMatrix {
+        /// Number of rows.
+        rows: usize,
+        /// Whether it is a profile.
+        profile: bool,
+    },
+
+    /// Some heights of a text look like a number for points that were not measured: they are far from all others.
+    #[error(
+        "{count} of the heights are {value}, far from all others: state TextFormat::with_missing_height({value}) if nothing was measured there, or with_missing_height(f64::NAN) if it was"
+    )]
+    StandIn {
+        /// The height, in the unit of the file.
+        value: f64,
+        /// Number of these heights.
+        count: usize,
+    },
+
+    /// A heading names another unit than the one given.
+    #[error("column {column}: the heading {heading:?} names another unit than {given}, which was given")]
+    OtherUnit {
+        /// The column, from 1.
+        column: usize,
+        /// Its heading.
+        heading: String,
+        /// The unit given.
+        given: String,
     },
 }

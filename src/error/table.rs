@@ -60,7 +60,7 @@ pub enum TableError {
     /// than the scatter of the data explains. No passive body responds so. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table}, {place}: {column} = {:?} deviates by {:.2} % from the nearest monotone curve, where the scatter of the data explains {:.2} %: compliances rise, moduli of relaxation fall (Experiment)",
+        "{table}, {place}: {column} = {:?} deviates by {:.2} % from the nearest monotone curve, where the scatter of the data explains {:.2} %: compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter states more scatter",
         rounded(*.value, 5), 100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
@@ -80,7 +80,7 @@ pub enum TableError {
 
     /// No series with positive coefficients fits the data: they do not describe a body of springs and dashpots
     /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for their steepness.
-    #[error("the {table} is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
+    #[error("the {table} is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}; Measurements::with_scatter states more scatter", 100.0 * .rms, 100.0 * .worst)]
     Inconsistent {
         /// Which table.
         table: &'static str,
@@ -117,18 +117,13 @@ pub enum TableError {
         expected: Box<str>,
     },
 
-    /// No heading, or more than one, names a column that is needed.
-    /// Rename a heading; or begin the line with `#`, and the columns are read in the order of the table.
+    /// The headings of a dynamic table name a storage modulus, but neither a loss modulus nor a phase angle or tan δ.
     #[error(
-        "line {line}: not exactly one heading names the {column} (headings: {found}); rename one, or begin the line with # to read the columns in order"
+        "line {line}: the headings name a storage modulus, but no loss modulus, phase angle or loss factor (tan): name it, or read the table as Experiment::Storage"
     )]
-    Heading {
+    StorageOnly {
         /// The line of the headings.
         line: u64,
-        /// The column needed.
-        column: &'static str,
-        /// The headings found.
-        found: String,
     },
 
     /// The headings of a file name moduli in tension (D, E, E′, E″), and it was to be fitted in shear, or the reverse. Moduli in

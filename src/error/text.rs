@@ -20,7 +20,9 @@ pub enum TextError {
     },
 
     /// An entry is not a number.
-    #[error("line {line}, column {column}: {text:?} is not a number")]
+    #[error(
+        "line {line}, column {column}: {text:?} is not a number; lines of words are left out by TextFormat::skipped_lines, or by # at their beginning"
+    )]
     NotNumeric {
         /// The line, from 1.
         line: u64,
@@ -45,5 +47,59 @@ pub enum TextError {
         text: String,
         /// [`TextFormat::decimal_comma`](crate::TextFormat::decimal_comma) as it was stated.
         decimal_comma: bool,
+    },
+
+    /// No heading names a column that is needed, or several may.
+    #[error(
+        "line {line}: not exactly one heading names the {column}{several} (headings: {found}); begin one with {words}, choose by TextTable::only, name columns by TextTable::with_heading, skip lines above the table by TextFormat::skipped_lines, or state TextFormat::delimiter"
+    )]
+    Heading {
+        /// The line of the headings, from 1; of the first row of numbers, if there are none.
+        line: u64,
+        /// The column.
+        column: &'static str,
+        /// First words of headings that name it.
+        words: String,
+        /// The columns that may be it, after a colon.
+        several: String,
+        /// The headings found.
+        found: String,
+    },
+
+    /// A heading has no unit of the quantity of its column, or one of two meanings.
+    #[error(
+        "line {line}, column {column}: the heading {heading:?} has no unit of the {quantity}, or an ambiguous one; write it in brackets, as in '[{example}]', or state it (TextTable::with_heading, Units)"
+    )]
+    Unit {
+        /// The line of the headings, from 1.
+        line: u64,
+        /// The column, from 1.
+        column: usize,
+        /// The heading.
+        heading: String,
+        /// What the column is.
+        quantity: &'static str,
+        /// A unit of its quantity.
+        example: &'static str,
+    },
+
+    /// Rows of numbers stand before the headings.
+    #[error(
+        "line {line} has numbers, but the headings stand in line {headings}: skip the lines before it (TextFormat::skipped_lines), or split the file"
+    )]
+    Preamble {
+        /// The first row of numbers, from 1.
+        line: u64,
+        /// The line of the headings.
+        headings: u64,
+    },
+
+    /// A column that was asked for is not in the table.
+    #[error("there is no column {column} (headings: {found})")]
+    NoColumn {
+        /// Its name, or its number.
+        column: String,
+        /// The headings found.
+        found: String,
     },
 }

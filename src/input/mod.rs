@@ -1,6 +1,15 @@
-//! Files that are read as a whole: opening, reading, and tables in text files.
+//! Text files as instruments and programs write them: encodings, lines, headings with units, columns, numbers.
+//!
+//! Readers of one kind of data ([`Measurements::from_csv`](crate::rheology::Measurements::from_csv)) use a [`TextTable`], which
+//! they also accept; so do other crates, by [`TextTable::find`].
 
-mod text;
+mod column;
+mod encoding;
+mod format;
+mod heading;
+mod lines;
+mod table;
+mod unit;
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -8,9 +17,14 @@ use std::path::Path;
 
 use crate::error::{Error, FileError, Result};
 
-pub(crate) use text::shortened;
-pub use text::{Delimiter, TextFormat};
-pub(crate) use text::{TextRow, TextTable};
+pub use column::{TableRow, TakenColumn, WantedColumn};
+pub(crate) use encoding::by_lines;
+pub use format::{Delimiter, TextFormat};
+pub(crate) use heading::{UnitOf, symbol};
+pub(crate) use lines::{Text, TextRow, number};
+pub use table::TextTable;
+pub use unit::Quantity;
+pub(crate) use unit::{name, readings, same};
 
 pub(crate) fn open(path: &Path) -> Result<File> {
     File::open(path).map_err(|error| unreadable(path.display().to_string(), error))

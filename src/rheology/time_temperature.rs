@@ -1,4 +1,6 @@
-use crate::error::{Result, positive, within};
+use std::sync::Arc;
+
+use crate::error::{Result, in_order, least_length, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 
 /// The gas constant \[J/(mol K)\] (exact since 2019).
@@ -20,16 +22,34 @@ pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 /// assert!(warm.creep_compliance(1.0) > 5.0 * warm.creep_compliance(0.0));
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TimeTemperature {
     law: Law,
     reference: f64,
+    /// A temperature, below which an Arrhenius law with an energy continues.
+    below: Option<Below>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Law {
+    Wlf {
+        c1: f64,
+        c2: f64,
+    },
+    Arrhenius {
+        energy: f64,
+    },
+    /// 1/T and ln a_T by temperature, ascending.
+    Table {
+        nodes: Arc<[(f64, f64)]>,
+        extrapolated: bool,
+    },
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Law {
-    Wlf { c1: f64, c2: f64 },
-    Arrhenius { energy: f64 },
+struct Below {
+    temperature: f64,
+    energy: f64,
 }
 
 impl TimeTemperature {
@@ -41,7 +61,7 @@ impl TimeTemperature {
         positive("WLF constant C1", c1)?;
         positive("WLF constant C2", c2)?;
         positive("reference temperature", reference)?;
-        Ok(TimeTemperature { law: Law::Wlf { c1, c2 }, reference })
+        Ok(TimeTemperature { law: Law::Wlf { c1, c2 }, reference, below: None })
     }
 
     /// Arrhenius: ln a_T = (E/R)(1/T − 1/T_ref), activation `energy` E in J/mol, temperatures in K.
@@ -51,7 +71,56 @@ impl TimeTemperature {
     pub fn arrhenius(energy: f64, reference: f64) -> Result<TimeTemperature> {
         positive("activation energy", energy)?;
         positive("reference temperature", reference)?;
-        Ok(TimeTemperature { law: Law::Arrhenius { energy }, reference })
+        Ok(TimeTemperature { law: Law::Arrhenius { energy }, reference, below: None })
+    }
+
+    /// A `table` of temperatures \[K\], ascending, and shift factors a_T, which are 1 at the `reference`. Between its rows ln a_T
+    /// is linear in 1/T; outside there is no factor, unless the table is [`extrapolated`](TimeTemperature::extrapolated).
+    ///
+    /// ```
+    /// use viscocontact::rheology::TimeTemperature;
+    ///
+    /// let measured = TimeTemperature::table(&[(291.15, 1.0), (298.15, 0.0316), (305.15, 0.001)], 291.15)?;
+    /// assert!((measured.shift_factor(305.15)? / 0.001 - 1.0).abs() < 1e-12);
+    /// assert!(measured.shift_factor(320.0).is_err());
+    /// assert!(measured.extrapolated().shift_factor(320.0)? < 1.0e-4);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there are fewer than two rows, their temperatures do not ascend, a value is not finite and positive, or no row says
+    /// a_T = 1 at the reference.
+    pub fn table(table: &[(f64, f64)], reference: f64) -> Result<TimeTemperature> {
+        least_length("rows of shift factors", table.len(), 2)?;
+        for &(temperature, factor) in table {
+            positive("temperature", temperature)?;
+            positive("shift factor", factor)?;
+        }
+        in_order("temperatures of shift factors", table.iter().map(|row| row.0), "ascend", |a, b| a < b)?;
+        let allowed = "a temperature of the table at which a_T = 1";
+        within("reference temperature", reference, table.contains(&(reference, 1.0)), allowed)?;
+        let nodes = table.iter().map(|&(temperature, factor)| (1.0 / temperature, factor.ln())).collect();
+        Ok(TimeTemperature { law: Law::Table { nodes, extrapolated: false }, reference, below: None })
+    }
+
+    /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows; other laws stay as they are.
+    #[must_use]
+    pub fn extrapolated(mut self) -> TimeTemperature {
+        if let Law::Table { extrapolated, .. } = &mut self.law {
+            *extrapolated = true;
+        }
+        self
+    }
+
+    /// The same above a `temperature` \[K\], and below it an Arrhenius law with an `energy` in J/mol, without a jump: as of
+    /// polymers below their glass transition.
+    ///
+    /// # Errors
+    /// If one is not finite and positive, or the law does not hold at the temperature.
+    pub fn with_arrhenius_below(self, temperature: f64, energy: f64) -> Result<TimeTemperature> {
+        positive("activation energy", energy)?;
+        self.shift_factor(temperature)?;
+        Ok(TimeTemperature { below: Some(Below { temperature, energy }), ..self })
     }
 
     /// The temperature at which a_T = 1 \[K\].
@@ -72,18 +141,36 @@ impl TimeTemperature {
     /// a_T at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, or a_T is outside
+    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table, or a_T is outside
     /// \[1e-60, 1e60\].
     pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
         positive("temperature", temperature)?;
+        if let Some(below) = self.below.filter(|below| temperature < below.temperature) {
+            let slower = below.energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / below.temperature);
+            let factor = self.shift_factor(below.temperature)? * slower.exp();
+            return within("shift factor", factor, (1e-60..=1e60).contains(&factor), "in [1e-60, 1e60]");
+        }
         let difference = temperature - self.reference;
-        let factor = match self.law {
-            Law::Wlf { c1, c2 } => {
+        let factor = match &self.law {
+            &Law::Wlf { c1, c2 } => {
                 let allowed = "above T_ref - C2, where the WLF law ends";
                 within("temperature", temperature, c2 + difference > 0.0, allowed)?;
                 10f64.powf(-c1 * difference / (c2 + difference))
             }
             Law::Arrhenius { energy } => (energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference)).exp(),
+            Law::Table { nodes, extrapolated } => {
+                let (x, last) = (1.0 / temperature, nodes.len() - 1);
+                let inside = *extrapolated || (nodes[last].0..=nodes[0].0).contains(&x);
+                within(
+                    "temperature",
+                    temperature,
+                    inside,
+                    "in the table of shift factors (TimeTemperature::extrapolated)",
+                )?;
+                let k = nodes.partition_point(|node| node.0 > x).clamp(1, last);
+                let [a, b] = [nodes[k - 1], nodes[k]];
+                (a.1 + (x - a.0) / (b.0 - a.0) * (b.1 - a.1)).exp()
+            }
         };
         let allowed = "in [1e-60, 1e60]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
         within("shift factor", factor, (1e-60..=1e60).contains(&factor), allowed)

@@ -183,8 +183,8 @@ pub fn steps_allocate_nothing() {
     // nor do steps at a temperature that changes, unless it changes the rate of creep by many decades within a step
     let law = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
     let courses = [
-        TemperatureHistory::table(law, &[(0.0, 373.15), (30.0, 393.15), (40.0, 383.15)]),
-        TemperatureHistory::function(law, |t| 380.0 + 5.0 * (0.2 * t).sin(), &[]),
+        TemperatureHistory::table(law.clone(), &[(0.0, 373.15), (30.0, 393.15), (40.0, 383.15)]),
+        TemperatureHistory::function(law.clone(), |t| 380.0 + 5.0 * (0.2 * t).sin(), &[]),
         TemperatureHistory::constant(law, 373.15).unwrap().ageing(1.0, 10.0, 10.0),
     ];
     for course in courses.map(Result::unwrap) {

@@ -212,7 +212,8 @@ const MISTAKES: &[Mistake] = &[
 ("a relaxation table read as creep",
     || Measurements::creep(&TIMES.map(|t: f64| (t, 1.0e6 / (1.0 + t))))?.fit().map(drop),
     "creep table, entry 0: creep compliance = 909091.0 deviates by 200.84 % from the nearest monotone curve, where the \
-     scatter of the data explains 10.00 %: compliances rise, moduli of relaxation fall (Experiment)"),
+     scatter of the data explains 10.00 %: compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter states \
+     more scatter"),
 ("a step beyond the table",
     || beyond_the_table().map(drop),
     "at t = 10000 s the loading time 10000 s exceeds the range in which the material is known, 1000 s: fit its series over \
@@ -224,8 +225,8 @@ const MISTAKES: &[Mistake] = &[
     || csv("time [s],G [MPa]\n1,3\n2,2\n3,1\n").map(drop),
     "line 1, column 2: the heading \"G [MPa]\" says MPa, but Units::value = 1 means Pa; of MPa it is 1e6"),
 ("decimal commas",
-    || csv("1,0;3,5\n2,0;2,5\n3,0;1,5\n").map(drop),
-    "line 1, column 1: \"1,0\" is not a number with TextFormat::decimal_comma = false: state the other value, or remove \
+    || csv("1,000;3,500\n2,000;2,500\n3,000;1,500\n").map(drop),
+    "line 1, column 1: \"1,000\" is not a number with TextFormat::decimal_comma = false: state the other value, or remove \
      separators of thousands"),
 ("a material that is not in the library",
     || viscocontact::rheology::library::find("nylon").map(drop),

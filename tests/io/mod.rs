@@ -9,6 +9,7 @@ mod errors;
 mod house;
 mod interface;
 mod invalid_loads;
+mod layouts;
 #[cfg(all(feature = "checkpoint", feature = "npy", feature = "plot"))]
 mod mistakes;
 mod output;

@@ -2,6 +2,7 @@
 
 mod dialects;
 mod files;
+mod populations;
 mod units;
 
 use crate::common::{noise, pairs, sphere_on, triples};

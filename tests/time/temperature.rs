@@ -153,7 +153,7 @@ fn steps_are_those_of_the_reduced_time_on_random_scenes() {
             time += if draws.chance(0.2) { 0.0 } else { draws.between(0.05, 0.5) };
         }
         let law = if draws.chance(0.5) { wlf() } else { TimeTemperature::arrhenius(80.0e3, REFERENCE).unwrap() };
-        let history = TemperatureHistory::table(law, &table).unwrap();
+        let history = TemperatureHistory::table(law.clone(), &table).unwrap();
         let scale = body.until / history.reduced_time(0.0, 1.0).unwrap();
         let stretched: Vec<(f64, f64)> = table.iter().map(|&(time, kelvin)| (scale * time, kelvin)).collect();
         let history = TemperatureHistory::table(law, &stretched).unwrap();
@@ -187,7 +187,7 @@ fn steps_are_those_of_the_reduced_time_on_random_scenes() {
 #[test]
 fn a_held_ball_follows_the_reduced_time() {
     let arrhenius = TimeTemperature::arrhenius(100.0e3, REFERENCE).unwrap();
-    let history = TemperatureHistory::table(arrhenius, &[(0.0, 295.0), (2.0, 330.0)]).unwrap();
+    let history = TemperatureHistory::table(arrhenius.clone(), &[(0.0, 295.0), (2.0, 330.0)]).unwrap();
     let mut contact = builder_on(grid(128), Material::incompressible(zener())).temperature(history).build().unwrap();
     let load = StepLoad::new(Load::force(0.1)).unwrap();
     let mut run = contact.follow(&load, Stepping::adaptive(1e-5), 2.0);

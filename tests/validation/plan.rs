@@ -84,7 +84,7 @@ fn warming_spheres_are_as_accurate_as_planned() {
     let load = StepLoad::new(Load::force(1.0)).unwrap();
     let body = Material::incompressible(four_terms());
     let law = TimeTemperature::wlf(17.44, 51.6, 263.15).unwrap();
-    let warming = TemperatureHistory::table(law, &[(1.0, 263.15), (5.0, 293.15)]).unwrap();
+    let warming = TemperatureHistory::table(law.clone(), &[(1.0, 263.15), (5.0, 293.15)]).unwrap();
     let exact = GrowingSphere::step(RADIUS, &body, 1.0).unwrap();
     for accuracy in PRESETS {
         let plan = Plan::builder(&sphere, &body, &load, 6.0).accuracy(accuracy).temperature(&warming).build().unwrap();

@@ -2,36 +2,6 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DataError {
-    /// No heading, or more than one, names a column that is needed.
-    #[error(
-        "line {line}: not exactly one heading names the {column} (headings: {found}); begin one with {words}, as in 't [s], z [nm], F [nN]'"
-    )]
-    Heading {
-        /// The line of the headings, from 1.
-        line: u64,
-        /// The column.
-        column: &'static str,
-        /// First words of headings that name it.
-        words: String,
-        /// The headings found.
-        found: String,
-    },
-
-    /// A heading has no unit, or a unit of another quantity.
-    #[error(
-        "line {line}: the heading {heading:?} has no unit of {quantity}; write it in brackets, as in '[{example}]'"
-    )]
-    Unit {
-        /// The line of the headings, from 1.
-        line: u64,
-        /// The heading.
-        heading: String,
-        /// The quantity of the column.
-        quantity: &'static str,
-        /// A unit of this quantity.
-        example: &'static str,
-    },
-
     /// A column that this reading of the curve needs was not in the file.
     #[error("the file has no column of the {column}; {cure}")]
     NoColumn {
@@ -43,7 +13,7 @@ pub enum DataError {
 
     /// Times in a file do not ascend.
     #[error(
-        "line {line}: the time {value:e} s follows {previous:e} s: times must ascend; sort the rows, and drop repeated ones"
+        "line {line}: the time {value:e} s follows {previous:e} s: times must ascend; where the time of each segment begins anew, add the end of the segment before; drop repeated rows"
     )]
     TimesNotAscending {
         /// The line, from 1.

@@ -1,35 +1,34 @@
 //! Measured curves from text files.
 
 mod check;
+mod columns;
 mod error;
-mod headings;
-mod table;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+use viscocontact::TextFormat;
+use viscocontact::input::{TakenColumn, TextTable};
 use viscocontact::states::ElasticStates;
-use viscocontact::{FileError, TextFormat};
 
 use crate::error::{Result, positive};
 use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
 pub use error::DataError;
 
-/// The columns of a measured curve, from a CSV file with headings.
+/// The columns of a measured curve: from a text file with headings, or from arrays.
 ///
-/// The first line names the columns by the first word of each heading, whatever the case, and their units after it: `t [s]`,
-/// `Time (ms)`, `F/nN`, `depth_um`. Other columns are ignored, and lines that are empty or begin with `#` skipped.
+/// The table may stand below other lines ([`TextTable`]). Its headings name the columns by their first word, whatever the case,
+/// and their units after it or in a row below: `t [s]`, `Time (ms)`, `F/nN`, `depth_um`. Other columns are ignored.
 ///
 /// | column | first word of the heading | |
 /// |---|---|---|
-/// | time | t, time | ascending |
-/// | force | f, force, load, p | positive where it presses |
-/// | deflection | deflection, defl | of the spring, in place of the force |
+/// | time | t, time; or the only column with a unit of time | ascending |
+/// | force | f, force, load, p; or the only column with a unit of force | positive where it presses |
+/// | deflection | deflection, defl, cantilever | of the spring, in place of the force |
 /// | drive | z, zsnsr, drive, position, piezo, base, stage | position of the base of the spring, growing toward the sample |
-/// | depth | depth, indentation, δ, delta, h | of the tip, measured independently of the force |
+/// | depth | depth, indentation, δ, delta, h, displacement into | of the tip, measured independently of the force |
 ///
 /// A file may have drive and depth: a curve takes one of them. The depth of an atomic force microscope is made from the noisy
 /// force, so that a curve through the spring ([`Recording::spring_curve`]) is the better datum.
@@ -56,18 +55,57 @@ pub struct Recording {
     deflection: Option<Vec<f64>>,
     drive: Option<Vec<f64>>,
     depth: Option<Vec<f64>>,
+    /// What was taken for what in a file.
+    columns: Vec<TakenColumn>,
 }
 
 impl Recording {
-    /// Reads a CSV file. `format` states the delimiter and the decimal mark.
+    /// A recording at `times` \[s\]; its columns are added by [`Recording::with_force`] and the like.
+    ///
+    /// ```
+    /// use viscocontact_identify::Recording;
+    ///
+    /// let times: Vec<f64> = (0..100).map(|k| 0.01 * f64::from(k)).collect();
+    /// let depth: Vec<f64> = times.iter().map(|t| 1.0e-6 * t).collect();
+    /// let force = depth.iter().map(|d| 2.0 * d.powf(1.5)).collect();
+    /// let recording = Recording::new(times).with_depth(depth).with_force(force);
+    /// # let _ = recording;
+    /// ```
+    pub fn new(times: Vec<f64>) -> Recording {
+        Recording { times, force: None, deflection: None, drive: None, depth: None, columns: Vec::new() }
+    }
+
+    /// The same with the force \[N\] at each time, positive where it presses.
+    #[must_use]
+    pub fn with_force(self, force: Vec<f64>) -> Recording {
+        Recording { force: Some(force), ..self }
+    }
+
+    /// The same with the deflection of the spring \[m\] at each time.
+    #[must_use]
+    pub fn with_deflection(self, deflection: Vec<f64>) -> Recording {
+        Recording { deflection: Some(deflection), ..self }
+    }
+
+    /// The same with the position of the base of the spring \[m\] at each time.
+    #[must_use]
+    pub fn with_drive(self, drive: Vec<f64>) -> Recording {
+        Recording { drive: Some(drive), ..self }
+    }
+
+    /// The same with the depth of the tip \[m\] at each time.
+    #[must_use]
+    pub fn with_depth(self, depth: Vec<f64>) -> Recording {
+        Recording { depth: Some(depth), ..self }
+    }
+
+    /// Reads a text file. `format` says how it is written, where this is not found out.
     ///
     /// # Errors
     /// If the file cannot be read; each with its line: rows of another number of columns, entries that are not numbers,
     /// columns that no heading names or more than one, headings without a unit of their quantity, times that do not ascend.
     pub fn from_csv(path: impl AsRef<Path>, format: TextFormat) -> Result<Recording> {
-        let path = path.as_ref();
-        let file = File::open(path).map_err(|error| unreadable(path.display().to_string(), &error))?;
-        Recording::read(file, path.display().to_string(), format)
+        Recording::from_table(&TextTable::open(path, format)?)
     }
 
     /// [`Recording::from_csv`] from any reader.
@@ -75,13 +113,37 @@ impl Recording {
     /// # Errors
     /// As [`Recording::from_csv`].
     pub fn from_csv_reader(reader: impl Read, format: TextFormat) -> Result<Recording> {
-        Recording::read(reader, "recording".into(), format)
+        Recording::from_table(&TextTable::read(reader, format)?)
     }
 
-    fn read(mut reader: impl Read, name: String, format: TextFormat) -> Result<Recording> {
-        let mut bytes = Vec::new();
-        reader.read_to_end(&mut bytes).map_err(|error| unreadable(name, &error))?;
-        table::recording(&String::from_utf8_lossy(&bytes), format)
+    /// The times \[s\].
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The force \[N\].
+    pub fn force(&self) -> Option<&[f64]> {
+        self.force.as_deref()
+    }
+
+    /// The deflection of the spring \[m\].
+    pub fn deflection(&self) -> Option<&[f64]> {
+        self.deflection.as_deref()
+    }
+
+    /// The position of the base of the spring \[m\].
+    pub fn drive(&self) -> Option<&[f64]> {
+        self.drive.as_deref()
+    }
+
+    /// The depth of the tip \[m\].
+    pub fn depth(&self) -> Option<&[f64]> {
+        self.depth.as_deref()
+    }
+
+    /// The columns of the file that were read, with their headings and units; none of arrays.
+    pub fn columns(&self) -> &[TakenColumn] {
+        &self.columns
     }
 
     /// The same with the other sign of force and deflection: for instruments whose force is negative where it presses.
@@ -133,8 +195,4 @@ impl Recording {
         let curve = Curve::new(Experiment::new(protocol, Arc::clone(tip)).with_spring(stiffness)?, force)?;
         curve.check().map(|()| curve)
     }
-}
-
-fn unreadable(file: String, error: &std::io::Error) -> viscocontact::Error {
-    FileError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }.into()
 }

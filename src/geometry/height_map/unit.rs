@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::error::{Error, MapError, Result};
+use crate::input::{Quantity, readings, same};
 
 /// A unit of length in files of measured surfaces.
 ///
@@ -52,17 +53,15 @@ impl LengthUnit {
     }
 }
 
-/// The units, their number per metre, and their symbols.
-const UNITS: [(LengthUnit, f64, &[&str]); 7] = [
-    (LengthUnit::Metre, 1.0, &["m"]),
-    (LengthUnit::Centimetre, 1e2, &["cm"]),
-    (LengthUnit::Millimetre, 1e3, &["mm"]),
-    // micro sign, Greek letter, and the ASCII substitute
-    (LengthUnit::Micrometre, 1e6, &["\u{b5}m", "\u{3bc}m", "um"]),
-    (LengthUnit::Nanometre, 1e9, &["nm"]),
-    // letter, ångström sign, and the ASCII substitute
-    (LengthUnit::Angstrom, 1e10, &["\u{c5}", "\u{212b}", "A"]),
-    (LengthUnit::Picometre, 1e12, &["pm"]),
+/// The units, and their number per metre.
+const UNITS: [(LengthUnit, f64); 7] = [
+    (LengthUnit::Metre, 1.0),
+    (LengthUnit::Centimetre, 1e2),
+    (LengthUnit::Millimetre, 1e3),
+    (LengthUnit::Micrometre, 1e6),
+    (LengthUnit::Nanometre, 1e9),
+    (LengthUnit::Angstrom, 1e10),
+    (LengthUnit::Picometre, 1e12),
 ];
 
 impl FromStr for LengthUnit {
@@ -71,7 +70,8 @@ impl FromStr for LengthUnit {
     /// The unit of a symbol: m, cm, mm, µm (um), nm, Å (A), pm. Case matters: Mm is not a millimetre.
     fn from_str(symbol: &str) -> Result<LengthUnit> {
         let symbol = symbol.trim();
-        let known = UNITS.iter().find(|(.., symbols)| symbols.contains(&symbol));
+        let mut sizes = readings(symbol).into_iter().filter(|unit| unit.0 == Quantity::LENGTH).map(|unit| unit.1);
+        let known = sizes.find_map(|size| UNITS.iter().find(|(_, per_metre)| same(size * per_metre, 1.0)));
         known.map(|unit| unit.0).ok_or_else(|| MapError::Unit { symbol: symbol.to_owned() }.into())
     }
 }

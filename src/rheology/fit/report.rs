@@ -220,9 +220,10 @@ impl fmt::Display for FitReport {
         }
         if self.uncertainty() > 0.0 {
             write!(f, "; creep uncertain by {:.1} % at most", 100.0 * self.uncertainty())?;
-            let last = self.uncertainties().filter(|(_, uncertainty)| *uncertainty > KNOWN).last();
-            if let Some((time, _)) = last {
-                write!(f, ", by less than {:.0} % only after {time:.3e} s", 100.0 * KNOWN)?;
+            let known: Vec<(f64, bool)> = self.uncertainties().map(|(time, by)| (time, by <= KNOWN)).collect();
+            let longest = known.chunk_by(|a, b| a.1 == b.1).filter(|part| part[0].1).max_by_key(|part| part.len());
+            if let Some([first, .., last]) = longest.filter(|part| part.len() < known.len()) {
+                write!(f, ", by less than {:.0} % from {:.3e} s to {:.3e} s", 100.0 * KNOWN, first.0, last.0)?;
             }
         }
         if let Some(warning) = self.warning {

@@ -22,6 +22,8 @@ pub enum Experiment {
     Relaxation,
     /// Angular frequency \[rad/s\], storage and loss modulus \[Pa\]: G′, G″ in shear (rheometer), E′, E″ in tension (DMA).
     Dynamic,
+    /// Angular frequency \[rad/s\] and storage modulus \[Pa\] alone.
+    Storage,
 }
 
 /// What the headings of a file say about the deformation of the specimen.
@@ -65,16 +67,10 @@ impl Experiment {
                 "dynamic table",
                 &[("storage modulus", MaterialFunction::Storage), ("loss modulus", MaterialFunction::Loss)],
             ),
+            Experiment::Storage => ("table of storage moduli", &[("storage modulus", MaterialFunction::Storage)]),
         };
-        let zero = self != Experiment::Dynamic;
+        let zero = matches!(self, Experiment::Creep | Experiment::Relaxation);
         Layout { table, abscissa: if zero { "time" } else { "angular frequency" }, columns, zero }
-    }
-}
-
-impl Layout {
-    /// Names of the abscissa and of the columns.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
-        std::iter::once(self.abscissa).chain(self.columns.iter().map(|&(name, _)| name))
     }
 }
 
@@ -85,13 +81,15 @@ const MOST_NOISE: f64 = 0.5;
 /// ... in short tables, whose scatter is hard to distinguish from their trend, by no more than this.
 const MOST_NOISE_OF_FEW: f64 = 0.1;
 const FEW: usize = 12;
+/// Rows before and after one, from which its scatter is judged.
+const AROUND: usize = 4;
 /// Data without noise may deviate by the rounding of their digits; those printed with few digits, by one in the last.
 const LEAST_NOISE: f64 = 1e-9;
 /// Number of values for a fit of constant, slope and one term.
 const LEAST_ROWS: usize = 4;
 
-/// Sorts the rows of a table. Returns its samples, in ascending order, and their greatest deviation from a monotone curve.
-pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<(Vec<Sample>, f64)> {
+/// Sorts the rows of a table. Returns its samples, in ascending order.
+pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<Vec<Sample>> {
     let Layout { table, abscissa, columns, zero } = layout;
     for Row { place, x, values } in &*rows {
         let check = |column, value, inside, allowed| {
@@ -109,6 +107,16 @@ pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<(Vec<Sample>
         return Err(TableError::Duplicate { table, place, earlier, column: abscissa, value }.into());
     }
     least_length(table, rows.len(), LEAST_ROWS)?;
+    let sample = |index: usize, function| {
+        rows.iter().map(move |row| Sample { function, x: row.x, value: row.values[index], weight: 1.0 })
+    };
+    Ok(columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function)).collect())
+}
+
+/// The greatest deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the rows around
+/// explains, or the relative `scatter`, if it is stated.
+pub(crate) fn wrong_way(layout: Layout, rows: &[Row], scatter: Option<f64>) -> Result<f64> {
+    let Layout { table, columns, .. } = layout;
     let mut greatest: f64 = 0.0;
     for (index, &(column, function)) in columns.iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.values[index]).collect();
@@ -118,20 +126,23 @@ pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<(Vec<Sample>
             MaterialFunction::Loss => continue,
         };
         let most = if rows.len() < FEW { MOST_NOISE_OF_FEW } else { MOST_NOISE };
-        let noise = (DEVIATIONS * scatter(&rising)).max(1.5 * quantum(&rising)).clamp(LEAST_NOISE, most);
+        let everywhere = median_scatter(&second_differences(&rising)).max(1.5 * quantum(&rising) / DEVIATIONS);
+        let explained = |row: usize| match scatter {
+            Some(scatter) => DEVIATIONS * scatter,
+            None => (DEVIATIONS * everywhere.max(scatter_around(&rising, row))).clamp(LEAST_NOISE, most),
+        };
         let deviations = rising.iter().zip(nearest_monotone(&rising)).map(|(value, curve)| (value / curve - 1.0).abs());
-        let Some((worst, change)) = deviations.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        let excess = |row: usize, deviation: f64| deviation / explained(row);
+        let worst = deviations.enumerate().max_by(|a, b| excess(a.0, a.1).total_cmp(&excess(b.0, b.1)));
+        let Some((worst, change)) = worst else { continue };
+        let noise = explained(worst);
         if change > noise {
             let (place, value) = (rows[worst].place, rows[worst].values[index]);
             return Err(TableError::WrongWay { table, place, column, value, change, noise }.into());
         }
         greatest = greatest.max(change);
     }
-    let sample = |index: usize, function| {
-        rows.iter().map(move |row| Sample { function, x: row.x, value: row.values[index], weight: 1.0 })
-    };
-    let samples = columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function));
-    Ok((samples.collect(), greatest))
+    Ok(greatest)
 }
 
 /// The non-decreasing curve nearest to the values: decreasing neighbours are pooled into their mean, until there are
@@ -158,12 +169,25 @@ fn quantum(values: &[f64]) -> f64 {
     if least.is_finite() { least } else { 0.0 }
 }
 
-/// Relative standard deviation of the scatter about a smooth curve, from the median of second differences, which a few
+/// Relative second differences of values over their standard deviation for white noise of one.
+fn second_differences(values: &[f64]) -> Vec<f64> {
+    values.windows(3).map(|w| ((w[0] - 2.0 * w[1] + w[2]) / w[1]).abs() / 6f64.sqrt()).collect()
+}
+
+/// Relative standard deviation of the scatter about a smooth curve, from the median of its second differences, which a few
 /// outliers or a kink do not change.
-fn scatter(values: &[f64]) -> f64 {
-    let mut second: Vec<f64> =
-        values.windows(3).map(|w| ((w[0] - 2.0 * w[1] + w[2]) / w[1]).abs() / 6f64.sqrt()).collect();
+fn median_scatter(second: &[f64]) -> f64 {
+    let mut second = second.to_vec();
     second.sort_by(f64::total_cmp);
     // the median of |N(0, σ)| is 0.6745 σ
     second.get(second.len() / 2).map_or(0.0, |median| median / 0.6745)
+}
+
+/// The same of the rows around one: a pair of rows that contradict each other scatters, a single outlier does not.
+fn scatter_around(values: &[f64], row: usize) -> f64 {
+    if values.len() < FEW {
+        return 0.0;
+    }
+    let from = row.saturating_sub(AROUND).min(values.len() - 2 * AROUND - 1);
+    median_scatter(&second_differences(&values[from..=from + 2 * AROUND]))
 }

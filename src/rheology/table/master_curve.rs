@@ -1,77 +1,15 @@
-use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
+use crate::error::{Error, Place, Result, TableError, in_order, least_length};
+use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, Row};
-use crate::rheology::table::{Experiment, Measurements};
+use crate::rheology::table::isotherm::Isotherm;
+use crate::rheology::table::shift::shift_between;
 use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
-use crate::values::Counted;
-
-/// Measurements at one temperature.
-///
-/// ```
-/// use viscocontact::rheology::{Isotherm, Measurements};
-///
-/// let creep = Measurements::creep(&[(1.0, 1.0e-9), (10.0, 1.1e-9), (100.0, 1.4e-9), (1000.0, 2.0e-9)])?;
-/// let at_60 = Isotherm::new(333.15, creep)?;
-/// assert_eq!(at_60.temperature(), 333.15);
-/// # Ok::<(), viscocontact::Error>(())
-/// ```
-#[derive(Clone, PartialEq)]
-pub struct Isotherm {
-    temperature: f64,
-    experiment: Experiment,
-    deformation: Deformation,
-    /// Ascending.
-    rows: Vec<Row>,
-}
-
-debug_by! {
-    self: Isotherm =>
-    temperature: self.temperature, experiment: self.experiment, deformation: self.deformation,
-    rows: Counted(&self.rows)
-}
-
-impl Isotherm {
-    /// `measurements` at `temperature` \[K\].
-    ///
-    /// # Errors
-    /// If the temperature is not finite and positive.
-    pub fn new(temperature: f64, measurements: Measurements) -> Result<Isotherm> {
-        within("temperature", temperature, temperature > 0.0, "finite and > 0 (kelvin)")?;
-        let Measurements { experiment, deformation, mut rows, .. } = measurements;
-        rows.retain(|row| row.x > 0.0); // a time of zero cannot be shifted
-        Ok(Isotherm { temperature, experiment, deformation, rows })
-    }
-
-    /// Temperature \[K\].
-    pub fn temperature(&self) -> f64 {
-        self.temperature
-    }
-
-    /// ln of the range of times; frequencies count as their reciprocals.
-    fn span(&self) -> [f64; 2] {
-        let ends = [&self.rows[0], &self.rows[self.rows.len() - 1]].map(|row| self.log_time(row));
-        [ends[0].min(ends[1]), ends[0].max(ends[1])]
-    }
-
-    fn log_time(&self, row: &Row) -> f64 {
-        if self.experiment.layout().zero { row.x.ln() } else { -row.x.ln() }
-    }
-
-    /// ln of a column at ln t, linear in between.
-    fn at(&self, column: usize, log_time: f64) -> Option<f64> {
-        let pair = self.rows.windows(2).find(|pair| {
-            let (a, b) = (self.log_time(&pair[0]), self.log_time(&pair[1]));
-            (a.min(b)..=a.max(b)).contains(&log_time)
-        })?;
-        let [a, b] = [&pair[0], &pair[1]].map(|row| (self.log_time(row), row.values[column].ln()));
-        Some(a.1 + (log_time - a.0) / (b.0 - a.0) * (b.1 - a.1))
-    }
-}
 
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
-/// The shift of each isotherm relative to its neighbour minimises the mean square difference of the logarithms of the
-/// values where the two overlap. There are no vertical shifts.
+/// The shift of each isotherm relative to its neighbour is that of the least difference of the logarithms of the values where
+/// the two overlap, each column relative to its own scatter; single outliers cost little. There are no vertical shifts.
 ///
 /// ```
 /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology, TimeTemperature};
@@ -100,6 +38,10 @@ pub struct MasterCurve {
     isotherms: Vec<Isotherm>,
     /// ln a_T of each.
     log_shifts: Vec<f64>,
+    /// Their standard errors.
+    log_errors: Vec<f64>,
+    /// By how much the shifts by the storage and by the loss modulus differ, from each isotherm to its neighbour.
+    disagreements: Vec<f64>,
 }
 
 impl MasterCurve {
@@ -115,13 +57,16 @@ impl MasterCurve {
             return Err(Error::OutOfRange { field: "reference temperature", value: reference, allowed });
         };
         let mut log_shifts = vec![0.0; isotherms.len()];
-        for k in center + 1..isotherms.len() {
-            log_shifts[k] = log_shifts[k - 1] + shift_between(&isotherms[k - 1], &isotherms[k])?;
+        let (mut log_errors, mut disagreements) = (log_shifts.clone(), log_shifts.clone());
+        for k in (center + 1..isotherms.len()).chain((0..center).rev()) {
+            let (before, [colder, warmer], sign) =
+                if k > center { (k - 1, [k - 1, k], 1.0) } else { (k + 1, [k, k + 1], -1.0) };
+            let shift = shift_between(&isotherms[colder], &isotherms[warmer])?;
+            log_shifts[k] = log_shifts[before] + sign * shift.log;
+            log_errors[k] = log_errors[before].hypot(shift.error);
+            disagreements[k] = shift.disagreement;
         }
-        for k in (0..center).rev() {
-            log_shifts[k] = log_shifts[k + 1] - shift_between(&isotherms[k], &isotherms[k + 1])?;
-        }
-        Ok(MasterCurve { reference, isotherms, log_shifts })
+        Ok(MasterCurve { reference, isotherms, log_shifts, log_errors, disagreements })
     }
 
     /// Shifts by a known `law`, to its reference temperature.
@@ -131,9 +76,16 @@ impl MasterCurve {
     /// not hold at the temperature of one.
     pub fn with_law(law: &TimeTemperature, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
-        let log_shifts =
+        let log_shifts: Vec<f64> =
             isotherms.iter().map(|isotherm| Ok(law.shift_factor(isotherm.temperature)?.ln())).collect::<Result<_>>()?;
-        Ok(MasterCurve { reference: law.reference(), isotherms, log_shifts })
+        let none = vec![0.0; isotherms.len()];
+        Ok(MasterCurve {
+            reference: law.reference(),
+            isotherms,
+            log_shifts,
+            log_errors: none.clone(),
+            disagreements: none,
+        })
     }
 
     /// The reference temperature \[K\].
@@ -146,6 +98,26 @@ impl MasterCurve {
     pub fn shift_factors(&self) -> Vec<(f64, f64)> {
         let pairs = self.isotherms.iter().zip(&self.log_shifts);
         pairs.map(|(isotherm, shift)| (isotherm.temperature, shift.exp())).collect()
+    }
+
+    /// Temperature \[K\] and standard error of log₁₀ a_T of each isotherm, by temperature; 0 at the reference, and with a law.
+    ///
+    /// Neighbours are shifted one after the other, so that errors grow away from the reference. They include shifts that fit
+    /// nearly as well, as where a curve is nearly a power law.
+    pub fn shift_errors(&self) -> Vec<(f64, f64)> {
+        self.in_decades(&self.log_errors).collect()
+    }
+
+    /// Temperatures \[K\] of isotherms that storage and loss moduli would shift differently relative to their neighbours, by
+    /// more than their errors explain, and by how many decades: the body is not thermorheologically simple, or a modulus is
+    /// disturbed by the machine.
+    pub fn disagreements(&self) -> Vec<(f64, f64)> {
+        self.in_decades(&self.disagreements).filter(|(_, decades)| *decades > 0.0).collect()
+    }
+
+    fn in_decades(&self, logarithms: &[f64]) -> impl Iterator<Item = (f64, f64)> {
+        let pairs = self.isotherms.iter().zip(logarithms);
+        pairs.map(|(isotherm, logarithm)| (isotherm.temperature, logarithm / std::f64::consts::LN_10))
     }
 
     /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁.
@@ -248,59 +220,4 @@ fn sorted(mut isotherms: Vec<Isotherm>) -> Result<Vec<Isotherm>> {
     let temperatures = isotherms.iter().map(|isotherm| isotherm.temperature);
     in_order("temperatures of the isotherms", temperatures, "differ", |colder, warmer| colder != warmer)?;
     Ok(isotherms)
-}
-
-/// Points at which two isotherms are compared.
-const COMPARED: usize = 60;
-/// Shifts tried before the best is refined.
-const TRIED: usize = 400;
-/// Fraction of the shorter isotherm that must overlap.
-const LEAST_OVERLAP: f64 = 0.1;
-
-/// ln a of `warmer` relative to `colder`: the shift of least mean square difference where they overlap.
-fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<f64> {
-    let ([c0, c1], [w0, w1]) = (colder.span(), warmer.span());
-    let least = LEAST_OVERLAP * (c1 - c0).min(w1 - w0);
-    // warmer at ln t is at ln t − shift on the axis of colder
-    let distance = |shift: f64| {
-        let (from, to) = ((w0 - shift).max(c0), (w1 - shift).min(c1));
-        if to - from < least {
-            return f64::INFINITY;
-        }
-        let columns = colder.experiment.layout().columns.len();
-        let mut sum = 0.0;
-        for column in 0..columns {
-            for k in 0..=COMPARED {
-                let at = from + (to - from) * k as f64 / COMPARED as f64;
-                let [Some(one), Some(other)] = [colder.at(column, at), warmer.at(column, at + shift)] else { continue };
-                sum += (one - other).powi(2);
-            }
-        }
-        sum / (columns * (COMPARED + 1)) as f64
-    };
-    let (low, high) = (w0 - c1 + least, w1 - c0 - least);
-    let step = (high - low) / TRIED as f64;
-    let tried = (0..=TRIED).map(|k| low + step * k as f64);
-    let best = tried.min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(0.0);
-    // golden section around the best
-    let (mut a, mut b) = (best - step, best + step);
-    for _ in 0..60 {
-        let (x, y) = (b - 0.618_033_988_749_895 * (b - a), a + 0.618_033_988_749_895 * (b - a));
-        if distance(x) <= distance(y) { b = y } else { a = x }
-    }
-    let shift = 0.5 * (a + b);
-    let span = |isotherm: &Isotherm| {
-        let logs = || isotherm.rows.iter().map(|row| row.values[0].ln());
-        logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min)
-    };
-    if span(colder).min(span(warmer)) < 1e-6 {
-        return Err(TableError::NothingToShift { temperatures: [colder.temperature, warmer.temperature] }.into());
-    }
-    // at the least overlap allowed, the values of the two hardly overlap
-    let apart = distance(shift).sqrt();
-    let at_end = (shift - low).min(high - shift) < step;
-    if at_end || apart > 0.2 {
-        return Err(TableError::NoOverlap { temperatures: [colder.temperature, warmer.temperature], apart }.into());
-    }
-    Ok(shift)
 }

@@ -1,18 +1,22 @@
 //! Measured data as rheologies.
 
-mod csv;
 mod data;
+mod file;
+mod isotherm;
 mod master_curve;
+mod shift;
 
-pub use self::csv::Units;
-pub use master_curve::{Isotherm, MasterCurve};
+pub use file::Units;
+pub use isotherm::Isotherm;
+pub use master_curve::MasterCurve;
 
-use crate::error::{Place, Result, TableError};
+use crate::error::{Place, Result, TableError, positive};
+use crate::input::TakenColumn;
 use crate::rheology::CreepSeries;
 use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
 use crate::values::Counted;
 pub use data::Experiment;
-use data::{Deformation, Row, validated};
+use data::{Deformation, Row, validated, wrong_way};
 
 /// Greatest root mean square misfit of an accepted fit.
 const MOST_MISFIT: f64 = 0.1;
@@ -47,14 +51,16 @@ pub struct Measurements {
     /// Ascending.
     rows: Vec<Row>,
     samples: Vec<Sample>,
-    /// Greatest deviation of the samples from a monotone curve.
-    wrong_way: f64,
+    /// Relative standard deviation of the values, if it is stated.
+    scatter: Option<f64>,
+    /// What was taken for what in a file.
+    columns: Vec<TakenColumn>,
 }
 
 debug_by! {
     self: Measurements =>
     experiment: self.experiment, deformation: self.deformation, rows: Counted(&self.rows),
-    samples: Counted(&self.samples), wrong_way: self.wrong_way
+    samples: Counted(&self.samples), scatter: self.scatter
 }
 
 impl Measurements {
@@ -62,10 +68,10 @@ impl Measurements {
     /// its rows by `std::iter::zip(times, compliances).collect::<Vec<_>>()`.
     ///
     /// # Errors
-    /// If there are fewer than four rows, a value is not finite and positive, a time is negative or given twice, or J decreases by more than the scatter of the data explains:
+    /// If there are fewer than four rows, a value is not finite and positive, or a time is negative or given twice:
     /// [`Error::Table`](crate::Error::Table).
     pub fn creep(table: &[(f64, f64)]) -> Result<Measurements> {
-        Measurements::from_table(Experiment::Creep, table.iter().map(|&(time, compliance)| (time, vec![compliance])))
+        Measurements::from_pairs(Experiment::Creep, table)
     }
 
     /// Relaxation: a `table` of times ≥ 0 \[s\] and moduli \[Pa\], in any order.
@@ -86,9 +92,9 @@ impl Measurements {
     /// ```
     ///
     /// # Errors
-    /// As [`Measurements::creep`]; G may not increase.
+    /// As [`Measurements::creep`].
     pub fn relaxation(table: &[(f64, f64)]) -> Result<Measurements> {
-        Measurements::from_table(Experiment::Relaxation, table.iter().map(|&(time, modulus)| (time, vec![modulus])))
+        Measurements::from_pairs(Experiment::Relaxation, table)
     }
 
     /// Dynamic moduli: a `table` of angular frequencies > 0 \[rad/s\], storage moduli and loss moduli \[Pa\], in any order.
@@ -107,21 +113,48 @@ impl Measurements {
     /// ```
     ///
     /// # Errors
-    /// As [`Measurements::creep`]; frequencies and both moduli must be positive, and G′ may not decrease with the
-    /// frequency.
+    /// As [`Measurements::creep`]; frequencies and both moduli must be positive.
     pub fn dynamic(table: &[(f64, f64, f64)]) -> Result<Measurements> {
         let rows = table.iter().map(|&(omega, storage, loss)| (omega, vec![storage, loss]));
-        Measurements::from_table(Experiment::Dynamic, rows)
+        Measurements::of_values(Experiment::Dynamic, rows)
     }
 
-    fn from_table(experiment: Experiment, table: impl Iterator<Item = (f64, Vec<f64>)>) -> Result<Measurements> {
+    /// Storage moduli alone: a `table` of angular frequencies > 0 \[rad/s\] and storage moduli \[Pa\], in any order.
+    ///
+    /// # Errors
+    /// As [`Measurements::dynamic`].
+    pub fn storage(table: &[(f64, f64)]) -> Result<Measurements> {
+        Measurements::from_pairs(Experiment::Storage, table)
+    }
+
+    /// The columns of the file that were read, with their headings and units; none of a table that was given as rows.
+    pub fn columns(&self) -> &[TakenColumn] {
+        &self.columns
+    }
+
+    /// The same with a known relative standard deviation of the values (0.05 for 5 %), in place of one that is judged from the
+    /// values themselves. Values may then deviate by six times as much from a monotone curve, and the best series by as much in
+    /// the root mean square, if this is more than 10 %.
+    ///
+    /// # Errors
+    /// If it is not finite and positive.
+    pub fn with_scatter(self, scatter: f64) -> Result<Measurements> {
+        Ok(Measurements { scatter: Some(positive("scatter", scatter)?), ..self })
+    }
+
+    fn from_pairs(experiment: Experiment, table: &[(f64, f64)]) -> Result<Measurements> {
+        Measurements::of_values(experiment, table.iter().map(|&(x, value)| (x, vec![value])))
+    }
+
+    fn of_values(experiment: Experiment, table: impl Iterator<Item = (f64, Vec<f64>)>) -> Result<Measurements> {
         let row = |(k, (x, values))| Row { place: Place::Entry(k), x, values };
         Measurements::from_rows(experiment, table.enumerate().map(row).collect())
     }
 
     fn from_rows(experiment: Experiment, mut rows: Vec<Row>) -> Result<Measurements> {
-        let (samples, wrong_way) = validated(experiment.layout(), &mut rows)?;
-        Ok(Measurements { experiment, deformation: Deformation::Unnamed, rows, samples, wrong_way })
+        let samples = validated(experiment.layout(), &mut rows)?;
+        let (deformation, scatter, columns) = (Deformation::Unnamed, None, Vec::new());
+        Ok(Measurements { experiment, deformation, rows, samples, scatter, columns })
     }
 
     /// The body that the table describes: a series with positive coefficients, by least squares of the relative misfit.
@@ -141,7 +174,9 @@ impl Measurements {
     /// choose [`CreepSeries::extrapolated`].
     ///
     /// # Errors
-    /// If no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)), or the headings of its file name
+    /// If a compliance decreases, a relaxation modulus increases, or a storage modulus decreases with the frequency, by more than
+    /// the scatter of the rows around explains ([`TableError::WrongWay`](crate::rheology::TableError)); if no series fits the
+    /// table ([`TableError::Inconsistent`](crate::rheology::TableError)); or if the headings of its file name
     /// moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
     pub fn fit(&self) -> Result<CreepSeries> {
         self.fitted(Deformation::Shear)
@@ -170,6 +205,7 @@ impl Measurements {
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
         self.deformation.accepts(deformation)?;
         let (layout, samples) = (self.experiment.layout(), &self.samples);
+        let wrong_way = wrong_way(layout, &self.rows, self.scatter)?;
         let time = |x: f64| if layout.zero { x } else { 1.0 / x };
         let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
         let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
@@ -192,10 +228,14 @@ impl Measurements {
         }
         let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
         let mut report =
-            FitReport::new(&measured.series, samples).of_measurements(self.wrong_way, measured.ambiguity, interval);
+            FitReport::new(&measured.series, samples).of_measurements(wrong_way, measured.ambiguity, interval);
         report.in_tension = deformation == Deformation::Tension;
-        if let Some(worst) = report.worst().filter(|_| report.rms_misfit() > MOST_MISFIT) {
-            let (table, rms) = (layout.table, report.rms_misfit());
+        // a smooth series through few rows of much noise is further from them than the best
+        let best = FitReport::new(&measured.least_squares, samples);
+        let most = self.scatter.map_or(MOST_MISFIT, |scatter| scatter.max(MOST_MISFIT));
+        let rms = best.rms_misfit().min(report.rms_misfit());
+        if let Some(worst) = best.worst().filter(|_| rms > most) {
+            let table = layout.table;
             return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
         }
         let spectrum = measured.series.creep(samples[0].function)?;

@@ -8,7 +8,7 @@ use super::dialects::{creep, points};
 #[test]
 fn units_of_headings_are_those_given() {
     let rows = "1;1.0\n2;1.1\n4;1.3\n8;1.4\n";
-    let minutes = Units { abscissa: 60.0, value: 1e-9 };
+    let minutes = Units::new(60.0, 1e-9).unwrap();
     let refused =
         |headings: &str, units: Units| match creep(&format!("{headings}\n{rows}"), units, points()).unwrap_err() {
             Error::Table(TableError::Unit { line: 1, column, unit, field, expected, .. }) => {
@@ -35,14 +35,14 @@ fn units_of_headings_are_those_given() {
             .and_then(|table| table.fit())
             .map(|_| ())
     };
-    let kilohertz = Units { abscissa: 6283.19, value: 1e6 };
+    let kilohertz = Units::new(6283.19, 1e6).unwrap();
     assert_eq!(dynamic("f [kHz];G' [MPa];G'' [MPa]", kilohertz), Ok(()));
     let error = dynamic("f [Hz];G' [MPa];G'' [MPa]", kilohertz).unwrap_err();
     assert!(
         matches!(&error, Error::Table(TableError::Unit { column: 1, .. })) && error.to_string().contains("kHz"),
         "{error}"
     );
-    let error = dynamic("omega [rad/s];G' [MPa];G'' [Pa]", Units { abscissa: 1.0, value: 1e6 }).unwrap_err();
+    let error = dynamic("omega [rad/s];G' [MPa];G'' [Pa]", Units::new(1.0, 1e6).unwrap()).unwrap_err();
     assert!(matches!(error, Error::Table(TableError::Unit { column: 3, .. })), "{error}");
     let message = creep(&format!("time [min];J\n{rows}"), Units::SI, points()).unwrap_err().to_string();
     let expected =
@@ -91,11 +91,7 @@ fn units_are_read_however_they_follow_the_symbol() {
                 let (heading, unit) = heading;
                 let quoted = format!("\"{heading}\"");
                 let table = |given: f64| {
-                    let units = if first {
-                        Units { abscissa: given, value: 1.0 }
-                    } else {
-                        Units { abscissa: 1.0, value: given }
-                    };
+                    let units = if first { Units::new(given, 1.0).unwrap() } else { Units::new(1.0, given).unwrap() };
                     let column = if dynamic { ";G''" } else { "" };
                     let headings = if first {
                         format!("{quoted};{}", if dynamic { "G'" } else { "J" })

@@ -6,6 +6,7 @@ use std::io::Read;
 use super::{First, Header, Kind, Number, bytes, count};
 use crate::error::{MapError, Result};
 use crate::geometry::{HeightMap, LengthUnit};
+use crate::input::by_lines;
 
 pub(in crate::geometry::height_map) const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
 const FORMAT: &str = "GSF";
@@ -54,8 +55,8 @@ fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap
     let Some(end) = rest.iter().position(|&byte| byte == 0) else {
         return Err(MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
     };
-    // titles may contain any bytes
-    let lines = String::from_utf8_lossy(&rest[..end]);
+    // titles may contain any bytes, and units are in Latin-1 in some files
+    let (lines, _) = by_lines(&rest[..end]);
     let header = Header::of_lines(FORMAT, &lines);
     let unit = |key: &'static str| match (header.get(key), fallback) {
         (Some(symbol), _) => symbol.parse(),

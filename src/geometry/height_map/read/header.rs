@@ -1,6 +1,7 @@
 //! Headers of entries that are found by their keys.
 
 use crate::error::{MapError, Result, finite, positive};
+use crate::input::number;
 
 /// Returns the value of an entry by its key.
 type Find<'a> = Box<dyn Fn(&str) -> Option<&'a str> + 'a>;
@@ -60,7 +61,7 @@ impl<'a> Header<'a> {
 
     pub(super) fn finite(&self, key: &'static str) -> Result<f64> {
         let text = self.require(key)?;
-        finite(key, text.parse().map_err(|_| self.error(key, text, "a number"))?)
+        finite(key, number(text, false).ok_or_else(|| self.error(key, text, "a number"))?)
     }
 
     pub(super) fn positive(&self, key: &'static str) -> Result<f64> {

@@ -4,16 +4,26 @@ use std::io::Read;
 
 use super::First;
 use crate::Grid;
-use crate::error::Result;
+use crate::error::{MapError, Result, TextError};
 use crate::geometry::{HeightMap, LengthUnit};
-use crate::input::{TextFormat, TextRow, TextTable};
+use crate::input::{Text, TextFormat, TextRow};
+
+/// Fields of points without a height, in lower case.
+const MISSING: [&str; 6] = ["", "bad", "---", "no data", "nodata", "n/a"];
+/// Numbers that programs write for points without a height, and the least magnitude of others.
+const STAND_INS: [f64; 7] = [-9999.0, 9999.0, -99999.0, 99999.0, -32768.0, 32767.0, 65535.0];
+const NO_HEIGHT: f64 = 1e30;
+/// A stand-in is further from the heights than this multiple of their range.
+const FAR: f64 = 10.0;
 
 impl HeightMap {
     /// Reads a matrix of heights in `unit` from text, on a rectangle of `lengths` \[m\]. A line is a row along x1; the
     /// first line is the top.
     ///
-    /// A field that is empty, `nan` or `bad` is a missing point. `format` states the delimiter and the decimal mark; empty
-    /// lines and lines that start with `#` are skipped.
+    /// `format` states how the text is written, and which height stands for missing points. A field that is empty, `nan`,
+    /// `bad`, `---`, `no data` or `n/a` is a missing point. Lines of words at the beginning are a header, as of Wyko, ESRI,
+    /// Bruker, Zygo or Keyence: its lengths and units are not read, but its `NODATA_value` is. An index 0, 1, 2… above and
+    /// beside the heights, as of a data frame, is left out.
     ///
     /// ```
     /// use viscocontact::TextFormat;
@@ -28,43 +38,119 @@ impl HeightMap {
     ///
     /// # Errors
     /// If the text cannot be read, a line differs from the first in its number of columns, or a field is not a number, each
-    /// with the number of the line ([`TextError`](crate::TextError)); as [`HeightMap::new`] if the map is invalid.
+    /// with the number of the line ([`TextError`]); if the text is a profile or has coordinates
+    /// ([`MapError::NotAMatrix`]), or some heights look like missing ones ([`MapError::StandIn`]); as [`HeightMap::new`] if
+    /// the map is invalid.
     pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit, format: TextFormat) -> Result<HeightMap> {
-        let table = TextTable::read(reader, "text file", format)?;
-        let (mut rows, mut columns) = (Vec::new(), 0);
+        let text = Text::read(reader, "text file", format)?;
+        let mut missing = format.missing_height();
+        let (mut matrix, mut header) = (text.rows(), Vec::new());
+        while let Some(row) = matrix.clone().next().filter(is_header) {
+            if row.fields[0].to_lowercase().starts_with("nodata") && row.is_number(1) {
+                missing = missing.or(Some(row.number(1)?));
+            }
+            header.push(row);
+            matrix.next();
+        }
+        let mut columns = matrix.clone().next().map_or(0, |row| row.fields.len());
+        // a row of heights with a fault, or of headings, is no header
+        let is_row = |row: &&TextRow| row.fields.len() == columns && !is_marked(row);
+        if let Some(row) = header.iter().find(|row| columns == 0 || is_row(row)) {
+            return Err(row.not_numeric(0).into());
+        }
         // a delimiter at the end of every line terminates it; one at the end of some lines precedes a missing height
         let terminated =
-            table.rows().all(|row| row.fields.len() > 1 && row.fields.last().is_some_and(|f| f.is_empty()));
-        for mut row in table.rows() {
+            matrix.clone().all(|row| row.fields.len() > 1 && row.fields.last().is_some_and(|field| field.is_empty()));
+        columns = columns.saturating_sub(usize::from(terminated));
+        let mut heights = Vec::new();
+        for mut row in matrix {
             if terminated {
                 row.fields.pop();
             }
-            columns = if rows.is_empty() { row.fields.len() } else { columns };
             row.check_width(columns, "as in the first row")?;
             for column in 0..columns {
-                rows.push(height(&row, column)?);
+                heights.push(height(&row, column)?);
             }
         }
-        let cells = [columns, rows.len().checked_div(columns).unwrap_or(0)];
+        let (columns, mut heights) = without_index(columns, heights)?;
+        mask(&mut heights, missing)?;
+        let cells = [columns, heights.len().checked_div(columns).unwrap_or(0)];
         let spacing = Grid::new(cells, lengths)?.spacing();
-        HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| unit.to_metres(height))
+        HeightMap::from_rows(cells, spacing, &heights, First::Top, |height| unit.to_metres(height))
     }
 }
 
+/// Whether a row has words: at its beginning, and in half of its fields or more.
+fn is_header(row: &TextRow) -> bool {
+    let begins = |c: char| c.is_ascii_digit() || "+-.".contains(c);
+    let is_word = !row.fields[0].starts_with(begins)
+        && !row.is_number(0)
+        && !MISSING.contains(&row.fields[0].to_lowercase().as_str());
+    is_word && (2 * row.numbers() <= row.fields.len() || is_marked(row))
+}
+
+/// Whether the heights of a Wyko file follow.
+fn is_marked(row: &TextRow) -> bool {
+    row.fields[0].to_lowercase().starts_with("raw")
+}
+
 /// A height, NaN if it is missing.
-pub(super) fn height(row: &TextRow, column: usize) -> Result<f64> {
-    let text = &*row.fields[column];
-    if text.is_empty() || text.eq_ignore_ascii_case("bad") {
+pub(super) fn height(row: &TextRow, column: usize) -> Result<f64, TextError> {
+    if MISSING.contains(&row.fields[column].to_lowercase().as_str()) {
         return Ok(f64::NAN);
     }
     let height = row.number(column)?;
-    if height.is_infinite() { Err(row.not_numeric(column).into()) } else { Ok(height) }
+    if height.is_infinite() { Err(row.not_numeric(column)) } else { Ok(height) }
+}
+
+/// The matrix without the index of a data frame: numbers from 0 in the first row and column, whose corner is empty.
+fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)> {
+    let ascends = |values: &[f64]| values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1]);
+    let is_even = |values: &[f64]| {
+        let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+        values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-2 * step)
+    };
+    let beside: Vec<f64> = heights.iter().step_by(columns.max(1)).copied().collect();
+    if columns == 2 && beside.len() > 2 && ascends(&beside) && is_even(&beside) {
+        return Err(MapError::NotAMatrix { rows: beside.len(), profile: true }.into());
+    }
+    if columns < 3 || beside.len() < 3 || !beside[0].is_nan() {
+        return Ok((columns, heights));
+    }
+    let (above, beside) = (&heights[1..columns], &beside[1..]);
+    let is_index = |values: &[f64]| values.iter().enumerate().all(|(k, value)| *value == k as f64);
+    let is_axis = |values: &[f64]| ascends(values) && is_even(values);
+    match (is_index(above), is_index(beside)) {
+        (true, true) => {}
+        // half an index, or coordinates
+        (false, false) if !is_axis(above) || !is_axis(beside) => return Ok((columns, heights)),
+        _ => return Err(MapError::NotAMatrix { rows: beside.len() + 1, profile: false }.into()),
+    }
+    Ok((columns - 1, heights[columns..].chunks(columns).flat_map(|row| row[1..].to_vec()).collect()))
+}
+
+/// Makes NaN of heights that stand for missing ones; without a value for them, heights that look so are an error.
+pub(super) fn mask(heights: &mut [f64], missing: Option<f64>) -> Result<()> {
+    if let Some(missing) = missing {
+        let is_missing = |height: &f64| (height - missing).abs() <= 1e-6 * missing.abs();
+        heights.iter_mut().filter(|height| is_missing(height)).for_each(|height| *height = f64::NAN);
+        return Ok(());
+    }
+    let looks_missing = |height: f64| STAND_INS.contains(&height) || height.abs() >= NO_HEIGHT;
+    let Some(&value) = heights.iter().find(|height| looks_missing(**height)) else { return Ok(()) };
+    let others = heights.iter().copied().filter(|height| *height != value && !height.is_nan());
+    let [least, most] = others.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(z), b.max(z)]);
+    if least <= most && (least - value).max(value - most) <= FAR * (most - least) {
+        return Ok(());
+    }
+    let count = heights.iter().filter(|height| **height == value).count();
+    Err(MapError::StandIn { value, count }.into())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Error, FileError, TextError};
+    use crate::{Error, FileError};
 
     fn read(text: &str) -> Result<HeightMap> {
         HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Millimetre, TextFormat::default())
@@ -112,5 +198,37 @@ mod tests {
         assert!(matches!(read("1 2\0\n"), Err(Error::File(FileError::Unreadable { .. }))));
         let flat = HeightMap::from_text("1 2\n".as_bytes(), [0.0, 1.0], LengthUnit::Metre, TextFormat::default());
         assert!(matches!(flat, Err(Error::OutOfRange { field: "length along x1", .. })));
+    }
+
+    #[test]
+    fn headers_indices_and_stand_ins_are_told_from_heights() {
+        let expected = HeightMap::new([3, 2], [3.0, 4.0], vec![4e-3, 1e-3, 5e-3, 2e-3, 6e-3, 3e-3]).unwrap();
+        for text in [
+            "X Size\t3\nY Size\t2\nRAW DATA\t3\t24\n1\t2\t3\n4\t5\t6\n",
+            "ncols 3\nNODATA_value -9999\n1 2 3\n4 5 6\n",
+            ",0,1,2\n0,1,2,3\n1,4,5,6\n",
+        ] {
+            assert_eq!(read(text).unwrap(), expected, "{text}");
+        }
+        for (text, line) in [("one 2 3\n4 5 6\n7 8 9\n", 1), ("x,y,z\n1,2,3\n4,5,6\n", 1), ("a\nb\n", 1)] {
+            let error = read(text).unwrap_err();
+            assert!(
+                matches!(error, Error::Text(TextError::NotNumeric { line: l, column: 1, .. }) if l == line),
+                "{error}"
+            );
+        }
+        for (text, value) in [("1 2 3\n4 -9999 6\n", -9999.0), ("1 2 3\n-3.4028235e38 5 6\n", -3.4028235e38)] {
+            assert_eq!(read(text).unwrap_err(), MapError::StandIn { value, count: 1 }.into());
+            let read = |missing: f64| {
+                let format = TextFormat::default().with_missing_height(missing);
+                HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Nanometre, format).unwrap()
+            };
+            assert_eq!((read(value).missing(), read(f64::NAN).missing()), (1, 0), "{text}");
+        }
+        assert!(read("9999 9998 1\n2 3 5\n").is_ok());
+        let profile = read("0 1\n1 4\n2 9\n").unwrap_err();
+        assert_eq!(profile, MapError::NotAMatrix { rows: 3, profile: true }.into());
+        let coordinates = read(",0.5,1.0,1.5\n2.5,1,2,3\n5.0,4,5,6\n").unwrap_err();
+        assert!(matches!(coordinates, Error::Map(MapError::NotAMatrix { profile: false, .. })), "{coordinates}");
     }
 }

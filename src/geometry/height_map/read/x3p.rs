@@ -62,11 +62,17 @@ fn unreadable(reason: &str) -> Error {
     Error::File(FileError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None })
 }
 
-/// The contents of a file of the archive, of at most `most` bytes.
+/// The contents of a file of the archive, of at most `most` bytes. All of them may be in a folder, and names may be written as
+/// in Windows.
 fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> Result<Vec<u8>> {
-    let name = name.strip_prefix("./").unwrap_or(name);
+    let plain = |name: &str| name.replace('\\', "/").trim_start_matches("./").to_owned();
+    let mut names: Vec<String> = archive.file_names().flatten().map(|name| name.to_string()).collect();
+    names.sort_by_key(String::len);
+    let main = names.iter().map(|name| plain(name)).find(|name| format!("/{name}").ends_with("/main.xml"));
+    let wanted = format!("{}{}", main.as_deref().unwrap_or_default().trim_end_matches("main.xml"), plain(name));
+    let found = names.into_iter().find(|name| plain(name) == wanted).unwrap_or_else(|| name.to_owned());
     let broken = |reason: String| unreadable(&format!("{name}: {reason}"));
-    let file = archive.by_name(name).map_err(|error| broken(error.to_string()))?;
+    let file = archive.by_name(&found).map_err(|error| broken(error.to_string()))?;
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
     // one byte more than allowed is read to detect files that are too large
@@ -196,6 +202,23 @@ mod tests {
         let longs: Vec<u8> = [0_i32, 2, 4, 6, 0, -14].iter().flat_map(|height| height.to_le_bytes()).collect();
         let offset = "L</DataType><Increment>0.5</Increment><Offset>1</Offset>";
         expected(&read(&xml(offset, MASK), &longs).unwrap());
+    }
+
+    #[test]
+    fn folders_and_names_of_windows_are_read() {
+        let rows = [1.0, 2.0, 3.0, 4.0, f64::NAN, -6.0];
+        let data: Vec<u8> = rows.iter().flat_map(|height: &f64| height.to_le_bytes()).collect();
+        for (folder, link) in [
+            ("sample/", "bindata/data.bin"),
+            ("./", "./bindata/data.bin"),
+            ("", "bindata\\data.bin"),
+            ("a folder/b/", "bindata\\data.bin"),
+        ] {
+            let text = xml(DOUBLE, LINK).replace("bindata/data.bin", link);
+            let (main, points) = (format!("{folder}main.xml"), format!("{folder}bindata/data.bin"));
+            let files = [(&*main, text.as_bytes()), ("remarks/main.xml.txt", &[]), (&*points, &data[..])];
+            expected(&HeightMap::from_x3p(&archive(&files)[..]).unwrap());
+        }
     }
 
     #[test]

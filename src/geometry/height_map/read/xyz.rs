@@ -2,11 +2,11 @@
 
 use std::io::Read;
 
-use super::text::height;
+use super::text::{height, mask};
 use super::{First, count};
-use crate::error::{MapError, Result, least_length, positive};
+use crate::error::{MapError, Result, finite, least_length, positive};
 use crate::geometry::{HeightMap, LengthUnit};
-use crate::input::{TextFormat, TextRow, TextTable};
+use crate::input::{Quantity, TableRow, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same};
 use crate::memory;
 
 /// Greatest distance of a point from the regular grid, in spacings.
@@ -15,6 +15,7 @@ const MAX_OFFSET: f64 = 1e-3;
 const SAME_POSITION: f64 = 1e-2;
 /// Greatest number of grid points per point of the file.
 const MAX_CELLS_PER_POINT: usize = 100;
+const MAX_CELLS_PER_POINT_OF_PROFILE: usize = 2;
 
 impl HeightMap {
     /// Reads lines of x, y and height from text, with coordinates in the unit `lateral` and heights in the unit
@@ -22,7 +23,8 @@ impl HeightMap {
     ///
     /// The points may be in any order, but must lie on a regular grid along x and y to within 1/1000 of its spacing,
     /// which is determined from them. Points of the grid that are absent, or whose height is `nan` or `bad`, are
-    /// missing. `format` states the delimiter and the decimal mark; empty lines and lines that start with `#` are skipped.
+    /// missing. `format` states how the text is written, and which height stands for missing points. Headings (x, y, z, with
+    /// the units given) are looked for as in a [`TextTable`].
     ///
     /// ```
     /// use viscocontact::TextFormat;
@@ -46,24 +48,81 @@ impl HeightMap {
         vertical: LengthUnit,
         format: TextFormat,
     ) -> Result<HeightMap> {
-        let points = points(&TextTable::read(reader, "text file", format)?, lateral, vertical)?;
-        let axes = [axis(&points, "x", 0)?, axis(&points, "y", 1)?];
-        let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
-        let count = count(cells, spacing)?;
-        if count / MAX_CELLS_PER_POINT > points.len() {
-            return Err(MapError::Sparse { points: points.len(), cells }.into());
-        }
-        let what = "the grid that the points of a file lie on";
-        let (mut rows, mut lines) = (memory::field(what, count, f64::NAN)?, memory::field(what, count, 0_u64)?);
-        for (k, point) in points.iter().enumerate() {
-            let at = axes[1].indices[k] * cells[0] + axes[0].indices[k];
-            if lines[at] != 0 {
-                return Err(MapError::Duplicate { line: point.line, earlier: lines[at], at: point.at }.into());
-            }
-            (rows[at], lines[at]) = (point.height, point.line);
-        }
-        HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height)
+        let table = TextTable::read(reader, format)?;
+        on_grid(&points(&table, &[X, Y, HEIGHT], [lateral, vertical], format)?)
     }
+
+    /// [`HeightMap::from_xyz`] of points x, y, height \[m\], given as an array; NaN where no height was measured.
+    ///
+    /// # Errors
+    /// As [`HeightMap::from_xyz`]; lines count the points from 1.
+    pub fn from_points(points: &[[f64; 3]]) -> Result<HeightMap> {
+        let point = |(k, &[x, y, height]): (usize, &[f64; 3])| Point { line: k as u64 + 1, at: [x, y], height };
+        let points: Vec<Point> = points.iter().enumerate().map(point).collect();
+        for point in &points {
+            finite("x of the points", point.at[0])?;
+            finite("y of the points", point.at[1])?;
+        }
+        on_grid(&points)
+    }
+
+    /// Reads a profile, lines of x and height, for a line contact: a map of a single row along x1.
+    ///
+    /// As [`HeightMap::from_xyz`]: the points must lie at regular distances, and may have headings. An array of heights at
+    /// regular distances is a profile by [`HeightMap::new`] with `[n, 1]` cells.
+    ///
+    /// ```
+    /// use viscocontact::TextFormat;
+    /// use viscocontact::geometry::{HeightMap, LengthUnit};
+    ///
+    /// let text = "x (mm);z (µm)\n0,0;1,5\n0,1;1,7\n0,2;1,1\n0,3;---\n";
+    /// let (lateral, vertical) = (LengthUnit::Millimetre, LengthUnit::Micrometre);
+    /// let profile = HeightMap::from_profile(text.as_bytes(), lateral, vertical, TextFormat::default())?;
+    /// assert_eq!(profile.cells(), [4, 1]);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`HeightMap::from_xyz`].
+    pub fn from_profile(
+        reader: impl Read,
+        lateral: LengthUnit,
+        vertical: LengthUnit,
+        format: TextFormat,
+    ) -> Result<HeightMap> {
+        let table = TextTable::read(reader, format)?;
+        let points = points(&table, &[X, HEIGHT], [lateral, vertical], format)?;
+        let along = axis(&points, "x", 0)?;
+        if along.cells > MAX_CELLS_PER_POINT_OF_PROFILE * points.len() {
+            return Err(MapError::Sparse { points: points.len(), cells: [along.cells, 1] }.into());
+        }
+        let mut heights =
+            memory::field("the points of a profile", count([along.cells, 1], [along.spacing; 2])?, f64::NAN)?;
+        for (point, &k) in points.iter().zip(&along.indices) {
+            heights[k] = point.height;
+        }
+        HeightMap::from_rows([along.cells, 1], [along.spacing; 2], &heights, First::Bottom, |height| height)
+    }
+}
+
+/// The map of points on a regular grid.
+fn on_grid(points: &[Point]) -> Result<HeightMap> {
+    let axes = [axis(points, "x", 0)?, axis(points, "y", 1)?];
+    let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
+    let count = count(cells, spacing)?;
+    if count / MAX_CELLS_PER_POINT > points.len() {
+        return Err(MapError::Sparse { points: points.len(), cells }.into());
+    }
+    let what = "the grid that the points of a file lie on";
+    let (mut rows, mut lines) = (memory::field(what, count, f64::NAN)?, memory::field(what, count, 0_u64)?);
+    for (k, point) in points.iter().enumerate() {
+        let at = axes[1].indices[k] * cells[0] + axes[0].indices[k];
+        if lines[at] != 0 {
+            return Err(MapError::Duplicate { line: point.line, earlier: lines[at], at: point.at }.into());
+        }
+        (rows[at], lines[at]) = (point.height, point.line);
+    }
+    HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height)
 }
 
 /// The point of a line.
@@ -73,17 +132,56 @@ struct Point {
     height: f64,
 }
 
-fn points(table: &TextTable, lateral: LengthUnit, vertical: LengthUnit) -> Result<Vec<Point>> {
-    let point = |row: TextRow| {
-        row.check_width(3, "x, y, height")?;
-        let coordinate = |column: usize| match row.number(column)? {
-            value if value.is_finite() => Ok(lateral.to_metres(value)),
-            _ => Err(row.not_numeric(column)),
+const fn coordinate(name: &'static str, words: &'static [&'static str]) -> WantedColumn {
+    WantedColumn { name, words, others: &[], quantity: Quantity::LENGTH, by_unit: false }
+}
+
+const X: WantedColumn = coordinate("x", &["x", "x1"]);
+const Y: WantedColumn = coordinate("y", &["y", "x2"]);
+const HEIGHT: WantedColumn = coordinate("height", &["z", "height", "h"]);
+
+/// The points of a table with these columns, the last of which has the heights. `units` are those of coordinates and
+/// heights.
+fn points(
+    table: &TextTable,
+    wanted: &[WantedColumn],
+    units: [LengthUnit; 2],
+    format: TextFormat,
+) -> Result<Vec<Point>> {
+    let last = wanted.len() - 1;
+    let taken: Vec<TakenColumn> =
+        match wanted.iter().map(|column| table.find(column)).collect::<Result<Option<_>, _>>()? {
+            Some(taken) => taken,
+            None if table.headings().is_empty() => {
+                wanted.iter().enumerate().map(|(k, column)| table.by_place(column, k)).collect()
+            }
+            None => match table.without_comment() {
+                Some(plain) => return points(&plain, wanted, units, format),
+                None => return Err(table.missing(&wanted[0], "").into()),
+            },
         };
-        let at = [coordinate(0)?, coordinate(1)?];
-        Ok(Point { line: row.line, at, height: vertical.to_metres(height(&row, 2)?) })
+    for (k, column) in taken.iter().enumerate() {
+        let given = units[usize::from(k == last)];
+        let differs = |size: f64| !same(size, given.factor());
+        if column.unit().is_ok_and(differs) || matches!(column.unit_of, UnitOf::Other(_)) {
+            let (heading, given) = (column.heading().to_owned(), name(Quantity::LENGTH, given.factor()));
+            return Err(MapError::OtherUnit { column: column.index() + 1, heading, given }.into());
+        }
+    }
+    let coordinates = taken[..last].to_vec();
+    let mut rows = table.rows_by(&taken, |row, column| {
+        if coordinates.iter().all(|coordinate| coordinate.index() != column) {
+            return height(row, column);
+        }
+        row.number(column).and_then(|value| if value.is_finite() { Ok(value) } else { Err(row.not_numeric(column)) })
+    })?;
+    let mut heights: Vec<f64> = rows.iter_mut().filter_map(|row| row.values.pop()).collect();
+    mask(&mut heights, format.missing_height())?;
+    let point = |(row, height): (TableRow, f64)| {
+        let at = [row.values[0], row.values.get(1).copied().unwrap_or(0.0)].map(|value| units[0].to_metres(value));
+        Point { line: row.line, at, height: units[1].to_metres(height) }
     };
-    table.rows().map(point).collect()
+    Ok(rows.into_iter().zip(heights).map(point).collect())
 }
 
 /// The regular positions along an axis of the grid.
@@ -174,6 +272,26 @@ mod tests {
         for (height, wanted) in map.heights.iter().zip(wanted) {
             assert!(*height == wanted || height.is_nan() && wanted.is_nan(), "{height} for {wanted}");
         }
+    }
+
+    #[test]
+    fn arrays_headings_and_profiles_are_read() {
+        let map = read("0 0 1\n1 0 2\n0 1 3\n1 1 4\n").unwrap();
+        let points = [[0.0, 0.0, 1e-9], [1e-6, 0.0, 2e-9], [0.0, 1e-6, 3e-9], [1e-6, 1e-6, 4e-9]];
+        assert_eq!(HeightMap::from_points(&points).unwrap().heights, map.heights);
+        assert!(HeightMap::from_points(&[[f64::NAN, 0.0, 1.0]]).is_err());
+        let named = read("y [um];x [um];z [nm]\n0;0;1\n0;1;2\n1;0;3\n1;1;4\n").unwrap();
+        assert_eq!(named, map);
+        let other = read("x [mm];y [um];z [nm]\n0;0;1\n0;1;2\n1;0;3\n1;1;4\n").unwrap_err();
+        assert!(matches!(other, Error::Map(MapError::OtherUnit { column: 1, .. })), "{other}");
+        let profile = |text: &str| {
+            let units = [LengthUnit::Micrometre, LengthUnit::Nanometre];
+            HeightMap::from_profile(text.as_bytes(), units[0], units[1], TextFormat::default())
+        };
+        let line = profile("0 1\n0.5 bad\n1 3\n1.5 4\n").unwrap();
+        assert_eq!((line.cells, line.missing), ([4, 1], 1));
+        let uneven = profile("0.01 1\n0.1 2\n1 3\n10 4\n").unwrap_err();
+        assert!(matches!(uneven, Error::Map(MapError::Sparse { points: 4, .. })), "{uneven}");
     }
 
     #[test]

@@ -1,0 +1,66 @@
+//! The columns of a recording in a file.
+
+use viscocontact::TextError;
+use viscocontact::input::{Quantity, TakenColumn, TextTable, WantedColumn};
+
+use crate::data::Recording;
+use crate::data::error::DataError;
+use crate::error::Result;
+
+const fn wanted(name: &'static str, words: &'static [&'static str], quantity: Quantity) -> WantedColumn {
+    WantedColumn { name, words, others: &["rate", "speed", "velocity"], quantity, by_unit: false }
+}
+
+const TIME: WantedColumn = WantedColumn { by_unit: true, ..wanted("time", &["t", "time"], Quantity::TIME) };
+const FORCE: WantedColumn =
+    WantedColumn { by_unit: true, ..wanted("force", &["f", "force", "load", "p"], Quantity::FORCE) };
+const DEFLECTION: WantedColumn = wanted("deflection", &["deflection", "defl", "cantilever"], Quantity::LENGTH);
+const DRIVE: WantedColumn =
+    wanted("drive", &["z", "zsnsr", "drive", "position", "piezo", "base", "stage"], Quantity::LENGTH);
+const DEPTH: WantedColumn =
+    wanted("depth", &["depth", "indentation", "δ", "delta", "h", "displacement into"], Quantity::LENGTH);
+
+impl Recording {
+    /// [`Recording::from_csv`] of a table that was read before, where its columns are to be chosen or named
+    /// ([`TextTable::only`], [`TextTable::with_heading`]).
+    ///
+    /// # Errors
+    /// As [`Recording::from_csv`].
+    pub fn from_table(table: &TextTable) -> Result<Recording> {
+        let required = |column: &WantedColumn| text_error(table.missing(column, ""));
+        let find = |column: &WantedColumn| table.find(column).map_err(text_error);
+        let time = find(&TIME)?.ok_or_else(|| required(&TIME))?;
+        let [force, deflection, drive, depth] = [find(&FORCE)?, find(&DEFLECTION)?, find(&DRIVE)?, find(&DEPTH)?];
+        if force.as_ref().or(deflection.as_ref()).is_none() {
+            return Err(required(&FORCE));
+        }
+        if drive.as_ref().or(depth.as_ref()).is_none() {
+            return Err(required(&DRIVE));
+        }
+        let columns: Vec<TakenColumn> = [Some(time), force, deflection, drive, depth].into_iter().flatten().collect();
+        let units = columns.iter().map(TakenColumn::unit).collect::<Result<Vec<_>, _>>().map_err(text_error)?;
+        let rows = table.rows(&columns).map_err(text_error)?;
+        for row in &rows {
+            if let Some(place) = row.values.iter().position(|value| !value.is_finite()) {
+                let (column, text) = (columns[place].index() + 1, row.values[place].to_string());
+                return Err(text_error(TextError::NotNumeric { line: row.line, column, text }));
+            }
+        }
+        for pair in rows.windows(2) {
+            let [previous, value] = [&pair[0], &pair[1]].map(|row| units[0] * row.values[0]);
+            if value <= previous {
+                return Err(DataError::TimesNotAscending { line: pair[1].line, value, previous }.into());
+            }
+        }
+        let column = |wanted: &WantedColumn| -> Option<Vec<f64>> {
+            let place = columns.iter().position(|column| column.name() == wanted.name)?;
+            Some(rows.iter().map(|row| units[place] * row.values[place]).collect())
+        };
+        let [force, deflection, drive, depth] = [&FORCE, &DEFLECTION, &DRIVE, &DEPTH].map(column);
+        Ok(Recording { times: column(&TIME).unwrap_or_default(), force, deflection, drive, depth, columns })
+    }
+}
+
+fn text_error(error: TextError) -> crate::Error {
+    viscocontact::Error::from(error).into()
+}

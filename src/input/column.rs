@@ -1,0 +1,224 @@
+//! The columns that a reader needs, found by their headings and units.
+
+use std::fmt;
+
+use super::heading::{UnitOf, begins_with, symbol, unit_of};
+use super::lines::{TextRow, shortened};
+use super::table::{TextTable, numbered};
+use super::unit::{Quantity, name};
+use crate::error::TextError;
+
+/// Columns of equal values are one: a frequency in Hz and in rad/s.
+const EQUAL: f64 = 0.02;
+
+/// A column that a reader needs.
+///
+/// ```
+/// use viscocontact::input::{Quantity, TextTable, WantedColumn};
+///
+/// const LOAD: WantedColumn =
+///     WantedColumn { name: "load", words: &["load", "p"], others: &["rate"], quantity: Quantity::FORCE, by_unit: true };
+/// let text = "Time (s),Load (mN),Loading rate (mN/s)\n0,0.0,1\n1,1.0,1\n2,2.0,1\n";
+/// let table = TextTable::read(text.as_bytes(), Default::default())?;
+/// let load = table.find(&LOAD)?.expect("there is one");
+/// assert_eq!((load.heading(), load.unit()?), ("Load (mN)", 1.0e-3));
+/// assert_eq!(table.rows(&[load])?[2].values, [2.0]);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "readers write it out")]
+pub struct WantedColumn {
+    /// Its name in errors.
+    pub name: &'static str,
+    /// First words or symbols of its headings, in lower case.
+    pub words: &'static [&'static str],
+    /// Parts of the headings of other columns that begin so.
+    pub others: &'static [&'static str],
+    /// Its quantity.
+    pub quantity: Quantity,
+    /// Whether it may have another name, if it is the only column with a unit of its quantity.
+    pub by_unit: bool,
+}
+
+/// A column that was taken for what a reader needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TakenColumn {
+    name: &'static str,
+    index: usize,
+    line: u64,
+    heading: String,
+    pub(crate) quantity: Quantity,
+    pub(crate) unit_of: UnitOf,
+}
+
+impl TakenColumn {
+    /// What it was taken for.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Its index, from 0.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Its heading.
+    pub fn heading(&self) -> &str {
+        &self.heading
+    }
+
+    /// The line of its heading.
+    pub(crate) fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// The size of its unit in SI.
+    ///
+    /// # Errors
+    /// If the heading has no unit of its quantity, or one of two meanings ([`TextError::Unit`]).
+    pub fn unit(&self) -> Result<f64, TextError> {
+        match &self.unit_of {
+            UnitOf::Sizes(_, sizes) if sizes.len() == 1 => Ok(sizes[0]),
+            _ => {
+                let (line, column, heading) = (self.line, self.index + 1, shortened(&self.heading));
+                Err(TextError::Unit { line, column, heading, quantity: self.name, example: self.quantity.si() })
+            }
+        }
+    }
+
+    /// The same with a unit of this size, which the heading does not name.
+    pub(crate) fn with_unit(self, size: f64) -> TakenColumn {
+        let unit_of = UnitOf::Sizes(name(self.quantity, size), vec![size]);
+        TakenColumn { unit_of, ..self }
+    }
+}
+
+impl fmt::Display for TakenColumn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: column {}", self.name, self.index + 1)?;
+        if !self.heading.is_empty() {
+            write!(f, " {:?}", self.heading)?;
+        }
+        match &self.unit_of {
+            UnitOf::Sizes(text, sizes) if sizes[0] != 1.0 => {
+                write!(f, ", 1 {text} = {:e} {}", sizes[0], self.quantity.si())
+            }
+            _ => write!(f, " in {}", self.quantity.si()),
+        }
+    }
+}
+
+/// A row of a table.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TableRow {
+    /// Its line in the file, from 1.
+    pub line: u64,
+    /// The numbers of the columns asked for.
+    pub values: Vec<f64>,
+}
+
+impl TextTable {
+    /// The numbers of `columns` in every row, in the units of the file.
+    ///
+    /// # Errors
+    /// If a row has another number of columns than the headings (or than `columns`, without headings), or a field is not a
+    /// number, each with its line ([`TextError`]).
+    pub fn rows(&self, columns: &[TakenColumn]) -> Result<Vec<TableRow>, TextError> {
+        self.rows_by(columns, |row, column| row.number(column))
+    }
+
+    /// The same with the numbers that `number` makes of the fields.
+    pub(crate) fn rows_by(
+        &self,
+        columns: &[TakenColumn],
+        number: impl Fn(&TextRow<'_>, usize) -> Result<f64, TextError>,
+    ) -> Result<Vec<TableRow>, TextError> {
+        let width = if self.headings.is_empty() { columns.len() } else { self.headings.len() };
+        let names: Vec<&str> = if self.headings.is_empty() {
+            columns.iter().map(|column| column.name).collect()
+        } else {
+            self.headings.iter().map(String::as_str).collect()
+        };
+        let names = names.join(", ");
+        let row = |mut row: TextRow<'_>| {
+            row.drop_empty(width);
+            row.check_width(width, &names)?;
+            // a quote that nobody closed takes the next row into its field
+            if let Some(column) = row.fields.iter().position(|field| field.contains('\n')) {
+                return Err(row.not_numeric(column));
+            }
+            let values = columns.iter().map(|column| number(&row, column.index)).collect::<Result<_, _>>()?;
+            Ok(TableRow { line: row.line, values })
+        };
+        self.data().map(row).collect()
+    }
+
+    /// The column that is `wanted`; `None` if no heading names it.
+    ///
+    /// Among several columns of this name, the one with a unit of its quantity is taken. Columns of equal values are one.
+    ///
+    /// # Errors
+    /// If several may be it: the error names them.
+    pub fn find(&self, wanted: &WantedColumn) -> Result<Option<TakenColumn>, TextError> {
+        let taken = |index: usize| {
+            let heading = self.headings[index].clone();
+            let unit_of = unit_of(&heading, wanted.quantity);
+            TakenColumn { name: wanted.name, index, line: self.line, heading, quantity: wanted.quantity, unit_of }
+        };
+        let columns: Vec<TakenColumn> = (0..self.headings.len()).map(taken).collect();
+        let has_unit = |column: &TakenColumn| matches!(column.unit_of, UnitOf::Sizes(..));
+        let is_named = |column: &TakenColumn| {
+            let heading = column.heading.to_lowercase();
+            // T is a temperature, unless its unit is one of time
+            let is_temperature = wanted.quantity == Quantity::TIME && column.heading.trim().starts_with('T');
+            begins_with(&heading, wanted.words)
+                && !wanted.others.iter().any(|other| heading.contains(other))
+                && (has_unit(column) || !is_temperature || symbol(&heading) != "t")
+        };
+        let named = |fits: &dyn Fn(&TakenColumn) -> bool| -> Vec<TakenColumn> {
+            columns.iter().filter(|column| is_named(column) && fits(column)).cloned().collect()
+        };
+        let candidates = [
+            named(&has_unit),
+            named(&|column| column.unit_of == UnitOf::Unnamed),
+            columns.iter().filter(|column| wanted.by_unit && has_unit(column)).cloned().collect(),
+            named(&|_| true),
+        ];
+        let Some(candidates) = candidates.into_iter().find(|candidates| !candidates.is_empty()) else {
+            return Ok(None);
+        };
+        if let [first, rest @ ..] = &candidates[..]
+            && !rest.iter().all(|other| self.are_equal(first, other))
+        {
+            let both = numbered(candidates.iter().map(|column| (column.index, &column.heading)));
+            return Err(self.missing(wanted, &both));
+        }
+        // of equal columns, one in SI
+        let distance = |column: &TakenColumn| column.unit().map_or(f64::INFINITY, |size| size.ln().abs());
+        Ok(candidates.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))))
+    }
+
+    fn are_equal(&self, one: &TakenColumn, other: &TakenColumn) -> bool {
+        let (Ok(a), Ok(b)) = (one.unit(), other.unit()) else { return false };
+        let Ok(rows) = self.rows(&[one.clone(), other.clone()]) else { return false };
+        !rows.is_empty()
+            && rows.iter().all(|row| {
+                let [x, y] = [a * row.values[0], b * row.values[1]];
+                (x - y).abs() <= EQUAL * x.abs().max(y.abs())
+            })
+    }
+
+    /// The error of a column that no heading names, or that `several` columns may be.
+    pub fn missing(&self, wanted: &WantedColumn, several: &str) -> TextError {
+        let found = if self.headings.is_empty() { "none".into() } else { shortened(&self.headings.join(", ")) };
+        let several = if several.is_empty() { String::new() } else { format!(": {several}") };
+        TextError::Heading { line: self.line, column: wanted.name, words: wanted.words.join(", "), several, found }
+    }
+
+    /// A column of a table without headings, by its place.
+    pub(crate) fn by_place(&self, wanted: &WantedColumn, index: usize) -> TakenColumn {
+        let (name, line, quantity) = (wanted.name, self.line, wanted.quantity);
+        TakenColumn { name, index, line, heading: String::new(), quantity, unit_of: UnitOf::Unnamed }
+    }
+}

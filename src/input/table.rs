@@ -1,0 +1,311 @@
+//! Tables in text files: where they begin, and their headings.
+
+use std::fmt;
+use std::io::Read;
+use std::path::Path;
+
+use super::format::{Delimiter, TextFormat};
+use super::lines::{Text, TextRow, shortened};
+use super::unit::readings;
+use crate::error::{Result, TextError};
+
+/// Rows among which the first row of numbers is looked for.
+const SEARCHED: usize = 1000;
+/// Rows in which the same two columns have numbers: a table has begun.
+const ROWS_OF_NUMBERS: usize = 3;
+
+/// A table in a text file, as it was understood: print it to see how.
+///
+/// The table begins with the first rows that have numbers in the same two columns. The row above them has the headings, if
+/// none of its fields is a number; a row of units may stand between the two. All rows from there on belong to the table.
+/// Lines before the headings are not read. Without a row of headings, the last comment before the numbers may have them, one
+/// for each column, as NumPy writes them; or comments that begin with `columns:` and `units:`.
+///
+/// ```
+/// use viscocontact::rheology::{Experiment, Measurements, Units};
+/// use viscocontact::{TextFormat, input::TextTable};
+///
+/// let text = "Filename\tsweep.tri\n[step]\nAngular frequency\tStorage modulus\tLoss modulus\tTan(delta)\n\
+///     rad/s\tMPa\tkPa\t\n0.1\t1.50\t20\t0.013\n1\t1.52\t150\t0.099\n10\t2.25\t750\t0.33\n100\t2.98\t150\t0.05\n";
+/// let table = TextTable::read(text.as_bytes(), TextFormat::default())?;
+/// println!("{table}");
+/// assert_eq!(table.headings()[2], "Loss modulus [kPa]");
+/// let measured = Measurements::from_table(Experiment::Dynamic, &table, Units::OF_HEADINGS)?;
+/// for column in measured.columns() {
+///     println!("{column}"); // what was taken for what
+/// }
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Clone, PartialEq)]
+pub struct TextTable {
+    pub(super) text: Text,
+    /// Each with the unit of the row below it in brackets; none, if there is no row of headings.
+    pub(super) headings: Vec<String>,
+    /// The line of the headings, or of the first row of numbers.
+    pub(super) line: u64,
+    /// The line of the first row of numbers.
+    first: u64,
+    /// Whether the headings are a comment, which may say something else.
+    commented: bool,
+}
+
+debug_by! { self: TextTable => headings: self.headings, line: self.line, first: self.first }
+
+impl TextTable {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// If it cannot be read or is no text ([`FileError::Unreadable`](crate::FileError)), or has numbers before its headings
+    /// ([`TextError::Preamble`]).
+    pub fn open(path: impl AsRef<Path>, format: TextFormat) -> Result<TextTable> {
+        let path = path.as_ref();
+        TextTable::named(super::open(path)?, &path.display().to_string(), format)
+    }
+
+    /// [`TextTable::open`] from any reader.
+    ///
+    /// # Errors
+    /// As [`TextTable::open`].
+    pub fn read(reader: impl Read, format: TextFormat) -> Result<TextTable> {
+        TextTable::named(reader, "text file", format)
+    }
+
+    pub(crate) fn named(reader: impl Read, name: &str, format: TextFormat) -> Result<TextTable> {
+        let text = Text::read(reader, name, format)?;
+        let mut rows: Vec<TextRow> = text.rows().take(SEARCHED).collect();
+        rows.iter_mut().for_each(|row| row.drop_empty(1));
+        let start = first_of_numbers(&rows);
+        let (above, from) = rows.split_at(start);
+        let width = from.first().map_or(0, |row| row.fields.len());
+        let above_all = above.len().saturating_sub(2);
+        let (before, names, units) = match above {
+            [.., names, units]
+                if names.numbers() == 0 && names.fields.len() >= units.fields.len() && are_units(units) =>
+            {
+                (&above[..above_all], Some(names), Some(units))
+            }
+            [before @ .., names] if names.numbers() == 0 => (before, Some(names), None),
+            _ => (above, None, None),
+        };
+        if let Some(row) = before.iter().find(|row| row.fields.len() > 1 && row.numbers() == row.fields.len()) {
+            return Err(
+                TextError::Preamble { line: row.line, headings: names.map_or(row.line, |names| names.line) }.into()
+            );
+        }
+        let first = from.first().map_or(u64::MAX, |row| row.line);
+        let line = names.map_or(if from.is_empty() { 1 } else { first }, |row| row.line);
+        let mut commented = false;
+        let headings = match names {
+            Some(names) => with_units(merged(names, width), units.map(|row| merged(row, width))),
+            None => {
+                let (mut names, mut units) = (None, None);
+                for row in text.comments_before(first) {
+                    match row.fields[0].to_lowercase().as_str() {
+                        "columns:" => names = Some((merged(&row, width).split_off(1), false)),
+                        "units:" => units = Some(merged(&row, width).split_off(1)),
+                        _ if names.as_ref().is_none_or(|names| names.1) => names = Some((merged(&row, width), true)),
+                        _ => {}
+                    }
+                }
+                let (names, in_remark) = names.filter(|names| names.0.len() == width && width > 1).unwrap_or_default();
+                commented = in_remark;
+                with_units(names, units)
+            }
+        };
+        Ok(TextTable { headings, line, first, commented, text })
+    }
+
+    /// The headings, with units of a row of their own in brackets; none, if there is no row of headings.
+    pub fn headings(&self) -> &[String] {
+        &self.headings
+    }
+
+    /// The same without headings that are a comment: it may say something else.
+    pub(crate) fn without_comment(&self) -> Option<TextTable> {
+        self.commented.then(|| TextTable { headings: Vec::new(), commented: false, ..self.clone() })
+    }
+
+    /// The same with another heading of a column, counted from 1: with a unit in brackets, `z [nm]`. An empty heading takes
+    /// the column out of the choice.
+    ///
+    /// # Errors
+    /// If there is no such column.
+    pub fn with_heading(mut self, column: usize, heading: &str) -> Result<TextTable> {
+        if self.headings.is_empty() {
+            let width = self.data().next().map_or(0, |row| row.fields.len());
+            self.headings = vec![String::new(); width];
+        }
+        let found = shortened(&self.headings.join(", "));
+        let place = column.checked_sub(1).and_then(|place| self.headings.get_mut(place));
+        *place.ok_or(TextError::NoColumn { column: column.to_string(), found })? = heading.to_owned();
+        self.commented = false;
+        Ok(self)
+    }
+
+    /// The same with these headings only: the other columns are taken out of the choice. A name is a heading, or its
+    /// beginning before the unit.
+    ///
+    /// # Errors
+    /// If there is no such heading.
+    pub fn only(mut self, names: &[&str]) -> Result<TextTable> {
+        let is_named = |heading: &str, name: &str| {
+            let rest = heading.strip_prefix(name);
+            rest.is_some_and(|rest| rest.is_empty() || rest.trim_start().starts_with(['[', '(', '{', '/']))
+        };
+        if let Some(name) = names.iter().find(|name| !self.headings.iter().any(|heading| is_named(heading, name))) {
+            let found = shortened(&self.headings.join(", "));
+            return Err(TextError::NoColumn { column: (*name).to_owned(), found }.into());
+        }
+        for heading in &mut self.headings {
+            if !names.iter().any(|name| is_named(heading, name)) {
+                heading.clear();
+            }
+        }
+        Ok(self)
+    }
+
+    /// The rows of the table.
+    pub(super) fn data(&self) -> impl Iterator<Item = TextRow<'_>> {
+        let is_row = |row: &TextRow| row.line >= self.first && row.fields.iter().any(|field| !field.is_empty());
+        self.text.rows().filter(is_row)
+    }
+}
+
+/// Index of the first row of numbers.
+fn first_of_numbers(rows: &[TextRow]) -> usize {
+    let begins = |from: usize| {
+        let next = &rows[from..rows.len().min(from + ROWS_OF_NUMBERS)];
+        (0..rows[from].fields.len()).filter(|&column| next.iter().all(|row| row.is_number(column))).count() > 1
+    };
+    let numbers = |row: &TextRow| row.numbers() > 0;
+    let found = (0..rows.len()).find(|&from| begins(from)).or_else(|| rows.iter().position(numbers));
+    // a row with a number just before is one of the table, with a fault
+    let Some(mut start) = found else { return rows.len().min(1) };
+    while start > 0 && numbers(&rows[start - 1]) {
+        start -= 1;
+    }
+    start
+}
+
+/// Whether the fields of a row are units, as far as they are not empty.
+fn are_units(row: &TextRow) -> bool {
+    let is_unit = |field: &str| !readings(field).is_empty();
+    row.fields.iter().all(|field| ["", "-", "%", "1"].contains(&&**field) || is_unit(field))
+        && row.fields.iter().any(|field| is_unit(field))
+}
+
+/// The fields of a row; units in brackets belong to the field before them, if blanks have torn them off.
+fn merged(row: &TextRow, width: usize) -> Vec<String> {
+    let mut merged: Vec<String> = Vec::new();
+    let torn = row.dialect.delimiter == Delimiter::Blanks && row.fields.len() > width;
+    for field in &row.fields {
+        match merged.last_mut().filter(|_| torn && field.starts_with(['[', '(', '{'])) {
+            Some(last) => *last += &format!(" {field}"),
+            None => merged.push(field.to_string()),
+        }
+    }
+    merged
+}
+
+fn with_units(mut names: Vec<String>, units: Option<Vec<String>>) -> Vec<String> {
+    for (name, unit) in names.iter_mut().zip(units.into_iter().flatten()) {
+        if !["", "-"].contains(&unit.as_str()) {
+            *name += &format!(" [{}]", unit.trim_matches(['[', ']', '(', ')']));
+        }
+    }
+    names
+}
+
+impl fmt::Display for TextTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (dialect, rows) = (self.text.dialect, self.data().count());
+        let mark = if dialect.decimal_comma { "commas" } else { "points" };
+        write!(
+            f,
+            "{rows} rows, separated by {}, with decimal {mark}, in {}",
+            dialect.delimiter.marks().1,
+            self.text.encoding
+        )?;
+        if self.headings.is_empty() {
+            return write!(f, ", without headings");
+        }
+        write!(f, "; headings in line {}: {}", self.line, numbered(self.headings.iter().enumerate()))
+    }
+}
+
+/// Columns by number, from 1, and heading.
+pub(super) fn numbered<'a>(headings: impl Iterator<Item = (usize, &'a String)>) -> String {
+    headings.map(|(place, heading)| format!("{} {heading:?}", place + 1)).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Error;
+    use crate::input::{Quantity, WantedColumn};
+
+    const TIME: WantedColumn =
+        WantedColumn { name: "time", words: &["t", "time"], others: &[], quantity: Quantity::TIME, by_unit: true };
+
+    fn read(text: &str) -> TextTable {
+        TextTable::read(text.as_bytes(), TextFormat::default()).unwrap()
+    }
+
+    #[test]
+    fn headings_are_found() {
+        for (text, headings, line) in [
+            ("a: 1\n\nt;J\n1;2\n3;4\n", &["t", "J"][..], 3),
+            ("Probe\tA\t7\nt\tJ\ns\t1/GPa\n1\t2\n3\t4\n", &["t [s]", "J [1/GPa]"], 2),
+            ("# t [s] J [1/GPa]\n1 2\n3 4\n", &["t [s]", "J [1/GPa]"], 3 - 1),
+            ("# columns: t J\n# units: s 1/GPa\n# 7 8\n1 2\n3 4\n", &["t [s]", "J [1/GPa]"], 4),
+            ("# made today\n1 2\n3 4\n", &["made", "today"], 2),
+            ("creep\n1,2\n3,4\n", &["creep"], 1),
+            ("1,2\n3,4\n", &[], 1),
+        ] {
+            let table = read(text);
+            assert_eq!(
+                (table.headings(), table.line),
+                (&headings.iter().map(|h| (*h).to_owned()).collect::<Vec<_>>()[..], line),
+                "{text:?}"
+            );
+        }
+        let two = TextTable::read(&b"1;2\n3;4\nt;J\n1;2\n3;4\n5;6\n"[..], TextFormat::default());
+        assert_eq!(two.unwrap_err(), Error::Text(TextError::Preamble { line: 1, headings: 3 }));
+        let before = TextTable::read(&b"Range;1;2\n7;8;9\nt;J;x\n1;2;3\n3;4;5\n5;6;7\n"[..], TextFormat::default());
+        assert_eq!(before.unwrap_err(), Error::Text(TextError::Preamble { line: 2, headings: 3 }));
+    }
+
+    #[test]
+    fn columns_are_chosen() {
+        let table = read("Time [s],Time [ms],F [N]\n1,7,2\n2,8,3\n3,9,4\n");
+        assert_eq!(
+            table.to_string(),
+            "3 rows, separated by commas, with decimal points, in UTF-8; headings in line 1: 1 \"Time [s]\", 2 \"Time [ms]\", \
+             3 \"F [N]\""
+        );
+        let error = table.find(&TIME).unwrap_err();
+        assert!(error.to_string().contains("the time: 1 \"Time [s]\", 2 \"Time [ms]\""), "{error}");
+        let index =
+            |table: &TextTable| table.find(&TIME).unwrap().map(|column| (column.index(), column.unit().unwrap()));
+        assert_eq!(index(&table.clone().only(&["Time [ms]", "F"]).unwrap()), Some((1, 1e-3)));
+        assert_eq!(index(&table.clone().with_heading(1, "").unwrap()), Some((1, 1e-3)));
+        assert_eq!(
+            index(&table.clone().with_heading(2, "Time [min]").unwrap().with_heading(1, "x").unwrap()),
+            Some((1, 60.0))
+        );
+        for wrong in [table.clone().with_heading(0, ""), table.clone().with_heading(4, ""), table.only(&["G"])] {
+            assert!(matches!(wrong, Err(Error::Text(TextError::NoColumn { .. }))));
+        }
+        // equal in two units
+        assert_eq!(index(&read("Time [ms],Time [s]\n1000,1\n2000,2\n3000,3\n")), Some((1, 1.0)));
+        assert_eq!(index(&read("1 2\n3 4\n").with_heading(2, "t [h]").unwrap()), Some((1, 3600.0)));
+        for temperature in ["T [°C]", "T (C)", "T", "T [K]", "temperature [s]"] {
+            assert_eq!(
+                read(&format!("{temperature},E\n1,2\n3,4\n"))
+                    .find(&TIME)
+                    .map(|found| found.is_some_and(|found| found.unit().is_ok())),
+                Ok(temperature.ends_with("[s]"))
+            );
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! The shift of one isotherm relative to another.
+//!
+//! Every row of either isotherm is compared with the straight line through its neighbours in the other, in every column,
+//! relative to the scatter of the column. The logarithm of 1 + z² in place of z² makes outliers, and the end of a column that
+//! the machine spoils, cost little. The column that determines the shift best finds it first, by the fewest decades of the
+//! union, so that two ends which match by chance are not taken for the overlap; all columns refine it.
+
+use super::data::Row;
+use super::isotherm::Isotherm;
+use crate::error::{Result, TableError};
+
+/// Shifts tried before the best is refined.
+const TRIED: usize = 400;
+/// Fraction of the shorter isotherm that must overlap.
+const LEAST_OVERLAP: f64 = 0.1;
+/// Relative scatter below which values are as good as exact: the line between two rows is no better.
+const LEAST_SCATTER: f64 = 2e-3;
+/// Mean of ln(1 + z²) of a normal deviate.
+const EXPECTED: f64 = 0.53;
+/// Price of a decade of the union.
+const PER_DECADE: f64 = 4.0;
+/// Rows on either side of a row through which its slope is taken.
+const AROUND: usize = 4;
+/// Shifts whose difference is less than this above the least are as good.
+const AS_GOOD: f64 = 8.0;
+/// The squared error over that of independent differences: each is counted from both sides, and outliers count less.
+const INFLATION: f64 = 6.0;
+/// Shifts that differ by less, in ln a, agree: 0.05 decades.
+const LEAST_DISAGREEMENT: f64 = 0.115;
+/// ln of the values may differ by this in the root mean square where two isotherms overlap.
+const MOST_APART: f64 = 0.3;
+
+/// A shift and its standard error, in ln a.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shift {
+    pub(super) log: f64,
+    pub(super) error: f64,
+    /// The shifts by storage and by loss moduli alone differ by this, if it is more than their errors explain.
+    pub(super) disagreement: f64,
+}
+
+/// A row of one isotherm against the other: difference in the sense of the first minus the second.
+struct Difference {
+    column: usize,
+    value: f64,
+    /// Its variance over that of a value.
+    variance: f64,
+    slope: f64,
+}
+
+struct Pair<'a> {
+    isotherms: [&'a Isotherm; 2],
+    columns: usize,
+}
+
+/// The shift of `warmer` relative to `colder`.
+pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<Shift> {
+    let pair = Pair { isotherms: [colder, warmer], columns: colder.rows[0].values.len() };
+    let temperatures = [colder.temperature(), warmer.temperature()];
+    let all: Vec<usize> = (0..pair.columns).collect();
+    let scatter: Vec<f64> = all.iter().map(|&column| pair.scatter(column)).collect();
+    let is_constant = |isotherm: &Isotherm| {
+        let logs = || isotherm.rows.iter().map(|row| row.values[0].ln());
+        logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min) < 1e-6
+    };
+    if is_constant(colder) || is_constant(warmer) {
+        return Err(TableError::NothingToShift { temperatures }.into());
+    }
+    let ([c0, c1], [w0, w1]) = (colder.span(), warmer.span());
+    let least = LEAST_OVERLAP * (c1 - c0).min(w1 - w0);
+    let (low, high) = (w0 - c1 + least, w1 - c0 - least);
+    let step = (high - low) / TRIED as f64;
+    let decades = |shift: f64| (c1.max(w1 - shift) - c0.min(w0 - shift)) / std::f64::consts::LN_10;
+    // by the column that determines it best: another may be disturbed
+    let by_column = all.iter().map(|&column| {
+        let cost = |shift: f64| pair.cost(shift, &[column], &scatter) + PER_DECADE * decades(shift);
+        let shift = least_of(low, high, TRIED, &cost);
+        (shift, pair.error(shift, [low, high], &[column], &scatter))
+    });
+    let mut shift = by_column.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
+    let mut residual = scatter.clone();
+    for _ in 0..3 {
+        residual = all.iter().map(|&column| pair.residual(shift, column, scatter[column])).collect();
+        shift = pair.refined(shift, [low, high], 0.015, (&all, &residual));
+    }
+    // at the least overlap allowed, the values of the two hardly overlap
+    let at_end = (shift - low).min(high - shift) < 0.5 * step;
+    let apart = residual.iter().copied().fold(f64::INFINITY, f64::min);
+    if at_end || apart > MOST_APART {
+        return Err(TableError::NoOverlap { temperatures, apart }.into());
+    }
+    let error = pair.error(shift, [low, high], &all, &residual);
+    let mut disagreement: f64 = 0.0;
+    if let [storage, loss] = all[..] {
+        let alone = [storage, loss].map(|column| {
+            let at = pair.refined(shift, [low, high], 0.15, (&[column], &scatter));
+            let residual = vec![pair.residual(at, column, scatter[column]); 2];
+            (at, pair.error(at, [low, high], &[column], &residual))
+        });
+        let (between, by_error) = ((alone[0].0 - alone[1].0).abs(), alone[0].1.hypot(alone[1].1));
+        disagreement = if between > LEAST_DISAGREEMENT.max(3.0 * by_error) { between } else { 0.0 };
+    }
+    Ok(Shift { log: shift, error, disagreement })
+}
+
+impl Pair<'_> {
+    fn differences(&self, shift: f64, columns: &[usize], mut take: impl FnMut(Difference)) {
+        let [colder, warmer] = self.isotherms;
+        // warmer at ln t is at ln t − shift on the axis of colder
+        for (one, other, sign) in [(colder, warmer, 1.0), (warmer, colder, -1.0)] {
+            for row in &one.rows {
+                let Some((k, part)) = place(other, one.log_time(row) + sign * shift) else { continue };
+                for &column in columns {
+                    let [a, b] = [k - 1, k].map(|k| other.rows[k].values[column].ln());
+                    take(Difference {
+                        column,
+                        value: sign * (row.values[column].ln() - (a + part * (b - a))),
+                        variance: 1.0 + part * part + (1.0 - part) * (1.0 - part),
+                        slope: slope(other, k, column),
+                    });
+                }
+            }
+        }
+    }
+
+    /// The scatter of a column about the lines between the neighbours of each row.
+    fn scatter(&self, column: usize) -> f64 {
+        let of_isotherm = |isotherm: &&Isotherm| {
+            let about = |rows: &[Row]| {
+                let [a, b, c] = [0, 1, 2].map(|k| (isotherm.log_time(&rows[k]), rows[k].values[column].ln()));
+                let part = (b.0 - a.0) / (c.0 - a.0);
+                (b.1 - a.1 - part * (c.1 - a.1)).abs() / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
+            };
+            deviation(isotherm.rows.windows(3).map(about).collect())
+        };
+        self.isotherms.iter().map(of_isotherm).fold(LEAST_SCATTER, f64::max)
+    }
+
+    /// The scatter of the differences of a column at a shift.
+    fn residual(&self, shift: f64, column: usize, scatter: f64) -> f64 {
+        let mut values = Vec::new();
+        self.differences(shift, &[column], |found| values.push(found.value.abs() / found.variance.sqrt()));
+        if values.is_empty() { scatter } else { deviation(values).max(0.3 * scatter) }
+    }
+
+    fn cost(&self, shift: f64, columns: &[usize], scatter: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.differences(shift, columns, |found| {
+            let z = found.value / scatter[found.column];
+            sum += (z * z / found.variance).ln_1p() - EXPECTED;
+        });
+        sum
+    }
+
+    /// The shift of least cost in a part of the range around another.
+    fn refined(&self, near: f64, [low, high]: [f64; 2], part: f64, (columns, scatter): (&[usize], &[f64])) -> f64 {
+        let around = part * (high - low);
+        least_of((near - around).max(low), (near + around).min(high), 48, &|shift| self.cost(shift, columns, scatter))
+    }
+
+    /// The standard error of a shift: by the slopes, or as far as shifts are as good.
+    fn error(&self, shift: f64, [low, high]: [f64; 2], columns: &[usize], scatter: &[f64]) -> f64 {
+        let mut information = 0.0;
+        self.differences(shift, columns, |found| {
+            let scatter = scatter[found.column];
+            let weight = 1.0 / (1.0 + (0.5 * found.value / scatter).powi(2) / found.variance);
+            information += weight * (found.slope / scatter).powi(2) / found.variance;
+        });
+        let by_slopes = (INFLATION / information).sqrt();
+        let least = self.cost(shift, columns, scatter);
+        let tried = (0..=TRIED).map(|k| low + (high - low) * k as f64 / TRIED as f64);
+        let near = tried.filter(|other| (other - shift).abs() < 0.1 * (high - low));
+        let as_good = near.filter(|&other| self.cost(other, columns, scatter) < least + AS_GOOD);
+        as_good.map(|other| (other - shift).abs()).fold(by_slopes, f64::max)
+    }
+}
+
+/// The row after ln t, and the part of the way to it from the row before.
+fn place(isotherm: &Isotherm, log_time: f64) -> Option<(usize, f64)> {
+    let at = |k: usize| isotherm.log_time(&isotherm.rows[k]);
+    // rows of frequencies descend in time
+    let rising = at(0) < at(isotherm.rows.len() - 1);
+    let is_before =
+        |row: &Row| if rising { isotherm.log_time(row) < log_time } else { isotherm.log_time(row) > log_time };
+    let next = isotherm.rows.partition_point(is_before);
+    let k = next.max(1);
+    let part = (log_time - at(k - 1)) / (at(k.min(isotherm.rows.len() - 1)) - at(k - 1));
+    (k < isotherm.rows.len() && (0.0..=1.0).contains(&part)).then_some((k, part))
+}
+
+/// The slope of a column over ln t, by least squares through the rows around row `k`.
+fn slope(isotherm: &Isotherm, k: usize, column: usize) -> f64 {
+    let rows = &isotherm.rows[k.saturating_sub(AROUND)..isotherm.rows.len().min(k + AROUND)];
+    let mean = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
+    let (x, y) = (mean(&|row| isotherm.log_time(row)), mean(&|row| row.values[column].ln()));
+    let product = mean(&|row| (isotherm.log_time(row) - x) * (row.values[column].ln() - y));
+    product / mean(&|row| (isotherm.log_time(row) - x).powi(2))
+}
+
+/// The standard deviation of values around zero, from the median of their magnitudes.
+fn deviation(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).map_or(0.0, |median| median / 0.6745)
+}
+
+/// Where `cost` is least between two values: the best of `tried`, refined by the golden section.
+fn least_of(low: f64, high: f64, tried: usize, cost: &dyn Fn(f64) -> f64) -> f64 {
+    let step = (high - low) / tried as f64;
+    let all = (0..=tried).map(|k| low + step * k as f64);
+    let best = all.map(|at| (cost(at), at)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(low, |best| best.1);
+    let (mut a, mut b) = ((best - step).max(low), (best + step).min(high));
+    for _ in 0..50 {
+        let (x, y) = (b - 0.618_033_988_749_895 * (b - a), a + 0.618_033_988_749_895 * (b - a));
+        if cost(x) <= cost(y) { b = y } else { a = x }
+    }
+    0.5 * (a + b)
+}

@@ -1,0 +1,174 @@
+//! Are text files read as they are, and damaged ones never otherwise than they were?
+
+mod corpus;
+
+use corpus::{Encoding, Kind, Layout, corpus, read};
+
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+
+/// Relative difference of two values by their conversion, and by the digits of a frequency in Hz.
+const ROUNDING: f64 = 1e-6;
+
+fn same(a: f64, b: f64) -> bool {
+    a == b || a.is_nan() && b.is_nan() || (a - b).abs() <= ROUNDING * b.abs()
+}
+
+fn same_row(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(*a, *b))
+}
+
+#[test]
+fn every_layout_is_read() {
+    let layouts = corpus();
+    for layout in &layouts {
+        let rows = read(layout.kind, &layout.encoding.bytes(&layout.text));
+        let rows = rows.unwrap_or_else(|error| panic!("{}: {error}\n{}", layout.name, layout.text));
+        assert_eq!(rows.len(), layout.rows.len(), "{}", layout.name);
+        for (found, wanted) in rows.iter().zip(&layout.rows) {
+            assert!(same_row(found, wanted), "{}: {found:?} for {wanted:?} in\n{}", layout.name, layout.text);
+        }
+    }
+    println!("{} layouts", layouts.len());
+    assert!(layouts.len() >= 60);
+}
+
+/// A damage: the bytes, how many rows may be missing, and whether heights may.
+struct Damaged {
+    bytes: Vec<u8>,
+    lost: usize,
+    missing: bool,
+    how: String,
+}
+
+/// Fields that are no numbers.
+const JUNK: [&str; 12] = ["", "n/a", "---", "NaN", "<1", "1:30", "1x2", "0x10", "1e", "--5", "∞", "?"];
+
+fn damaged(layout: &Layout, draw: &mut Draws) -> Option<Damaged> {
+    let text = &layout.text;
+    let end = if text.contains("\r\n") {
+        "\r\n"
+    } else if text.contains('\r') {
+        "\r"
+    } else {
+        "\n"
+    };
+    let lines: Vec<&str> = text.split(end).collect();
+    let characters: Vec<char> = text.chars().collect();
+    let at = draw.below(characters.len());
+    let line = draw.below(lines.len() - 1);
+    let joined = |lines: Vec<String>| lines.join(end);
+    let owned = || lines.iter().map(|line| (*line).to_owned()).collect::<Vec<_>>();
+    let (mut lost, mut missing, mut encoding) = (0, false, layout.encoding);
+    let (how, text) = match draw.below(10) {
+        0 => {
+            let junk = ['x', '?', '&', '|', '"', '#', '\'', ';', '_', '=', '!', '('][draw.below(12)];
+            // a comment is a row less
+            lost = usize::from(junk == '#');
+            let text: String = characters[..at].iter().chain([&junk]).chain(&characters[at..]).collect();
+            (format!("{junk:?} at {at}"), text)
+        }
+        1 => {
+            let without = characters[at];
+            if !" ,;\t\n\r\"".contains(without) || layout.marks.contains(without) {
+                return None;
+            }
+            (format!("without {without:?} at {at}"), characters[..at].iter().chain(&characters[at + 1..]).collect())
+        }
+        2 => {
+            if layout.kind == Kind::Matrix || layout.kind == Kind::Profile {
+                return None;
+            }
+            let mut lines = owned();
+            lines.insert(line, lines[line].clone());
+            (format!("line {line} twice"), joined(lines))
+        }
+        3 => {
+            lost = 1;
+            let mut lines = owned();
+            lines.remove(line);
+            (format!("without line {line}"), joined(lines))
+        }
+        4 => {
+            let cut = characters[..at].iter().collect::<String>();
+            if !cut.ends_with([',', ';', '\t', '\n', '\r']) || cut.ends_with(|c| layout.marks.contains(c)) {
+                return None;
+            }
+            lost = usize::MAX;
+            (format!("cut at {at}"), cut)
+        }
+        5 | 6 => {
+            let delimiter = ['\t', ';', ',', ' '].into_iter().find(|&mark| lines[lines.len() - 2].contains(mark))?;
+            let mut lines = owned();
+            let mut fields: Vec<String> = lines[line].split(delimiter).map(str::to_owned).collect();
+            let (field, junk) = (draw.below(fields.len()), JUNK[draw.below(JUNK.len())]);
+            // an empty field is no value, and a word in the place of one may be
+            if fields[field].is_empty()
+                || layout.text.contains('"') && delimiter == ','
+                || junk == "∞" && encoding == Encoding::Windows
+            {
+                return None;
+            }
+            // a heading without a name may leave the columns as they are
+            fields[field] = junk.into();
+            missing = true;
+            lines[line] = fields.join(&delimiter.to_string());
+            (format!("{junk:?} in field {field} of line {line}"), joined(lines))
+        }
+        7 => {
+            let other = [Encoding::Utf8, Encoding::Utf16, Encoding::Windows][draw.below(3)];
+            encoding = other;
+            (format!("in {other:?}"), format!("{}{text}", if other == Encoding::Utf8 { "\u{feff}" } else { "" }))
+        }
+        8 => {
+            let mut lines = owned();
+            lines.insert(line, ["", "# remark", "  ", "% 1,5; x"][draw.below(4)].into());
+            (format!("a remark before line {line}"), lines.join(["\n", "\r\n", "\r"][draw.below(3)]))
+        }
+        _ => {
+            let mut bytes = encoding.bytes(text);
+            let at = draw.below(bytes.len());
+            bytes[at] = [0, 0xff, 0x80, 0x1a][draw.below(4)];
+            return Some(Damaged { bytes, lost: usize::MAX, missing: true, how: format!("a byte at {at}") })
+                .filter(|_| layout.encoding != Encoding::Utf16);
+        }
+    };
+    Some(Damaged { bytes: encoding.bytes(&text), lost, missing, how })
+}
+
+#[test]
+fn no_damage_changes_a_value() {
+    let (layouts, count) = (corpus(), from_environment("LAYOUT_DAMAGES", 2000));
+    let (mut accepted, mut refused, mut changed) = (0, 0, Vec::new());
+    for seed in 0..count {
+        let mut draw = Draws::new(seed);
+        let layout = &layouts[draw.below(layouts.len())];
+        let Some(damage) = damaged(layout, &mut draw) else { continue };
+        let Ok(rows) = read(layout.kind, &damage.bytes) else {
+            refused += 1;
+            continue;
+        };
+        accepted += 1;
+        let fits = |found: &[f64], wanted: &[f64]| {
+            let is_map = !matches!(layout.kind, Kind::Table(_) | Kind::Isotherms(_) | Kind::Recording);
+            let hole = damage.missing && is_map && found.len() == wanted.len();
+            let values = || found.iter().zip(wanted).all(|(a, b)| same(*a, *b) || a.is_nan());
+            same_row(found, wanted) || hole && values() || is_map && damage.lost > 0
+        };
+        let mut wanted = layout.rows.iter();
+        let found = rows.iter().all(|row| wanted.any(|wanted| fits(row, wanted)));
+        let lost = layout.rows.len().saturating_sub(rows.len());
+        if !found || lost > damage.lost {
+            let text = String::from_utf8_lossy(&damage.bytes);
+            changed.push(format!("seed {seed}, {}: {} ({lost} lost)\n{rows:?}\n{text}", layout.name, damage.how));
+        }
+    }
+    println!("{accepted} accepted, {refused} refused of {count}");
+    assert!(accepted > count / 10 && refused > count / 10, "{accepted} accepted, {refused} refused of {count}");
+    assert!(
+        changed.is_empty(),
+        "{} changed:\n{}",
+        changed.len(),
+        changed.iter().take(40).cloned().collect::<Vec<_>>().join("\n")
+    );
+}

@@ -1,0 +1,230 @@
+//! Random tables with noise, random isotherms, and contacts of bodies that were read from files.
+
+use viscocontact::TextFormat;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{
+    Experiment, GeneralizedMaxwell, Isotherm, MasterCurve, Measurements, TimeTemperature, Units,
+};
+
+use super::log_spaced;
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use crate::common::{noise, sphere_on};
+
+/// A body with relaxation times over many decades: shares and times of a broad peak.
+fn broad(draw: &mut Draws, middle: f64) -> GeneralizedMaxwell {
+    let width = draw.between(1.5, 3.5);
+    let terms: Vec<(f64, f64)> = (-24..=24)
+        .map(|k| {
+            let decade = f64::from(k) / 3.0;
+            let strength = (-(decade / width).powi(2)).exp() + draw.between(0.02, 0.17);
+            (1.0e6 * strength, middle * 10f64.powf(decade))
+        })
+        .collect();
+    GeneralizedMaxwell::new(draw.between(1.0e4, 2.0e5), &terms).unwrap()
+}
+
+/// No table of a linear body is refused for noise that the limit of the misfit covers.
+#[test]
+fn noisy_tables_of_linear_bodies_are_fitted() {
+    let (count, mut fitted, mut worst) = (from_environment("NOISY_TABLES", 18), 0, 0.0_f64);
+    for seed in 0..count {
+        let mut draw = Draws::new(seed);
+        let body = broad(&mut draw, 1.0);
+        let spectrum = body.creep_spectrum().unwrap().relaxation();
+        let deviation = [0.03, 0.05, 0.08][seed as usize % 3];
+        let mut noise = noise(seed + 1000);
+        let (rows, decades) = (8 + draw.below(53), draw.between(3.0, 6.0));
+        let x = (0..rows).map(|k| 10f64.powf(decades * (k as f64 / (rows - 1) as f64 - 0.5)));
+        let mut squares = 0.0;
+        let mut noisy = |value: f64| {
+            let error = deviation * noise();
+            squares += error * error;
+            value * (1.0 + error)
+        };
+        let kind = seed as usize / 3 % 3;
+        let table = match kind {
+            0 => Measurements::creep(&x.map(|t| (t, noisy(body.creep_compliance(t)))).collect::<Vec<_>>()),
+            1 => Measurements::relaxation(&x.map(|t| (t, noisy(spectrum.modulus(t)))).collect::<Vec<_>>()),
+            _ => {
+                let row = |w: f64| (w, noisy(spectrum.storage_modulus(w)), noisy(spectrum.loss_modulus(w)));
+                Measurements::dynamic(&x.map(row).collect::<Vec<_>>())
+            }
+        };
+        let rms = (squares / (rows * if kind == 2 { 2 } else { 1 }) as f64).sqrt();
+        if rms > 0.095 {
+            continue;
+        }
+        let fit = table.unwrap().fit();
+        let fit = fit.unwrap_or_else(|error| panic!("seed {seed}, {rows} rows, noise {rms:.3}: {error}"));
+        worst = worst.max(fit.report().rms_misfit() / rms);
+        fitted += 1;
+    }
+    println!("{fitted} of {count} tables fitted, misfit at most {worst:.2} of the noise");
+    assert!(fitted * 10 >= count * 9);
+}
+
+/// A pair of rows that contradict each other by little, in data with less scatter, is no end of linearity.
+#[test]
+fn a_pair_where_isotherms_meet_is_fitted_and_an_outlier_is_not() {
+    let body = broad(&mut Draws::new(3), 1.0);
+    let mut noise = noise(5);
+    let mut table: Vec<(f64, f64)> = log_spaced(1e-3, 1e3, 10)
+        .into_iter()
+        .map(|t| (t, body.creep_compliance(t) * (1.0 + 0.003 * noise())))
+        .collect();
+    let (time, value) = table[30];
+    table[30].1 = 1.03 * value;
+    table.push((1.001 * time, 0.97 * value));
+    let fit = Measurements::creep(&table).unwrap().fit().unwrap();
+    assert!(fit.report().rms_misfit() < 0.01, "{}", fit.report());
+    table.pop();
+    table[30].1 = 1.5 * value;
+    let outlier = Measurements::creep(&table).unwrap();
+    assert!(outlier.fit().unwrap_err().to_string().contains("Measurements::with_scatter"));
+    assert!(outlier.with_scatter(0.1).unwrap().fit().is_ok());
+}
+
+/// Shifts of random isotherms, with noise, outliers and loss moduli spoiled at one end, within 0.05 decades or three of their
+/// stated errors.
+#[test]
+fn isotherms_are_shifted_within_their_errors() {
+    let (count, mut shifts, mut off, mut errors) = (from_environment("ISOTHERM_SETS", 12), 0, Vec::new(), Vec::new());
+    for seed in 0..count {
+        let mut draw = Draws::new(seed);
+        let (mut number, decades, per_decade) = (3 + draw.below(10), draw.between(2.0, 4.0), draw.between(4.0, 12.0));
+        let (deviation, dynamic) = (draw.scale(0.003, 0.08), draw.chance(0.6));
+        let (outliers, spoiled) = (draw.chance(0.5), draw.chance(0.4));
+        let mut factors = vec![1.0];
+        for k in 1..number {
+            factors.push(factors[k - 1] * 10f64.powf(-decades * draw.between(0.2, 0.65)));
+        }
+        // the body relaxes over sixteen decades
+        factors.retain(|factor| *factor > 1e-11);
+        number = factors.len();
+        let body = broad(&mut draw, factors[number - 1].sqrt());
+        let spectrum = body.creep_spectrum().unwrap().relaxation();
+        let mut noise = noise(seed + 7);
+        let rows = (decades * per_decade) as usize + 1;
+        let isotherm = |k: usize, draw: &mut Draws, noise: &mut dyn FnMut() -> f64| {
+            let mut noisy = |value: f64, draw: &mut Draws| {
+                let outlier = if outliers && draw.chance(0.03) { [0.25, -0.25][draw.below(2)] } else { 0.0 };
+                value * (deviation * noise() + outlier).exp()
+            };
+            let x: Vec<f64> = (0..rows).map(|i| 10f64.powf(decades * (i as f64 / (rows - 1) as f64 - 0.5))).collect();
+            let table = if dynamic {
+                let mut table: Vec<(f64, f64, f64)> = x
+                    .iter()
+                    .map(|&w| {
+                        let at = w * factors[k] / factors[number - 1];
+                        (w, noisy(spectrum.storage_modulus(at), draw), noisy(spectrum.loss_modulus(at), draw))
+                    })
+                    .collect();
+                if spoiled {
+                    table[rows - 1].2 *= 1.35;
+                }
+                Measurements::dynamic(&table)
+            } else {
+                let at = |t: f64| spectrum.modulus(t / factors[k] * factors[number - 1]);
+                Measurements::relaxation(&x.iter().map(|&t| (t, noisy(at(t), draw))).collect::<Vec<_>>())
+            };
+            Isotherm::new(300.0 + 5.0 * k as f64, table.unwrap()).unwrap()
+        };
+        let isotherms: Vec<Isotherm> = (0..number).map(|k| isotherm(k, &mut draw, &mut noise)).collect();
+        let reference = draw.below(number);
+        let master = MasterCurve::new(300.0 + 5.0 * reference as f64, isotherms)
+            .unwrap_or_else(|error| panic!("seed {seed}, noise {deviation:.3}: {error}"));
+        for (k, ((_, found), (_, error))) in master.shift_factors().into_iter().zip(master.shift_errors()).enumerate() {
+            let apart = (found / (factors[k] / factors[reference])).log10().abs();
+            shifts += 1;
+            errors.push(apart);
+            if apart > 0.05 && apart > 3.0 * error {
+                off.push(format!("seed {seed}, {k} of {number}: {apart:.3} ± {error:.3}, noise {deviation:.3}"));
+            }
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    println!("{shifts} shifts: median {:.4}, 90 % {:.4}", errors[shifts / 2], errors[shifts * 9 / 10]);
+    assert!(shifts > 5 * count as usize / 2);
+    assert!(off.is_empty(), "{} of {shifts}:\n{}", off.len(), off.join("\n"));
+}
+
+/// A loss modulus that the machine spoils does not move the shift, and storage and loss are said to disagree.
+#[test]
+fn columns_that_disagree_are_told() {
+    let body = broad(&mut Draws::new(1), 1.0);
+    let spectrum = body.creep_spectrum().unwrap().relaxation();
+    let isotherm = |temperature: f64, shift: f64, loss: f64| {
+        let row = |w: f64| {
+            let at = w * 10f64.powf(shift);
+            (w, spectrum.storage_modulus(at), spectrum.loss_modulus(at * loss))
+        };
+        let table: Vec<_> = log_spaced(0.1, 100.0, 6).into_iter().map(row).collect();
+        Isotherm::new(temperature, Measurements::dynamic(&table).unwrap()).unwrap()
+    };
+    let simple = MasterCurve::new(300.0, vec![isotherm(300.0, 0.0, 1.0), isotherm(310.0, -1.5, 1.0)]).unwrap();
+    assert!((simple.shift_factors()[1].1.log10() + 1.5).abs() < 0.01, "{:?}", simple.shift_factors());
+    assert_eq!(simple.disagreements(), []);
+    let apart = MasterCurve::new(300.0, vec![isotherm(300.0, 0.0, 1.0), isotherm(310.0, -1.0, 3.0)]).unwrap();
+    assert!(matches!(apart.disagreements()[..], [(310.0, by)] if by > 0.2), "{:?}", apart.disagreements());
+}
+
+/// The approach of a sphere on the body of a file, over that on the body behind it.
+#[test]
+fn contacts_of_files_are_those_of_the_bodies_behind_them() {
+    let truth = GeneralizedMaxwell::new(1.0e6, &[(3.0e6, 0.03), (2.0e6, 0.5), (1.0e6, 8.0), (0.5e6, 120.0)]).unwrap();
+    let spectrum = truth.creep_spectrum().unwrap().relaxation();
+    let law = TimeTemperature::wlf(12.0, 80.0, 296.15).unwrap();
+    let mut dma = String::from("Instrument;DMA 8\nProbe;PMMA\n\nf;E_stor;E_loss;T;Set\nHz;MPa;MPa;°C;-\n");
+    for (set, celsius) in [13.0, 18.0, 23.0, 28.0, 33.0].into_iter().enumerate() {
+        let factor = law.shift_factor(celsius + 273.15).unwrap();
+        for f in log_spaced(0.01, 100.0, 5) {
+            let at = std::f64::consts::TAU * f * factor;
+            let [storage, loss] =
+                [spectrum.storage_modulus(at), spectrum.loss_modulus(at)].map(|modulus| modulus / 1e6);
+            dma += &format!("{f:.6};{storage:.6};{loss:.6};{celsius:.1};{set}\n");
+        }
+    }
+    let mut sweep = String::from("Filename\tx.tri\n[step]\nAngular frequency\tStorage modulus\tLoss modulus\trad/s\n");
+    sweep = sweep.replace("\trad/s\n", "\tTan(delta)\nrad/s\tkPa\tPa\t\n");
+    for w in log_spaced(1e-3, 1e3, 5) {
+        let (storage, loss) = (spectrum.storage_modulus(w), spectrum.loss_modulus(w));
+        sweep += &format!("{w:.5e}\t{:.6}\t{loss:.3}\t{:.5}\n", storage / 1e3, loss / storage);
+    }
+    let (mut creep, mut relaxation) = (String::from("t [min],J [1/GPa]\n"), String::from("Zeit t / s;G / MPa\r\n"));
+    for t in log_spaced(1e-3, 1e3, 6) {
+        creep += &format!("{:.8e},{:.6}\n", t / 60.0, truth.creep_compliance(t) * 1e9);
+        relaxation += &format!("{t:.8e};{:.7}\r\n", spectrum.modulus(t) / 1e6).replace('.', ",");
+    }
+    let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(relaxation.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    let format = TextFormat::default();
+    let read = |experiment, bytes: &[u8]| {
+        let table = Measurements::from_csv_reader(experiment, bytes, Units::OF_HEADINGS, format).unwrap();
+        Material::incompressible(table.fit().unwrap())
+    };
+    let isotherms = Isotherm::from_csv_reader(Experiment::Dynamic, dma.as_bytes(), Units::OF_HEADINGS, format).unwrap();
+    assert_eq!(isotherms.len(), 5);
+    let rod = MasterCurve::new(isotherms[2].temperature(), isotherms).unwrap().fit_tension().unwrap();
+    let sheared = Material::incompressible(truth.clone());
+    let stretched = Material::from_tension(truth.clone(), 0.4).unwrap();
+    let approach = |material: Material| {
+        let grid = Grid::square(24, 4.0e-3).unwrap();
+        let mut contact = sphere_on(grid, material, Settings::default());
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        [0.05, 0.5, 5.0, 30.0].map(|dt| {
+            contact.step(dt, Load::force(0.1)).unwrap();
+            contact.approach()
+        })
+    };
+    for (name, material, exact) in [
+        ("DMA", Material::from_tension(rod, 0.4).unwrap(), &stretched),
+        ("sweep", read(Experiment::Dynamic, sweep.as_bytes()), &sheared),
+        ("creep", read(Experiment::Creep, creep.as_bytes()), &sheared),
+        ("relaxation", read(Experiment::Relaxation, &utf16), &sheared),
+    ] {
+        let (found, wanted) = (approach(material), approach(exact.clone()));
+        let worst = found.iter().zip(&wanted).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        println!("{name}: approach within {worst:.1e}");
+        assert!(worst < 0.02, "{name}: {found:?} for {wanted:?}");
+    }
+}
