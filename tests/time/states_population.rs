@@ -291,7 +291,13 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
     let (mut failed, mut vague, mut refused) = (Vec::new(), 0, 0);
     for seed in first..first + count {
         let scene = Scene::new(seed);
+        if std::env::var("KV").is_ok() && !scene.is_kelvin_voigt {
+            continue;
+        }
         let found = run(&scene);
+        if std::env::var("KV").is_ok() {
+            println!("{} {:?} {:?}", scene.name, found.as_ref().map(|f| f[0].len()), found.as_ref().err());
+        }
         if let (Ok([ends, _]), false) = (&found, scene.is_kelvin_voigt) {
             let kind = TOLERANCES.iter().position(|tolerance| *tolerance == scene.tolerance).unwrap();
             steps[kind].push(ends.len() as f64, &scene.name);
