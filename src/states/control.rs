@@ -148,7 +148,8 @@ impl StepControl {
                 Some(_) => 1.0,
                 None => ORDER,
             };
-            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, MAX_GROWTH);
+            let most = if error > 0.0 { contact.longest_growth(MAX_GROWTH) } else { MAX_GROWTH };
+            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim {
                 self.next = match event {
                     Some(_) => growth.clamp(0.5, 1.0) * length,
