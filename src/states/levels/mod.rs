@@ -285,8 +285,9 @@ impl Levels {
         self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
     }
 
-    /// Releases all groups where they are; takes no step.
+    /// Releases all groups where they are; takes no step. As after any jump, the past does not determine how they continue.
     fn release(&mut self) {
+        self.history.reset_differences();
         self.groups.iter_mut().for_each(|group| group.traction = 0.0);
         self.motions.depth += self.lift;
         (self.level, self.force, self.lift) = (0.0, 0.0, 0.0);
