@@ -86,6 +86,8 @@ impl<W: Write + Seek> Archive<W> {
         let text: Vec<u8> = metadata.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
         self.start("metadata", false, &npy::header(&format!("<U{}", text.len() / 4), &[]))?;
         self.0.write_all(&text)?;
+        // where there is no room, this fails: `ZipWriter::finish` drops what it cannot complete
+        self.0.flush()?;
         ManuallyDrop::into_inner(self.0).finish()?;
         Ok(())
     }
