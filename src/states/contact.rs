@@ -188,8 +188,8 @@ impl StatesContact {
     }
 
     /// Depth and force of undisturbed bodies after so many steps like the last one, about, under a load of this kind and size.
-    pub(super) fn expected(&self, demand: Demand, size: f64, steps: f64) -> [f64; 2] {
-        self.levels.expected(&self.states, demand, size, steps)
+    pub(super) fn expected(&self, demand: Demand, size: f64, steps: f64, pressed: f64) -> [f64; 2] {
+        self.levels.expected(&self.states, demand, size, steps, pressed)
     }
 
     /// [`StatesContact::step_to`] without merging.

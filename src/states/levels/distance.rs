@@ -9,17 +9,21 @@ const SWEPT: f64 = 0.05;
 const LASTING: i32 = 8;
 
 impl Levels {
-    /// Depth and force of an undisturbed contact under a load of this kind and size, the depth as soon as it acts, the force after so many
-    /// steps like the last one.
+    /// Depth and force of an undisturbed contact under a load of this kind and size: the depth under a force as soon as it acts, or under half of it
+    /// when it has `pressed` for so many steps like the last one, the force after `steps` of them.
     pub(in crate::states) fn expected(
         &self,
         states: &ElasticStates,
         demand: Demand,
         size: f64,
         steps: f64,
+        pressed: f64,
     ) -> [f64; 2] {
         match demand {
-            Demand::Force(_) => [states.depth(size * self.history.rule().compliance()), size],
+            Demand::Force(_) => {
+                let soon = 0.5 / self.history.stiffness_over(pressed);
+                [states.depth(size * soon.max(self.history.rule().compliance())), size]
+            }
             Demand::Depth { give, .. } => {
                 let stiffness = self.history.stiffness_over(steps);
                 let level = states.level_where(give * stiffness, size);
