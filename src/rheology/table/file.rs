@@ -187,7 +187,8 @@ impl Columns {
             Experiment::Storage => &[&STORAGE],
             Experiment::Dynamic => &[&STORAGE, &LOSS],
         };
-        let (mut complex, mut tan): (bool, Option<fn(f64) -> f64>) = (false, None);
+        let mut complex = false;
+        let mut tan: Option<fn(f64) -> f64> = None;
         let mut taken;
         if table.headings().is_empty() {
             let places = std::iter::once(&abscissa).chain(values).enumerate();

@@ -5,6 +5,9 @@ use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::shift_between;
 use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
 
+/// A reference this near \[K\] to the temperature of an isotherm is that temperature.
+const NEAR: f64 = 0.5;
+
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
@@ -45,15 +48,18 @@ pub struct MasterCurve {
 }
 
 impl MasterCurve {
-    /// Finds the shift factors from the data alone. `reference` \[K\] must be the temperature of an isotherm.
+    /// Finds the shift factors from the data alone. `reference` \[K\] must be the temperature of an isotherm within 0.5 K, as
+    /// those of a file are means: the curve is at the temperature of that isotherm.
     ///
     /// # Errors
     /// If there is no isotherm, two have the same temperature, they measure different quantities, none is at the
     /// reference temperature, or neighbours do not overlap in their values ([`TableError::NoOverlap`]).
     pub fn new(reference: f64, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
-        let Some(center) = isotherms.iter().position(|isotherm| isotherm.temperature == reference) else {
-            let allowed = "the temperature of one of the isotherms";
+        let apart = |isotherm: &Isotherm| (isotherm.temperature - reference).abs();
+        let nearest = (0..isotherms.len()).min_by(|&a, &b| apart(&isotherms[a]).total_cmp(&apart(&isotherms[b])));
+        let Some(center) = nearest.filter(|&k| apart(&isotherms[k]) <= NEAR) else {
+            let allowed = "the temperature of one of the isotherms, within 0.5 K";
             return Err(Error::OutOfRange { field: "reference temperature", value: reference, allowed });
         };
         let mut log_shifts = vec![0.0; isotherms.len()];
@@ -66,7 +72,7 @@ impl MasterCurve {
             log_errors[k] = log_errors[before].hypot(shift.error);
             disagreements[k] = shift.disagreement;
         }
-        Ok(MasterCurve { reference, isotherms, log_shifts, log_errors, disagreements })
+        Ok(MasterCurve { reference: isotherms[center].temperature, isotherms, log_shifts, log_errors, disagreements })
     }
 
     /// Shifts by a known `law`, to its reference temperature.

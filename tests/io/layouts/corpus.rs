@@ -238,6 +238,7 @@ fn moduli(falling: bool) -> Vec<Vec<f64>> {
 pub fn corpus() -> Vec<Layout> {
     use Experiment::{Creep, Dynamic, Relaxation, Storage};
     const TAU: f64 = std::f64::consts::TAU;
+    type Table<'a> = (Kind, &'a str, Vec<Column>, &'a Vec<Vec<f64>>);
     let creep: Vec<Vec<f64>> = moduli(true).iter().map(|row| vec![row[0], 1.0 / row[1]]).collect();
     let (relaxation, dynamic) = (moduli(true), moduli(false));
     let storage: Vec<Vec<f64>> = dynamic.iter().map(|row| row[..2].to_vec()).collect();
@@ -248,7 +249,7 @@ pub fn corpus() -> Vec<Layout> {
         })
         .collect();
     let degree = TAU / 360.0;
-    let tables: Vec<(Kind, &str, Vec<Column>, &Vec<Vec<f64>>)> = vec![
+    let tables: Vec<Table> = vec![
         (Kind::Table(Creep), "creep", vec![("t", "s", 1.0, Of(0)), ("J", "1/Pa", 1.0, Of(1))], &creep),
         (
             Kind::Table(Creep),
