@@ -85,14 +85,12 @@ pub struct FitReport {
     wrong_way: f64,
     interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
-    /// Whether the series is the creep of a rod in tension.
-    pub(crate) in_tension: bool,
 }
 
 debug_by! {
     self: FitReport =>
     samples: Counted(&self.samples), terms: self.terms, wrong_way: self.wrong_way, interval: Counted(&self.interval),
-    warning: self.warning, in_tension: self.in_tension
+    warning: self.warning
 }
 
 impl FitReport {
@@ -109,7 +107,7 @@ impl FitReport {
 
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None, in_tension: false }
+        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
     }
 
     /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, and the
