@@ -12,7 +12,7 @@ pub use master_curve::MasterCurve;
 
 use crate::error::{Place, Result, TableError, positive};
 use crate::input::TakenColumn;
-use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
+use crate::rheology::fit::{FitReport, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
@@ -78,7 +78,7 @@ impl Measurements {
     ///
     /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many
     /// times as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five
-    /// times as long or more. [`FitReport::uncertainties`] includes it, and
+    /// times as long or more. [`FitReport::uncertainties`] includes it, [`FitReport::warning`] reports it, and
     /// [`Rheology::measured`](crate::rheology::Rheology::measured) begins where it is below 5 %, so that shorter steps of a
     /// contact warn by [`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL).
     ///
@@ -226,8 +226,10 @@ impl Measurements {
                 (search, measured) = (wider, other);
             }
         }
-        let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
-        let report = FitReport::new(&measured.series, samples).of_measurements(wrong_way, measured.ambiguity, interval);
+        let uncertainty = measured.uncertainty(&search, &averaged, [first, last])?;
+        let known_from = uncertainty.known_from;
+        let report =
+            FitReport::new(&measured.series, samples).of_measurements(wrong_way, measured.ambiguity, uncertainty);
         // a smooth series through few rows of much noise is further from them than the best
         let best = FitReport::new(&measured.least_squares, samples);
         let most = self.scatter.map_or(MOST_MISFIT, |scatter| scatter.max(MOST_MISFIT));
