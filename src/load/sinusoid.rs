@@ -9,9 +9,9 @@ use crate::load::{Load, LoadHistory};
 /// ```
 /// use viscocontact::load::{Load, Sinusoid};
 ///
-/// // 0.3 N ± 0.2 N at 1 Hz
-/// let sine = Sinusoid::new(Load::force(0.1), Load::force(0.5), 1.0)?;
-/// assert_eq!(Sinusoid::about(Load::force(0.3), 0.2, 1.0)?, sine);
+/// // 3 N ± 2 N at 1 Hz
+/// let sine = Sinusoid::new(Load::force(1.0), Load::force(5.0), 1.0)?;
+/// assert_eq!(Sinusoid::about(Load::force(3.0), 2.0, 1.0)?, sine);
 /// assert!(Sinusoid::new(Load::force(0.3), Load::force(0.2), 1.0).is_err());
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
