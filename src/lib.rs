@@ -239,7 +239,7 @@ pub mod prelude {
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
-        KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Zener,
+        KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Tension, Zener,
     };
     pub use crate::run::{Crossing, Run, SteadyMotion, Stepping, Times};
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};

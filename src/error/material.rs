@@ -62,13 +62,6 @@ pub enum MaterialError {
         accuracy: f64,
     },
 
-    /// A series fitted to tension ([`Measurements::fit_tension`](crate::rheology::Measurements::fit_tension)) was taken for one of shear: the
-    /// contact would be about three times too stiff.
-    #[error(
-        "the series was fitted to tension (fit_tension), and the material takes it for shear, three times too stiff: make the material by Material::from_tension, or fit moduli of shear by fit"
-    )]
-    TakenForShear,
-
     /// No published material has this name.
     #[error("there is no published material named {name:?}; known are: {known}")]
     Unknown {

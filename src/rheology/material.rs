@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::error::{Error, MaterialError, Result, positive, within};
-use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is_known, may_follow};
+use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Tension, is_known, may_follow};
 
 /// A rheology in shear and the bulk response: together they give the contact creep compliance C(t),
 /// with C = 1/E* = (1 − ν)/2G for an elastic body.
@@ -34,8 +34,6 @@ pub struct Material {
 pub(super) struct Body {
     pub(super) rheology: Arc<dyn Rheology>,
     pub(super) volume: Volume,
-    /// Whether the rheology is the creep of a rod in tension.
-    in_tension: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -58,7 +56,7 @@ pub(crate) struct Compressibility {
 impl Material {
     /// An incompressible body (ν = ½): C = J/4.
     pub fn incompressible(rheology: impl Rheology + 'static) -> Material {
-        Material::with_volume(rheology, Volume::Proportional { factor: 0.25, poisson: 0.5 }, false)
+        Material::with_volume(rheology, Volume::Proportional { factor: 0.25, poisson: 0.5 })
     }
 
     /// A body with constant Poisson's ratio `nu`: C = (1 − ν) J/2.
@@ -67,20 +65,19 @@ impl Material {
     /// If `nu` is outside (−1, ½].
     pub fn constant_poisson(rheology: impl Rheology + 'static, nu: f64) -> Result<Material> {
         let poisson = poisson_ratio(nu)?;
-        Ok(Material::with_volume(rheology, Volume::Proportional { factor: 0.5 * (1.0 - nu), poisson }, false))
+        Ok(Material::with_volume(rheology, Volume::Proportional { factor: 0.5 * (1.0 - nu), poisson }))
     }
 
-    /// A body whose creep was measured in tension: the rheology's J(t) is here the strain D(t) of a rod under unit tension,
-    /// 1/E for an elastic one, and every modulus that a model takes is a Young's modulus. With a constant Poisson's ratio `nu`
-    /// C = (1 − ν²) D, since J = 2 (1 + ν) D.
+    /// A body whose creep D(t) was measured in tension, with a constant Poisson's ratio `nu`: C = (1 − ν²) D, since
+    /// J = 2 (1 + ν) D.
     ///
     /// This is exact if ν does not change with time; polymers that pass from glass to rubber rise from about 0.35 to
     /// 0.5, which changes C by (1 − 0.35²)/(1 − 0.5²), 17 %. [`Material::from_tension_elastic_bulk`] follows the rise.
     ///
     /// ```
-    /// use viscocontact::rheology::{Material, Measurements, Zener};
+    /// use viscocontact::rheology::{Material, Measurements, Tension, Zener};
     ///
-    /// let silicone = Material::from_tension(Zener::relaxing(3.0e6, 1.5e6, 0.1)?, 0.49)?; // E(t) from 3 MPa to 1.5 MPa
+    /// let silicone = Material::from_tension(Tension(Zener::relaxing(3.0e6, 1.5e6, 0.1)?), 0.49)?; // E(t): 3 to 1.5 MPa
     /// assert!((silicone.contact_compliance(0.0) * 3.0e6 / (1.0 - 0.49 * 0.49) - 1.0).abs() < 1e-14);
     ///
     /// // storage and loss modulus in tension at five frequencies (DMA)
@@ -99,10 +96,10 @@ impl Material {
     ///
     /// # Errors
     /// If `nu` is outside (−1, ½].
-    pub fn from_tension(tensile: impl Rheology + 'static, nu: f64) -> Result<Material> {
+    pub fn from_tension(tensile: Tension<impl Rheology + 'static>, nu: f64) -> Result<Material> {
         let poisson = poisson_ratio(nu)?;
         let volume = Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson };
-        Ok(Material::with_volume(tensile, volume, true))
+        Ok(Material::with_volume(tensile.0, volume))
     }
 
     /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers approximately
@@ -126,7 +123,7 @@ impl Material {
     pub fn elastic_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
         positive("bulk modulus", bulk_modulus)?;
         let creep = rheology.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &rheology))?;
-        Material::of_shear_and_bulk(rheology, &creep, bulk_modulus, false)
+        Material::of_shear_and_bulk(rheology, &creep, bulk_modulus)
     }
 
     /// A body whose creep was measured in tension ([`Material::from_tension`]) and that is elastic in bulk, with
@@ -134,18 +131,21 @@ impl Material {
     /// [`Material::elastic_bulk`]. This is exact for an elastic bulk; Poisson's ratio follows from it.
     ///
     /// ```
-    /// use viscocontact::rheology::{Elastic, Material};
+    /// use viscocontact::rheology::{Elastic, Material, Tension};
     ///
     /// let (e, nu) = (2.0e9, 0.35);
     /// let bulk = e / (3.0 * (1.0 - 2.0 * nu));
-    /// let glass = Material::from_tension_elastic_bulk(Elastic::new(e)?, bulk)?;
+    /// let glass = Material::from_tension_elastic_bulk(Tension(Elastic::new(e)?), bulk)?;
     /// assert!((glass.contact_compliance(0.0) * e / (1.0 - nu * nu) - 1.0).abs() < 1e-14);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
     /// As [`Material::elastic_bulk`]; if Young's modulus at t = 0 is 9B or more, which no elastic body of that bulk has.
-    pub fn from_tension_elastic_bulk(tensile: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
+    pub fn from_tension_elastic_bulk(
+        Tension(tensile): Tension<impl Rheology + 'static>,
+        bulk_modulus: f64,
+    ) -> Result<Material> {
         positive("bulk modulus", bulk_modulus)?;
         let tension = tensile.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &tensile))?;
         let (glassy, of_bulk) = (3.0 * tension.glassy(), 1.0 / (3.0 * bulk_modulus));
@@ -153,25 +153,24 @@ impl Material {
         within("bulk modulus", bulk_modulus, glassy > of_bulk, allowed)?;
         let terms: Vec<_> = tension.terms().iter().map(|&(compliance, time)| (3.0 * compliance, time)).collect();
         let shear = CreepSpectrum::new(glassy - of_bulk, 3.0 * tension.fluidity(), &terms)?;
-        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus, true)
+        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus)
     }
 
     fn of_shear_and_bulk(
         rheology: impl Rheology + 'static,
         creep: &CreepSpectrum,
         bulk_modulus: f64,
-        in_tension: bool,
     ) -> Result<Material> {
         let shear = creep.relaxation();
         let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
         let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
         let volume = Volume::Elastic(bulk_modulus, contact, Compressibility::new(bulk_modulus, &stiffened));
-        Ok(Material::with_volume(rheology, volume, in_tension))
+        Ok(Material::with_volume(rheology, volume))
     }
 
-    fn with_volume(rheology: impl Rheology + 'static, volume: Volume, in_tension: bool) -> Material {
-        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume, in_tension }] }
+    fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
+        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume }] }
     }
 
     /// This body pressed against `other`: both deform, C = C₁ + C₂.
@@ -272,12 +271,8 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
-    /// Accepts rheologies whose times are not NaN, and series of tension in materials of tension.
+    /// Accepts rheologies whose times are not NaN.
     pub(crate) fn validate(&self) -> Result<()> {
-        let is_rod = |body: &Body| body.rheology.fit_report().is_some_and(|report| report.in_tension);
-        if self.bodies.iter().any(|body| is_rod(body) && !body.in_tension) {
-            return Err(MaterialError::TakenForShear.into());
-        }
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
             let refused = |field, value, allowed| Err(Error::OutOfRange { field, value, allowed });
             let (until, measured) = (rheology.known_until(), rheology.measured());

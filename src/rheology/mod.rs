@@ -32,8 +32,8 @@
 //! | `relaxing` | glassy modulus, rubbery modulus, relaxation time |
 //! | [`GeneralizedMaxwell::prony`] | glassy modulus, (share of it, relaxation time) of each term |
 //!
-//! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, become materials by [`Material::from_tension`],
-//! elastic constants by [`Elastic::young`].
+//! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, are a [`Tension`], of which [`Material::from_tension`] makes
+//! a material; elastic constants by [`Elastic::young`].
 //!
 //! # Materials
 //!
@@ -81,6 +81,7 @@ mod slow_creep;
 mod spectrum;
 mod table;
 mod temperature_history;
+mod tension;
 mod time_temperature;
 mod zener;
 
@@ -108,6 +109,7 @@ pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
 pub use table::Units;
 pub use table::{Experiment, Isotherm, MasterCurve, Measurements};
 pub use temperature_history::TemperatureHistory;
+pub use tension::Tension;
 pub(crate) use time_temperature::GAS_CONSTANT;
 pub use time_temperature::{ShiftedRheology, TimeTemperature};
 pub use zener::Zener;

@@ -93,8 +93,8 @@ pub fn is_long_fit(times: &std::ops::RangeInclusive<f64>) -> bool {
 pub fn material(source: &mut Source, fitted: bool) -> viscocontact::Result<Material> {
     let body = rheology(source, fitted)?;
     Ok(match source.below(7) {
-        5 => Material::from_tension(body, source.between(-0.5, 0.5))?,
-        6 => Material::from_tension_elastic_bulk(body, source.scale(1e6, 1e10))?,
+        5 => Material::from_tension(Tension(body), source.between(-0.5, 0.5))?,
+        6 => Material::from_tension_elastic_bulk(Tension(body), source.scale(1e6, 1e10))?,
         0 => Material::constant_poisson(body, source.between(-0.5, 0.5))?,
         1 => Material::elastic_bulk(body, source.scale(1e6, 1e10))?,
         2 => Material::incompressible(body).against(Material::incompressible(Elastic::new(source.scale(1e6, 1e12))?)),

@@ -3,7 +3,7 @@
 
 use crate::common::{from_environment, pairs, triples, uniform};
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum};
+use viscocontact::rheology::{CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};
 
 /// A table with its exact creep.
 struct Table {
@@ -97,7 +97,13 @@ fn judge(kind: &str) {
             (inside, times) = (inside + within, times + of);
             widths.push(report.uncertainty() / worst);
         }
-        late += usize::from(table.known_from > 1.001 * table.times[0]);
+        let is_late = table.known_from > 1.001 * table.times[0];
+        late += usize::from(is_late);
+        assert!(!is_late || report.warning().is_some(), "{kind} {seed}: {report}");
+        assert!(
+            table.noise > 0.0 || worst < 0.05 || report.warning().is_some(),
+            "{kind} {seed}: off by {worst}; {report}"
+        );
         if worst > f64::max(0.05, 3.0 * table.noise) {
             off += 1;
             let said = report.uncertainty() >= worst || report.warning().is_some();
@@ -152,11 +158,15 @@ fn relaxation_after_its_time_is_extrapolated_and_uncertain() {
         }
         let uncertainty: Vec<(f64, f64)> = table.report().uncertainties().collect();
         assert!(uncertainty[0].1 > 0.2 && uncertainty[uncertainty.len() - 1].1 < 1e-3, "{uncertainty:?}");
-        assert!(table.measured()[0] > first && table.measured()[0] < 30.0 * first);
+        let until = table.measured()[0];
+        assert!(until > first && until < 30.0 * first);
+        assert_eq!(table.report().warning(), Some(FitWarning::BeginsLate { first, until }));
+        assert!(table.report().to_string().contains("add the modulus at t = 0"), "{}", table.report());
         // a modulus at t = 0 leaves nothing hidden
         let times: Vec<f64> = std::iter::once(0.0).chain(times).collect();
         let moduli: Vec<f64> = times.iter().map(|&t| truth.modulus(t)).collect();
         let table = Measurements::relaxation(&pairs(&times, &moduli)).and_then(|table| table.fit()).unwrap();
         assert!(table.measured()[0] == first && table.report().uncertainty() < 1e-2, "{}", table.report());
+        assert_eq!(table.report().warning(), None);
     }
 }

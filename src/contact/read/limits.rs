@@ -1,7 +1,7 @@
 //! Limits of the model and of a material, beyond which a step warns.
 
 use crate::contact::Warnings;
-use crate::rheology::{Material, is_known};
+use crate::rheology::{FitWarning, Material, is_known};
 
 /// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
 pub(crate) const STEEP: f64 = 0.5;
@@ -26,7 +26,9 @@ impl Limits {
     pub(crate) fn of(material: &Material) -> Limits {
         // a body without elastic response has no modulus at once
         let modulus = Some(1.0 / material.contact_compliance(0.0)).filter(|e| e.is_finite() && !SOLID.contains(e));
-        let is_uncertain = material.fit_reports().any(|report| report.warning().is_some());
+        // of a table that begins late only shorter steps are uncertain
+        let is_doubt = |warning| !matches!(warning, FitWarning::BeginsLate { .. });
+        let is_uncertain = material.fit_reports().any(|report| report.warning().is_some_and(is_doubt));
         Limits { known_until: material.known_until(), measured: material.measured(), is_uncertain, modulus }
     }
 

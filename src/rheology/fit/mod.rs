@@ -19,7 +19,6 @@ mod uncertainty;
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
 pub use report::{FitReport, FitSample, FitWarning};
-pub(crate) use uncertainty::Uncertainty;
 
 use faer::{Col, Mat};
 use measured::DENSITY;

@@ -1,6 +1,7 @@
 use crate::values::Counted;
 use std::fmt;
 
+use super::uncertainty::{KNOWN, Uncertainty};
 use super::{FittedSeries, MaterialFunction, Sample};
 
 /// One given value and the value of the fitted series.
@@ -25,8 +26,6 @@ impl FitSample {
     }
 }
 
-/// Creep that is less uncertain than this is known, for the display.
-const KNOWN: f64 = 0.05;
 /// Uncertainties and systematic misfits below this need no warning.
 const TOLERABLE: f64 = 5e-3;
 /// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
@@ -45,6 +44,15 @@ pub enum FitWarning {
         /// Relative deviation, between the samples, of another series that fits them equally well.
         uncertainty: f64,
     },
+    /// Relaxation moduli have no value at t = 0, and do not show what relaxed before the first of them, which slows the creep
+    /// for many times as long: give the modulus at t = 0, or measure earlier. A contact warns of steps that are this short
+    /// ([`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL)).
+    BeginsLate {
+        /// The first time measured \[s\].
+        first: f64,
+        /// The creep is uncertain by more than 5 % until this time \[s\].
+        until: f64,
+    },
     /// No series fits the samples within their scatter: the body is not linear, it ages, or the specimen slipped.
     Systematic {
         /// [`FitReport::rms_misfit`].
@@ -57,6 +65,14 @@ impl fmt::Display for FitWarning {
         let (what, by, unit) = match self {
             FitWarning::FewSamples { uncertainty } => {
                 ("too few samples per decade: between them the curve is uncertain", uncertainty, "%")
+            }
+            FitWarning::BeginsLate { first, until } => {
+                return write!(
+                    f,
+                    "what relaxed before {first:.3e} s is not in the table, so that its creep is uncertain by more than \
+                     {:.0} % until {until:.3e} s: add the modulus at t = 0, or measure earlier",
+                    100.0 * KNOWN
+                );
             }
             FitWarning::Systematic { rms } => {
                 ("the samples deviate systematically from those of any linear body,", rms, "% rms")
@@ -85,14 +101,12 @@ pub struct FitReport {
     wrong_way: f64,
     interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
-    /// Whether the series is the creep of a rod in tension.
-    pub(crate) in_tension: bool,
 }
 
 debug_by! {
     self: FitReport =>
     samples: Counted(&self.samples), terms: self.terms, wrong_way: self.wrong_way, interval: Counted(&self.interval),
-    warning: self.warning, in_tension: self.in_tension
+    warning: self.warning
 }
 
 impl FitReport {
@@ -109,19 +123,20 @@ impl FitReport {
 
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None, in_tension: false }
+        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
     }
 
     /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, and the
     /// interval of their creep.
-    pub(crate) fn of_measurements(self, wrong_way: f64, ambiguity: f64, interval: Vec<(f64, f64)>) -> FitReport {
-        let rms = self.rms_misfit();
+    pub(crate) fn of_measurements(self, wrong_way: f64, ambiguity: f64, uncertainty: Uncertainty) -> FitReport {
+        let Uncertainty { interval, known_from: until } = uncertainty;
+        let (rms, first) = (self.rms_misfit(), interval[0].0);
         let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
             Some(FitWarning::FewSamples { uncertainty: ambiguity })
         } else if rms > TOLERABLE && self.is_systematic() {
             Some(FitWarning::Systematic { rms })
         } else {
-            None
+            (until > first).then_some(FitWarning::BeginsLate { first, until })
         };
         FitReport { wrong_way, interval, warning, ..self }
     }
@@ -191,7 +206,7 @@ impl FitReport {
         self.interval.iter().map(|&(time, logarithm)| (time, logarithm.exp_m1()))
     }
 
-    /// The warning, if any; for measurements only. Steps of a contact with such a material have
+    /// The warning, if any; for measurements only. Steps of a contact with such a material, but for one that begins late, have
     /// [`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL).
     pub fn warning(&self) -> Option<FitWarning> {
         self.warning

@@ -22,8 +22,8 @@ const DEVIATIONS: f64 = 2.2;
 const PER_DECADE: f64 = 8.0;
 /// A body relaxes before the first sample from at most so many times the modulus measured there.
 const HIDDEN_MODULUS: f64 = 10.0;
-/// Creep counts as known where relaxation before the first sample changes it by less than this.
-const KNOWN: f64 = 0.05;
+/// Creep that is less uncertain than this is known.
+pub(super) const KNOWN: f64 = 0.05;
 
 /// An interval of the creep compliance of a table.
 #[derive(Debug, Clone)]

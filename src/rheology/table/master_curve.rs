@@ -3,7 +3,7 @@ use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::shift_between;
-use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
+use crate::rheology::{CreepSeries, MaterialFunction, Tension, TimeTemperature};
 
 /// A reference this near \[K\] to the temperature of an isotherm is that temperature.
 const NEAR: f64 = 0.5;
@@ -197,8 +197,8 @@ impl MasterCurve {
     ///
     /// # Errors
     /// If the curve cannot be fitted.
-    pub fn fit_tension(&self) -> Result<CreepSeries> {
-        self.fitted(Deformation::Tension)
+    pub fn fit_tension(&self) -> Result<Tension<CreepSeries>> {
+        self.fitted(Deformation::Tension).map(Tension)
     }
 
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {

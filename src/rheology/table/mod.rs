@@ -12,8 +12,8 @@ pub use master_curve::MasterCurve;
 
 use crate::error::{Place, Result, TableError, positive};
 use crate::input::TakenColumn;
-use crate::rheology::CreepSeries;
-use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
+use crate::rheology::fit::{FitReport, Sample, Search};
+use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
 use data::{Deformation, Row, validated, wrong_way};
@@ -78,7 +78,7 @@ impl Measurements {
     ///
     /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many
     /// times as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five
-    /// times as long or more. [`FitReport::uncertainties`] includes it, and
+    /// times as long or more. [`FitReport::uncertainties`] includes it, [`FitReport::warning`] reports it, and
     /// [`Rheology::measured`](crate::rheology::Rheology::measured) begins where it is below 5 %, so that shorter steps of a
     /// contact warn by [`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL).
     ///
@@ -182,15 +182,15 @@ impl Measurements {
         self.fitted(Deformation::Shear)
     }
 
-    /// [`Measurements::fit`] of a table in tension, E(t), D(t), or E′ and E″ (a DMA): the creep D(t) of a rod, of which
-    /// [`Material::from_tension`](crate::rheology::Material::from_tension) makes a body.
+    /// [`Measurements::fit`] of a table in tension, E(t), D(t), or E′ and E″ (a DMA): the creep D(t) of a rod, which only
+    /// [`Material::from_tension`](crate::rheology::Material::from_tension) and its like take.
     ///
     /// ```
     /// use viscocontact::rheology::{Material, Measurements, Rheology};
     ///
     /// let table = [(0.1, 5.0e-10), (1.0, 5.3e-10), (10.0, 5.8e-10), (100.0, 6.5e-10), (1000.0, 7.4e-10)];
     /// let rod = Measurements::creep(&table)?.fit_tension()?;
-    /// let (nu, strain) = (0.38, rod.creep_compliance(10.0));
+    /// let (nu, strain) = (0.38, rod.0.creep_compliance(10.0));
     /// let body = Material::from_tension(rod, nu)?;
     /// assert!((body.contact_compliance(10.0) / ((1.0 - nu * nu) * strain) - 1.0).abs() < 1e-15);
     /// # Ok::<(), viscocontact::Error>(())
@@ -198,8 +198,8 @@ impl Measurements {
     ///
     /// # Errors
     /// As [`Measurements::fit`], if the headings name moduli in shear.
-    pub fn fit_tension(&self) -> Result<CreepSeries> {
-        self.fitted(Deformation::Tension)
+    pub fn fit_tension(&self) -> Result<Tension<CreepSeries>> {
+        self.fitted(Deformation::Tension).map(Tension)
     }
 
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
@@ -226,10 +226,10 @@ impl Measurements {
                 (search, measured) = (wider, other);
             }
         }
-        let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
-        let mut report =
-            FitReport::new(&measured.series, samples).of_measurements(wrong_way, measured.ambiguity, interval);
-        report.in_tension = deformation == Deformation::Tension;
+        let uncertainty = measured.uncertainty(&search, &averaged, [first, last])?;
+        let known_from = uncertainty.known_from;
+        let report =
+            FitReport::new(&measured.series, samples).of_measurements(wrong_way, measured.ambiguity, uncertainty);
         // a smooth series through few rows of much noise is further from them than the best
         let best = FitReport::new(&measured.least_squares, samples);
         let most = self.scatter.map_or(MOST_MISFIT, |scatter| scatter.max(MOST_MISFIT));

@@ -206,7 +206,7 @@ fn contacts_of_files_are_those_of_the_bodies_behind_them() {
     assert_eq!(isotherms.len(), 5);
     let rod = MasterCurve::new(296.15, isotherms).unwrap().fit_tension().unwrap();
     let sheared = Material::incompressible(truth.clone());
-    let stretched = Material::from_tension(truth.clone(), 0.4).unwrap();
+    let stretched = Material::from_tension(Tension(truth.clone()), 0.4).unwrap();
     let approach = |material: Material| {
         let grid = Grid::square(24, 4.0e-3).unwrap();
         let mut contact = sphere_on(grid, material, Settings::default());
