@@ -22,6 +22,8 @@ const MIN_GROWTH: f64 = 0.1;
 /// the depth back.
 const AIM: f64 = 0.15;
 const AIM_OF_FORCE: f64 = 0.1;
+/// Nothing brings the level of a body without elastic response back either: this part of it.
+const AIM_OF_RATES: f64 = 0.25;
 /// A step may have so many times the error that it aims at.
 const ALLOWED: f64 = 3.0;
 /// Order of a corrected step, by which its length is chosen.
@@ -121,6 +123,8 @@ impl StepControl {
         }
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.next }.max(shortest);
         let aim = if self.by_force { AIM_OF_FORCE } else { AIM } * tolerance;
+        let resists_rates_alone = contact.longest_growth(MAX_GROWTH) < MAX_GROWTH;
+        let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * aim;
         let mut last: Option<(f64, f64)> = None;
         loop {
             if length < shortest {

@@ -9,7 +9,7 @@ const SWEPT: f64 = 0.05;
 const LASTING: i32 = 8;
 
 impl Levels {
-    /// Depth and force of an undisturbed contact under a load of this kind and size: the depth under a force as soon as it acts, or under half of it
+    /// Depth and force of an undisturbed contact under a load of this kind and size: the depth under a force as soon as it acts, or, without elastic response, under half of it
     /// when it has `pressed` for so many steps like the last one, the force after `steps` of them.
     pub(in crate::states) fn expected(
         &self,
@@ -21,7 +21,8 @@ impl Levels {
     ) -> [f64; 2] {
         match demand {
             Demand::Force(_) => {
-                let soon = 0.5 / self.history.stiffness_over(pressed);
+                let has_dashpot = self.history.rule().has_dashpot();
+                let soon = if has_dashpot { 0.5 / self.history.stiffness_over(pressed) } else { 0.0 };
                 [states.depth(size * soon.max(self.history.rule().compliance())), size]
             }
             Demand::Depth { give, .. } => {
