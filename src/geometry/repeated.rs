@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, UserError};
 use crate::geometry::{Geometry, Waves};
 
 /// Another shape repeated periodically, for periodic domains: its part within half a period of the origin is repeated.
@@ -43,6 +43,10 @@ impl Repeated {
 impl Geometry for Repeated {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         self.shape.initial_gap(self.wrapped(0, x1), self.wrapped(1, x2))
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.shape.failure()
     }
 
     fn waves(&self) -> Vec<Waves> {

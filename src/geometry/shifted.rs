@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::error::{Result, finite};
+use crate::error::{Result, UserError, finite};
 use crate::geometry::{Geometry, Waves};
 
 /// Another geometry shifted in the plane of contact.
@@ -42,6 +42,10 @@ impl Geometry for Shifted {
 
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         self.shape.fill_gap_at(grid, [self.by[0] + by[0], self.by[1] + by[1]], gap);
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.shape.failure()
     }
 
     fn waves(&self) -> Vec<Waves> {

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
+use crate::error::UserError;
 use crate::geometry::{Geometry, Waves};
 
 /// Superposed shapes: the gap is the sum of the gaps of the shapes, and +∞ where a shape has nothing to touch.
@@ -43,6 +44,10 @@ impl Geometry for Sum {
             shape.fill_gap_at(grid, by, &mut part);
             gap.iter_mut().zip(&part).for_each(|(sum, h)| *sum += h);
         }
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.parts.iter().find_map(|shape| shape.failure())
     }
 
     fn waves(&self) -> Vec<Waves> {

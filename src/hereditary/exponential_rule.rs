@@ -165,6 +165,11 @@ impl ExponentialRule {
         self.relaxation.equilibrium()
     }
 
+    /// The longest step that the one before continues as a quadratic, over the one before.
+    pub(crate) fn longest_continued(&self) -> f64 {
+        if self.has_dashpot() { LONGEST_CONTINUED_OF_DASHPOT } else { LONGEST_CONTINUED }
+    }
+
     /// How many differences of its fields the rule keeps.
     pub(super) fn kept(&self) -> usize {
         self.kept
@@ -287,8 +292,7 @@ impl ExponentialRule {
         if self.has_memory() && self.kept < wanted {
             (self.kept, self.known) = (wanted, self.known.min(self.kept));
         }
-        let growth = if self.has_dashpot() { LONGEST_CONTINUED_OF_DASHPOT } else { LONGEST_CONTINUED };
-        let degree = if dt > growth * self.spans[0] { 1 } else { wanted };
+        let degree = if dt > self.longest_continued() * self.spans[0] { 1 } else { wanted };
         let corrected = interpolant != Interpolant::Linear;
         self.weigh_as(dt, degree, [corrected && dt >= MIN_CORRECTING * self.spans[0], corrected]);
     }

@@ -30,6 +30,8 @@
 //! can be repeated.
 
 mod csv;
+#[cfg(feature = "npy")]
+mod deferred;
 mod field;
 mod field_values;
 mod metadata;

@@ -2,13 +2,13 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, Write};
-use std::mem::ManuallyDrop;
 
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 use crate::file::{npy, write_numbers};
 use crate::output::Metadata;
+use crate::output::deferred::Deferred;
 use crate::output::field_values::FieldValues;
 use crate::{Grid, ViscoelasticContact};
 
@@ -44,14 +44,13 @@ pub(super) fn state_of(frame: File) -> io::Result<[f64; 3]> {
     Ok(state)
 }
 
-/// An NPZ archive being written. An archive that fails is forgotten rather than dropped: a dropped `ZipWriter` completes its
-/// archive, and prints to standard error if that fails again.
-pub(super) struct Archive<W: Write + Seek>(ManuallyDrop<ZipWriter<W>>);
+/// An NPZ archive being written.
+pub(super) struct Archive<W: Write + Seek>(ZipWriter<Deferred<W>>);
 
 impl<W: Write + Seek> Archive<W> {
     /// An archive without arrays.
     pub(super) fn empty(out: W) -> Archive<W> {
-        Archive(ManuallyDrop::new(ZipWriter::new(out)))
+        Archive(ZipWriter::new(Deferred::new(out)))
     }
 
     /// An archive that begins with the time and the cell centres.
@@ -78,7 +77,7 @@ impl<W: Write + Seek> Archive<W> {
         // plain entries have sizes of 32 bits, including the header of the array
         let large = shape.iter().product::<usize>() >= (u32::MAX as usize - 4096) / 8;
         self.start(name, large, &npy::header("<f8", shape))?;
-        Ok(BufWriter::with_capacity(1 << 16, &mut *self.0))
+        Ok(BufWriter::with_capacity(1 << 16, &mut self.0))
     }
 
     /// Adds the metadata, as a zero-dimensional array of one string, and completes the archive.
@@ -86,8 +85,7 @@ impl<W: Write + Seek> Archive<W> {
         let text: Vec<u8> = metadata.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
         self.start("metadata", false, &npy::header(&format!("<U{}", text.len() / 4), &[]))?;
         self.0.write_all(&text)?;
-        ManuallyDrop::into_inner(self.0).finish()?;
-        Ok(())
+        self.0.finish()?.finish()
     }
 
     fn start(&mut self, name: &str, large: bool, header: &[u8]) -> io::Result<()> {

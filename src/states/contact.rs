@@ -187,9 +187,14 @@ impl StatesContact {
         self.levels.distance(&self.states, &other.levels, start, cuts, steps)
     }
 
+    /// The most that a step may be longer than the one before ([`Levels::longest_growth`]).
+    pub(super) fn longest_growth(&self, otherwise: f64) -> f64 {
+        self.levels.longest_growth(otherwise)
+    }
+
     /// Depth and force of undisturbed bodies after so many steps like the last one, about, under a load of this kind and size.
-    pub(super) fn expected(&self, demand: Demand, size: f64, steps: f64) -> [f64; 2] {
-        self.levels.expected(&self.states, demand, size, steps)
+    pub(super) fn expected(&self, demand: Demand, size: f64, steps: f64, pressed: f64) -> [f64; 2] {
+        self.levels.expected(&self.states, demand, size, steps, pressed)
     }
 
     /// [`StatesContact::step_to`] without merging.

@@ -62,6 +62,8 @@ pub(super) struct StepControl {
     /// Times and loads at equal parts of the run, and the greatest of them.
     loads: Vec<(f64, f64)>,
     greatest_load: f64,
+    /// The longest time for which at least half of the greatest load acts.
+    pressed: f64,
     /// Times and loads within the step being tried at which it may have to end.
     points: Vec<(f64, f64)>,
     pub(super) rejected: u64,
@@ -76,7 +78,8 @@ impl StepControl {
     pub(super) fn new(contact: &StatesContact, until: f64) -> StepControl {
         let (loads, points) = (Vec::with_capacity(PARTS_OF_RUN as usize + 1), Vec::with_capacity(2 * PARTS));
         let [whole, halves, middle] = [(); 3].map(|()| contact.clone());
-        let (next, corner, by_force, greatest, greatest_load, rejected) = (0.0, 0.0, true, [0.0; 2], 0.0, 0);
+        let (next, corner, by_force, greatest, rejected) = (0.0, 0.0, true, [0.0; 2], 0);
+        let (greatest_load, pressed) = (0.0, 0.0);
         StepControl {
             until,
             next,
@@ -85,6 +88,7 @@ impl StepControl {
             greatest,
             loads,
             greatest_load,
+            pressed,
             points,
             rejected,
             whole,
@@ -144,7 +148,8 @@ impl StepControl {
                 Some(_) => 1.0,
                 None => ORDER,
             };
-            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, MAX_GROWTH);
+            let most = if error > 0.0 { contact.longest_growth(MAX_GROWTH) } else { MAX_GROWTH };
+            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim {
                 self.next = match event {
                     Some(_) => growth.clamp(0.5, 1.0) * length,
@@ -171,6 +176,10 @@ impl StepControl {
             self.loads.extend((0..=PARTS_OF_RUN).filter_map(|k| Some((time(k), load(time(k))?))));
             self.by_force = (0..=PARTS_OF_RUN).all(|k| is_force(history, time(k)));
             self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
+            // a body without elastic response has no depth as soon as the load acts
+            let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
+            let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
+            self.pressed = lengths.fold((self.until - start) / f64::from(PARTS_OF_RUN), f64::max);
         }
     }
 
@@ -286,7 +295,12 @@ impl StepControl {
         if self.by_force {
             of_surface[1] = 0.0;
         }
-        let expected = halves.expected(contact.demand(load_at(history, end)?)?, self.greatest_load, self.until / half);
+        let expected = halves.expected(
+            contact.demand(load_at(history, end)?)?,
+            self.greatest_load,
+            self.until / half,
+            self.pressed / half,
+        );
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
         let StepControl { whole, halves, middle, .. } = self;

@@ -296,10 +296,21 @@ fn errors_of_gaps_and_creep_come_out_as_themselves() {
         contact.step(0.1, Load::force(0.5))
     };
     build(false, false).unwrap();
-    for (gap, creep) in [(true, false), (false, true)] {
-        let error = build(gap, creep).unwrap_err();
+    let own = |error: Error| {
         assert!(matches!(error, Error::User(_)), "{error}");
         assert!(error.source().unwrap().is::<std::num::ParseFloatError>());
+    };
+    [(true, false), (false, true)].into_iter().for_each(|(gap, creep)| own(build(gap, creep).unwrap_err()));
+    // inside of other shapes
+    let failing = || FnGeometry::fallible(|_, _| "x".parse::<f64>());
+    let shapes: [Box<dyn Geometry>; 3] = [
+        Box::new(Shifted::new(failing(), [1.0e-4, 0.0]).unwrap()),
+        Box::new(viscocontact::geometry::Sum::new(Sphere::new(10.0e-3).unwrap(), failing())),
+        Box::new(Repeated::new(failing(), [2.0e-3; 2]).unwrap()),
+    ];
+    for shape in &shapes {
+        let builder = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap()).geometry(shape);
+        own(builder.material(Material::incompressible(Elastic::new(1.0e6).unwrap())).build().unwrap_err());
     }
 }
 

@@ -9,23 +9,35 @@ const SWEPT: f64 = 0.05;
 const LASTING: i32 = 8;
 
 impl Levels {
-    /// Depth and force of an undisturbed contact under a load of this kind and size, the depth as soon as it acts, the force after so many
-    /// steps like the last one.
+    /// Depth and force of an undisturbed contact under a load of this kind and size: the depth under a force as soon as it acts, or under half of it
+    /// when it has `pressed` for so many steps like the last one, the force after `steps` of them.
     pub(in crate::states) fn expected(
         &self,
         states: &ElasticStates,
         demand: Demand,
         size: f64,
         steps: f64,
+        pressed: f64,
     ) -> [f64; 2] {
         match demand {
-            Demand::Force(_) => [states.depth(size * self.history.rule().compliance()), size],
+            Demand::Force(_) => {
+                let soon = 0.5 / self.history.stiffness_over(pressed);
+                [states.depth(size * soon.max(self.history.rule().compliance())), size]
+            }
             Demand::Depth { give, .. } => {
                 let stiffness = self.history.stiffness_over(steps);
                 let level = states.level_where(give * stiffness, size);
                 [states.depth(level), stiffness * level]
             }
         }
+    }
+
+    /// The most that a step may be longer than the one before, both taken whole and in halves, where the order of both is to be one: that of
+    /// a body without elastic response falls.
+    pub(in crate::states) fn longest_growth(&self, otherwise: f64) -> f64 {
+        let rule = self.history.rule();
+        // the whole follows half of the step before
+        if rule.has_dashpot() { 0.499 * rule.longest_continued() } else { otherwise }
     }
 
     /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|

@@ -201,7 +201,7 @@ impl Levels {
         let (mut depth, mut carried) = (held, (level - self.bottom(self.groups.len()).0).max(0.0));
         for (bottom, lower, group, free) in self.spans() {
             carried += (1.0 - free) * (group.top.min(level) - bottom).max(0.0);
-            depth += free * (group.motions.depth - lower.depth.max(held)).max(0.0);
+            depth += free.min(1.0) * (group.motions.depth - lower.depth.max(held)).max(0.0);
         }
         [depth, carried / self.history.rule().compliance()]
     }
@@ -250,12 +250,13 @@ impl Levels {
     /// above c; NaN beyond the sweep.
     fn level_of_depth(&self, states: &ElasticStates, give: f64, depth: f64) -> Wanted {
         let mut reached: f64 =
-            self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum();
+            self.spans().map(|(_, lower, group, free)| free.min(1.0) * (group.motions.depth - lower.depth)).sum();
         if depth <= reached {
             return Wanted { level: 0.0, give, sum: 0.0 };
         }
         for (bottom, lower, group, free) in self.spans() {
-            let more = (1.0 - free) * (group.motions.depth - lower.depth + give * (group.top - bottom));
+            let rise = (1.0 - free).max(0.0) * (group.motions.depth - lower.depth);
+            let more = rise + (1.0 - free) * give * (group.top - bottom);
             if reached + more >= depth {
                 let sum = lower.depth + give * bottom + (depth - reached) / (1.0 - free);
                 return Wanted { level: states.level_where(give, sum).clamp(bottom, group.top), give, sum };
@@ -284,8 +285,9 @@ impl Levels {
         self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
     }
 
-    /// Releases all groups where they are; takes no step.
+    /// Releases all groups where they are; takes no step. As after any jump, the past does not determine how they continue.
     fn release(&mut self) {
+        self.history.reset_differences();
         self.groups.iter_mut().for_each(|group| group.traction = 0.0);
         self.motions.depth += self.lift;
         (self.level, self.force, self.lift) = (0.0, 0.0, 0.0);
@@ -299,9 +301,7 @@ impl Levels {
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
         for (k, (group, displacement)) in self.groups.iter_mut().zip(&mut self.trial).enumerate() {
             group.traction = if k < held { (1.0 - *displacement) * stiffness } else { 0.0 };
-            if k < held {
-                *displacement = 1.0;
-            }
+            *displacement = if k < held { 1.0 } else { displacement.min(1.0) };
             force += group.traction * (group.top - bottom);
             motions.add(*displacement, lower, group.motions);
             (bottom, lower) = (group.top, group.motions);
@@ -318,6 +318,6 @@ impl Levels {
     /// Σ W Δδ at the end of a step in which all groups are free: the depth that a body must pass to touch.
     pub(super) fn surface_after(&mut self, dt: f64, interpolant: Interpolant) -> f64 {
         self.history.predict(dt, interpolant, &mut self.trial);
-        self.spans().map(|(_, lower, group, free)| free * (group.motions.depth - lower.depth)).sum()
+        self.spans().map(|(_, lower, group, free)| free.min(1.0) * (group.motions.depth - lower.depth)).sum()
     }
 }
