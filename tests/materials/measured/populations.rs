@@ -208,10 +208,10 @@ fn vertical_shifts_are_found_on_request() {
             let relative = fitted.creep_compliance(t) / body.creep_compliance(t) - 1.0;
             assert!(relative.abs() < 0.05, "{relative:.3} at {t} s: {}", fitted.report());
         }
-        for k in 0..4 {
+        for (k, factor) in factors.iter().enumerate() {
             let without = plain.as_ref().map_or(f64::INFINITY, |plain| by_shift(plain, k));
             let (off, error) = (by_shift(&master, k), master.shift_errors()[k].1);
-            let apart = (master.vertical_factors()[k].1 / factors[k]).ln().abs();
+            let apart = (master.vertical_factors()[k].1 / factor).ln().abs();
             println!(
                 "dynamic {dynamic}, {k}: {off:.3} ± {error:.3} decades, factor within {apart:.3}; plain {:.3}",
                 without
