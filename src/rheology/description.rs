@@ -8,7 +8,7 @@ use crate::rheology::{CreepSpectrum, Material};
 /// What a material says of one of its bodies.
 #[derive(Debug)]
 pub(crate) struct BodyDescription<'a> {
-    /// Poisson's ratio, if constant by definition; else the bulk modulus \[Pa\].
+    /// Poisson's ratio, if constant by definition; else the bulk modulus at t = 0 \[Pa\].
     pub(crate) volume: Result<f64, f64>,
     body: &'a Body,
 }
@@ -31,7 +31,7 @@ impl Material {
         self.bodies.iter().map(|body| {
             let volume = match body.volume {
                 Volume::Proportional { poisson, .. } => Ok(poisson),
-                Volume::Elastic(bulk_modulus, ..) => Err(bulk_modulus),
+                Volume::Bulk(bulk_modulus, ..) => Err(bulk_modulus),
             };
             BodyDescription { volume, body }
         })

@@ -12,6 +12,7 @@ use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Te
 /// | [`Material::incompressible`] | J(t)/4 |
 /// | [`Material::constant_poisson`] | (1 − ν) J(t)/2 |
 /// | [`Material::elastic_bulk`] | J(t)/4 + (3/4) K(t), K the creep compliance to the relaxation modulus 3B + G(t) |
+/// | [`Material::relaxing_bulk`] | J(t)/4 + (3/4) K(t), the bulk relaxing in proportion to the shear |
 /// | [`Material::from_tension`] | (1 − ν²) D(t), D the creep compliance in tension |
 /// | [`Material::from_tension_elastic_bulk`] | as of an elastic bulk, J(t) = 3 D(t) − 1/(3B) |
 /// | [`Material::against`], two bodies | the sum of both |
@@ -40,8 +41,8 @@ pub(super) struct Body {
 pub(super) enum Volume {
     /// C(t) over the creep compliance of the rheology, the same at all times, and Poisson's ratio.
     Proportional { factor: f64, poisson: f64 },
-    /// An elastic bulk of this modulus: the exact series of C(t), and 1 − 2ν.
-    Elastic(f64, CreepSpectrum, Compressibility),
+    /// A bulk of this modulus at t = 0: the exact series of C(t), and 1 − 2ν.
+    Bulk(f64, CreepSpectrum, Compressibility),
 }
 
 /// 1 − 2ν as a function of time after a step of load, `last` + Σ share e^(−t/time).
@@ -123,7 +124,35 @@ impl Material {
     pub fn elastic_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
         positive("bulk modulus", bulk_modulus)?;
         let creep = rheology.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &rheology))?;
-        Material::of_shear_and_bulk(rheology, &creep, bulk_modulus)
+        Material::of_shear_and_bulk(rheology, &creep, Bulk { constant: bulk_modulus, per_shear: 0.0 })
+    }
+
+    /// A body whose bulk relaxes in proportion to its shear: B(t)/B(0) = 1 − c (1 − G(t)/G(0)), with `bulk_modulus` B(0)
+    /// \[Pa\] and `ratio` c, as Prony series of finite-element programs with k_i = c g_i at the times of the shear. It is
+    /// exact as [`Material::elastic_bulk`], with B(t) in place of B.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{GeneralizedMaxwell, Material, PronyTerm};
+    ///
+    /// // g_i and τ_i of the shear, k_i = g_i/4
+    /// let terms = [PronyTerm { share: 0.4, time: 0.1 }, PronyTerm { share: 0.2, time: 10.0 }];
+    /// let polymer = Material::relaxing_bulk(GeneralizedMaxwell::prony(1.0e9, &terms)?, 3.0e9, 0.25)?;
+    /// let (g, b) = (0.4e9, 3.0e9 * (1.0 - 0.25 * 0.6)); // in the end
+    /// let contact = 0.25 / g + 0.75 / (3.0 * b + g);
+    /// assert!((polymer.contact_compliance(1.0e9) / contact - 1.0).abs() < 1e-12);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Material::elastic_bulk`]; if the ratio is outside \[0, 1), or the rheology has no elastic response. With a ratio of 1
+    /// Poisson's ratio is constant: [`Material::constant_poisson`].
+    pub fn relaxing_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64, ratio: f64) -> Result<Material> {
+        positive("bulk modulus", bulk_modulus)?;
+        within("ratio of the relaxation in bulk to that in shear", ratio, (0.0..1.0).contains(&ratio), "in [0, 1)")?;
+        let creep = rheology.creep_spectrum().ok_or_else(|| no_series("a relaxing bulk", &rheology))?;
+        positive("elastic compliance of the rheology", creep.glassy())?;
+        let bulk = Bulk { constant: (1.0 - ratio) * bulk_modulus, per_shear: ratio * bulk_modulus * creep.glassy() };
+        Material::of_shear_and_bulk(rheology, &creep, bulk)
     }
 
     /// A body whose creep was measured in tension ([`Material::from_tension`]) and that is elastic in bulk, with
@@ -153,19 +182,17 @@ impl Material {
         within("bulk modulus", bulk_modulus, glassy > of_bulk, allowed)?;
         let terms: Vec<_> = tension.terms().iter().map(|&(compliance, time)| (3.0 * compliance, time)).collect();
         let shear = CreepSpectrum::new(glassy - of_bulk, 3.0 * tension.fluidity(), &terms)?;
-        Material::of_shear_and_bulk(tensile, &shear, bulk_modulus)
+        Material::of_shear_and_bulk(tensile, &shear, Bulk { constant: bulk_modulus, per_shear: 0.0 })
     }
 
-    fn of_shear_and_bulk(
-        rheology: impl Rheology + 'static,
-        creep: &CreepSpectrum,
-        bulk_modulus: f64,
-    ) -> Result<Material> {
-        let shear = creep.relaxation();
-        let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
-        let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
+    fn of_shear_and_bulk(rheology: impl Rheology + 'static, creep: &CreepSpectrum, bulk: Bulk) -> Result<Material> {
+        let (shear, factor) = (creep.relaxation(), 1.0 + 3.0 * bulk.per_shear);
+        let equilibrium = factor * shear.equilibrium() + 3.0 * bulk.constant;
+        let terms: Vec<_> = shear.terms().iter().map(|&(modulus, time)| (factor * modulus, time)).collect();
+        let stiffened = RelaxationSpectrum::new(equilibrium, factor * shear.viscosity(), &terms)?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
-        let volume = Volume::Elastic(bulk_modulus, contact, Compressibility::new(bulk_modulus, &stiffened));
+        let at_once = bulk.constant + if bulk.per_shear > 0.0 { bulk.per_shear / creep.glassy() } else { 0.0 };
+        let volume = Volume::Bulk(at_once, contact, Compressibility::new(&bulk, &stiffened));
         Ok(Material::with_volume(rheology, volume))
     }
 
@@ -210,7 +237,7 @@ impl Material {
     pub fn poisson_ratios(&self) -> impl Iterator<Item = Option<f64>> {
         self.bodies.iter().map(|body| match &body.volume {
             Volume::Proportional { poisson, .. } => Some(*poisson),
-            Volume::Elastic(_, _, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
+            Volume::Bulk(_, _, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
         })
     }
 
@@ -218,7 +245,7 @@ impl Material {
     pub(crate) fn compressibility(&self, body: usize) -> Option<Compressibility> {
         self.bodies.get(body).map(|body| match &body.volume {
             Volume::Proportional { poisson, .. } => Compressibility { last: 1.0 - 2.0 * poisson, terms: Vec::new() },
-            Volume::Elastic(_, _, compressibility) => compressibility.clone(),
+            Volume::Bulk(_, _, compressibility) => compressibility.clone(),
         })
     }
 
@@ -318,14 +345,23 @@ fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
     MaterialError::NoExponentialSeries { what, rheology: format!("{rheology:?}") }.into()
 }
 
+/// A bulk modulus linear in the shear modulus: B(t) = `constant` + `per_shear` G(t).
+struct Bulk {
+    /// \[Pa\].
+    constant: f64,
+    per_shear: f64,
+}
+
 impl Compressibility {
-    /// 1 − 2ν of a body with bulk modulus B: 3G/(3B + G) = 3 − 9B/(3B + G), where `stiffened` is the creep of 3B + G.
-    fn new(bulk_modulus: f64, stiffened: &CreepSpectrum) -> Compressibility {
-        let factor = 9.0 * bulk_modulus;
+    /// 1 − 2ν of a body with bulk modulus B = b + c G: with H = 3B + G, of which `stiffened` is the creep, 3G/H is
+    /// (3 − 9b/H)/(1 + 3c).
+    fn new(bulk: &Bulk, stiffened: &CreepSpectrum) -> Compressibility {
+        let scale = 1.0 / (1.0 + 3.0 * bulk.per_shear);
+        let factor = 9.0 * bulk.constant * scale;
         let terms: Vec<_> = stiffened.terms().iter().map(|&(share, time)| (factor * share, time)).collect();
         let all = stiffened.glassy() + stiffened.terms().iter().map(|(share, _)| share).sum::<f64>();
         // of a body that flows, or is much stiffer in bulk, the difference is rounding of either sign
-        Compressibility { last: (3.0 - factor * all).max(0.0), terms }
+        Compressibility { last: (3.0 * scale - factor * all).max(0.0), terms }
     }
 }
 
@@ -333,8 +369,8 @@ impl Body {
     pub(super) fn contact_compliance(&self, t: f64) -> f64 {
         match &self.volume {
             Volume::Proportional { factor, .. } => factor * self.rheology.creep_compliance(t),
-            Volume::Elastic(_, contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
-            Volume::Elastic(..) => f64::NAN,
+            Volume::Bulk(_, contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
+            Volume::Bulk(..) => f64::NAN,
         }
     }
 
@@ -343,7 +379,10 @@ impl Body {
             Volume::Proportional { factor, .. } => {
                 self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(*factor)).transpose()
             }
-            Volume::Elastic(_, contact, _) => Ok(Some(contact.clone())),
+            Volume::Bulk(_, contact, _) => Ok(Some(contact.clone())),
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

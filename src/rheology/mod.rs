@@ -30,7 +30,8 @@
 //! | `new` | the elements: moduli, and the viscosity \[Pa·s\] of each dashpot; the numbers of the formula above |
 //! | `with_time`, `with_times` | the same, with a time in place of each viscosity |
 //! | `relaxing` | glassy modulus, rubbery modulus, relaxation time |
-//! | [`GeneralizedMaxwell::prony`] | glassy modulus, (share of it, relaxation time) of each term |
+//! | [`GeneralizedMaxwell::prony`] | glassy modulus, share of it and relaxation time of each term ([`PronyTerm`]) |
+//! | [`GeneralizedMaxwell::prony_long_term`] | the same of the rubbery modulus |
 //!
 //! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, are a [`Tension`], of which [`Material::from_tension`] makes
 //! a material; elastic constants by [`Elastic::young`].
@@ -93,7 +94,7 @@ pub use fractional_maxwell::FractionalMaxwell;
 pub use fractional_zener::FractionalZener;
 pub use function::FnRheology;
 pub use generalized_kelvin::GeneralizedKelvin;
-pub use generalized_maxwell::GeneralizedMaxwell;
+pub use generalized_maxwell::{GeneralizedMaxwell, PronyTerm};
 pub use kelvin_voigt::KelvinVoigt;
 pub use kww::Kww;
 pub use log_creep::LogCreep;

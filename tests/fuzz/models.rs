@@ -2,7 +2,7 @@
 
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
-use viscocontact::rheology::TimeTemperature;
+use viscocontact::rheology::{PronyTerm, TimeTemperature};
 
 use crate::engine::known;
 use crate::source::Source;
@@ -31,7 +31,11 @@ pub fn rheology(source: &mut Source, fitted: bool) -> viscocontact::Result<Box<d
             let fluidity = if source.chance(0.5) { 0.0 } else { source.scale(1e-12, 1e-6) };
             Box::new(GeneralizedKelvin::new(j, fluidity, &terms(source, [1e-9, 1e-5]))?)
         }
-        6 if source.chance(0.3) => Box::new(GeneralizedMaxwell::prony(g, &terms(source, [1e-3, 1.0]))?),
+        6 if source.chance(0.3) => {
+            let terms = terms(source, [1e-3, 1.0]).into_iter();
+            let terms: Vec<_> = terms.map(|(share, time)| PronyTerm { share, time }).collect();
+            Box::new(GeneralizedMaxwell::prony(g, &terms)?)
+        }
         6 => Box::new(GeneralizedMaxwell::new(source.choose(&[g, g, 0.0]), &terms(source, [1e4, 1e8]))?),
         7 => Box::new(PowerLaw::new(j, t, n)?),
         8 if source.chance(0.5) => Box::new(FractionalMaxwell::findley(j, source.scale(1e-9, 1e-5), n)?),

@@ -4,12 +4,16 @@ use crate::common::{pairs, triples};
 use approx::assert_abs_diff_eq;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, Experiment, Isotherm, MasterCurve, TableError, Tension, Units};
+use viscocontact::rheology::{CreepSpectrum, Experiment, Isotherm, MasterCurve, PronyTerm, TableError, Tension, Units};
 use viscocontact::{Error, TextFormat};
 
 fn terms_of(body: &dyn Rheology) -> (f64, Vec<(f64, f64)>) {
     let relaxation = body.creep_spectrum().unwrap().relaxation();
     (relaxation.equilibrium(), relaxation.terms().to_vec())
+}
+
+fn shares<const N: usize>(terms: [(f64, f64); N]) -> [PronyTerm; N] {
+    terms.map(|(share, time)| PronyTerm { share, time })
 }
 
 fn close(found: f64, expected: f64, within: f64) {
@@ -32,14 +36,22 @@ fn named_constructors_take_times() {
         close(terms[0].1, time, 1e-12);
     }
 
-    let (rest, terms) = terms_of(&GeneralizedMaxwell::prony(8.0e6, &[(0.25, 0.1), (0.5, 10.0)]).unwrap());
+    let (rest, terms) = terms_of(&GeneralizedMaxwell::prony(8.0e6, &shares([(0.25, 0.1), (0.5, 10.0)])).unwrap());
     close(rest, 2.0e6, 1e-13);
     for (found, expected) in terms.iter().zip([(2.0e6, 0.1), (4.0e6, 10.0)]) {
         close(found.0, expected.0, 1e-12);
         close(found.1, expected.1, 1e-12);
     }
-    let fluid = GeneralizedMaxwell::prony(1.0e6, &[(0.1, 0.1), (0.2, 1.0), (0.7, 10.0)]).unwrap();
+    let fluid = GeneralizedMaxwell::prony(1.0e6, &shares([(0.1, 0.1), (0.2, 1.0), (0.7, 10.0)])).unwrap();
     assert_eq!(terms_of(&fluid).0, 0.0, "shares that add up to 1 but for rounding");
+
+    let (rest, terms) =
+        terms_of(&GeneralizedMaxwell::prony_long_term(2.0e6, &shares([(1.0, 0.1), (2.0, 10.0)])).unwrap());
+    close(rest, 2.0e6, 1e-13);
+    for (found, expected) in terms.iter().zip([(2.0e6, 0.1), (4.0e6, 10.0)]) {
+        close(found.0, expected.0, 1e-12);
+        close(found.1, expected.1, 1e-12);
+    }
 
     // the same bodies by viscosities
     let (g, slow, tau, lambda) = (1.0e9, 1.0e8, 100.0, 5.0);
@@ -90,8 +102,22 @@ fn named_constructors_name_what_they_refuse() {
     assert_eq!(field(FractionalZener::relaxing(1.0e6, 2.0e6, 1.0, 0.5).unwrap_err()), "glassy modulus");
     assert_eq!(field(FractionalZener::relaxing(2.0e6, 1.0e6, 1.0, 1.5).unwrap_err()), "exponent");
     assert_eq!(field(Burgers::with_times((1.0, 1.0), (1.0, 0.0)).unwrap_err()), "retardation time");
-    assert_eq!(field(GeneralizedMaxwell::prony(1.0, &[(0.6, 1.0), (0.6, 2.0)]).unwrap_err()), "sum of the shares");
-    assert_eq!(field(GeneralizedMaxwell::prony(1.0, &[(3.0e6, 1.0)]).unwrap_err()), "share of the glassy modulus");
+    assert_eq!(
+        field(GeneralizedMaxwell::prony(1.0, &shares([(0.6, 1.0), (0.6, 2.0)])).unwrap_err()),
+        "sum of the shares"
+    );
+    assert_eq!(
+        field(GeneralizedMaxwell::prony(1.0, &shares([(3.0e6, 1.0)])).unwrap_err()),
+        "share of the glassy modulus"
+    );
+    let rubbery = GeneralizedMaxwell::prony_long_term(0.0, &shares([(1.0, 1.0)]));
+    assert_eq!(field(rubbery.unwrap_err()), "rubbery modulus");
+    for ratio in [-0.1, 1.0, f64::NAN] {
+        let refused = Material::relaxing_bulk(Elastic::new(1.0).unwrap(), 1.0, ratio).unwrap_err();
+        assert_eq!(field(refused), "ratio of the relaxation in bulk to that in shear");
+    }
+    let dashpot = Material::relaxing_bulk(KelvinVoigt::new(1.0e6, 1.0e6).unwrap(), 1.0e9, 0.5);
+    assert_eq!(field(dashpot.unwrap_err()), "elastic compliance of the rheology");
     assert_eq!(field(Elastic::young(1.0, 0.6).unwrap_err()), "Poisson's ratio");
     assert_eq!(field(Elastic::young(0.0, 0.3).unwrap_err()), "Young's modulus");
     assert_eq!(
@@ -121,14 +147,43 @@ fn bodies_in_tension_have_the_contact_compliance_of_their_shear() {
     }
 }
 
+/// s Ĵ(s).
+fn carson(spectrum: &CreepSpectrum, s: f64) -> f64 {
+    let terms = spectrum.terms().iter().map(|&(c, lambda)| c / (1.0 + s * lambda));
+    spectrum.glassy() + spectrum.fluidity() / s + terms.sum::<f64>()
+}
+
+/// At every s the contact compliance is (3K + 4G)/(4G (3K + G)) of the two Prony series, with k_i = c g_i.
+#[test]
+fn a_relaxing_bulk_obeys_the_correspondence_principle() {
+    for (terms, fluid) in [(vec![(0.3, 0.01), (0.4, 1.0), (0.2, 50.0)], false), (vec![(0.6, 0.1), (0.4, 3.0)], true)] {
+        let (glassy, bulk) = (1.0e9, 2.5e9);
+        let shares: Vec<PronyTerm> = terms.iter().map(|&(share, time)| PronyTerm { share, time }).collect();
+        for ratio in [0.0, 0.2, 0.9] {
+            let body = GeneralizedMaxwell::prony(glassy, &shares).unwrap();
+            let material = Material::relaxing_bulk(body.clone(), bulk, ratio).unwrap();
+            let contact = material.contact_spectrum().unwrap().unwrap();
+            for s in [1e-4, 0.1, 1.0, 30.0, 1e5] {
+                let relaxed = |modulus: f64, factor: f64| {
+                    let lost = terms.iter().map(|&(share, time)| factor * share / (1.0 + s * time)).sum::<f64>();
+                    modulus * (1.0 - lost)
+                };
+                let (g, k) = (relaxed(glassy, 1.0), relaxed(bulk, ratio));
+                close(carson(&contact, s), (3.0 * k + 4.0 * g) / (4.0 * g * (3.0 * k + g)), 1e-10);
+            }
+            assert_eq!(contact.fluidity() > 0.0, fluid);
+            if ratio == 0.0 {
+                let elastic = Material::elastic_bulk(body, bulk).unwrap();
+                close(material.contact_compliance(1.0), elastic.contact_compliance(1.0), 1e-14);
+            }
+        }
+    }
+}
+
 /// The correspondence principle in tension: at every s the contact compliance is (1 − ν²)/E of the elastic body of Young's modulus
 /// E = 1/(s D̂(s)) and bulk modulus B, whose Poisson's ratio is (3B − E)/(6B).
 #[test]
 fn an_elastic_bulk_in_tension_obeys_the_correspondence_principle() {
-    let carson = |spectrum: &CreepSpectrum, s: f64| {
-        let terms = spectrum.terms().iter().map(|&(c, lambda)| c / (1.0 + s * lambda));
-        spectrum.glassy() + spectrum.fluidity() / s + terms.sum::<f64>()
-    };
     let bodies = [
         CreepSpectrum::new(5.0e-10, 0.0, &[]).unwrap(),
         CreepSpectrum::new(5.0e-10, 0.0, &[(3.0e-10, 0.1), (1.0e-6, 10.0)]).unwrap(),

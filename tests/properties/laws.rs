@@ -6,10 +6,11 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, TimeTemperature, laws, library};
+use viscocontact::rheology::{CreepSpectrum, PronyTerm, TimeTemperature, laws, library};
 use viscocontact::{geometry, load};
 
 fn models() -> Vec<(&'static str, Box<dyn Rheology>)> {
+    let terms = [(0.5, 1e-3), (0.4, 1.0)].map(|(share, time)| PronyTerm { share, time });
     let warm = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
     let zener = || Zener::new(1.0e9, 1.0e6, 1.0e6).unwrap();
     vec![
@@ -26,7 +27,7 @@ fn models() -> Vec<(&'static str, Box<dyn Rheology>)> {
         ("Zener::with_time", Box::new(Zener::with_time(1.0e9, 1.0e6, 0.3).unwrap())),
         ("Zener::relaxing", Box::new(Zener::relaxing(1.0e9, 1.0e6, 1.0e-3).unwrap())),
         ("Burgers::with_times", Box::new(Burgers::with_times((1.0e9, 1.0e3), (1.0e8, 1.0)).unwrap())),
-        ("prony", Box::new(GeneralizedMaxwell::prony(1.0e9, &[(0.5, 1e-3), (0.4, 1.0)]).unwrap())),
+        ("prony", Box::new(GeneralizedMaxwell::prony(1.0e9, &terms).unwrap())),
         ("FractionalMaxwell::with_time", Box::new(FractionalMaxwell::with_time(1.0e9, 0.1, 0.4).unwrap())),
         ("FractionalZener::relaxing", Box::new(FractionalZener::relaxing(1.0e9, 1.0e7, 1.0e-4, 0.5).unwrap())),
         ("PowerLaw", Box::new(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap())),

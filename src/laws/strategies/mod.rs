@@ -17,7 +17,7 @@ use crate::geometry::{
 use crate::load::LoadHistory;
 use crate::rheology::{
     Burgers, CreepSpectrum, Elastic, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
-    KelvinVoigt, Kww, LogCreep, Maxwell, PowerLaw, Rheology, SlowCreep, Zener,
+    KelvinVoigt, Kww, LogCreep, Maxwell, PowerLaw, PronyTerm, Rheology, SlowCreep, Zener,
 };
 
 mod histories;
@@ -90,6 +90,7 @@ pub fn rheologies(modulus: f64, time: f64) -> impl Strategy<Value = AnyRheology>
         }),
         body((zero_or(modulus), maxwell), |(rest, terms)| GeneralizedMaxwell::new(rest, &terms)),
         body((g.clone(), prop::collection::vec((0.01..0.2_f64, t.clone()), 1..5)), |(g, terms)| {
+            let terms: Vec<_> = terms.into_iter().map(|(share, time)| PronyTerm { share, time }).collect();
             GeneralizedMaxwell::prony(g, &terms)
         }),
         body((compliance.clone(), t.clone(), exponent.clone()), |(j, t, n)| PowerLaw::new(j, t, n)),

@@ -12,7 +12,7 @@ const NEAR: f64 = 0.5;
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
 /// The shift of each isotherm relative to its neighbour is that of the least difference of the logarithms of the values where
-/// the two overlap, each column relative to its own scatter; single outliers cost little. There are no vertical shifts.
+/// the two overlap, each column relative to its own scatter; single outliers cost little. Vertical shifts: [`MasterCurve::with_vertical_shifts`].
 ///
 /// ```
 /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology, TimeTemperature};
@@ -43,6 +43,8 @@ pub struct MasterCurve {
     log_shifts: Vec<f64>,
     /// Their standard errors.
     log_errors: Vec<f64>,
+    /// ln of the factor of the values of each.
+    log_factors: Vec<f64>,
     /// By how much the shifts by the storage and by the loss modulus differ, from each isotherm to its neighbour.
     disagreements: Vec<f64>,
 }
@@ -55,6 +57,20 @@ impl MasterCurve {
     /// If there is no isotherm, two have the same temperature, they measure different quantities, none is at the
     /// reference temperature, or neighbours do not overlap in their values ([`TableError::NoOverlap`]).
     pub fn new(reference: f64, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
+        MasterCurve::shifted(reference, isotherms, false)
+    }
+
+    /// [`MasterCurve::new`] with vertical shifts too: the values of an isotherm may be those at the reference times a factor
+    /// b_T, the same for storage and loss, as of rubbers (b_T near T/T_ref) and of specimens that were clamped anew. Where a
+    /// curve is nearly a power law, a factor and a shift can hardly be told apart: see [`MasterCurve::shift_errors`].
+    ///
+    /// # Errors
+    /// As [`MasterCurve::new`].
+    pub fn with_vertical_shifts(reference: f64, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
+        MasterCurve::shifted(reference, isotherms, true)
+    }
+
+    fn shifted(reference: f64, isotherms: Vec<Isotherm>, is_vertical: bool) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
         let apart = |isotherm: &Isotherm| (isotherm.temperature - reference).abs();
         let nearest = (0..isotherms.len()).min_by(|&a, &b| apart(&isotherms[a]).total_cmp(&apart(&isotherms[b])));
@@ -63,16 +79,24 @@ impl MasterCurve {
             return Err(Error::OutOfRange { field: "reference temperature", value: reference, allowed });
         };
         let mut log_shifts = vec![0.0; isotherms.len()];
-        let (mut log_errors, mut disagreements) = (log_shifts.clone(), log_shifts.clone());
+        let [mut log_errors, mut log_factors, mut disagreements] = [(); 3].map(|()| log_shifts.clone());
         for k in (center + 1..isotherms.len()).chain((0..center).rev()) {
             let (before, [colder, warmer], sign) =
                 if k > center { (k - 1, [k - 1, k], 1.0) } else { (k + 1, [k, k + 1], -1.0) };
-            let shift = shift_between(&isotherms[colder], &isotherms[warmer])?;
+            let shift = shift_between(&isotherms[colder], &isotherms[warmer], is_vertical)?;
             log_shifts[k] = log_shifts[before] + sign * shift.log;
+            log_factors[k] = log_factors[before] + sign * shift.vertical;
             log_errors[k] = log_errors[before].hypot(shift.error);
             disagreements[k] = shift.disagreement;
         }
-        Ok(MasterCurve { reference: isotherms[center].temperature, isotherms, log_shifts, log_errors, disagreements })
+        Ok(MasterCurve {
+            reference: isotherms[center].temperature,
+            isotherms,
+            log_shifts,
+            log_errors,
+            log_factors,
+            disagreements,
+        })
     }
 
     /// Shifts by a known `law`, to its reference temperature.
@@ -90,6 +114,7 @@ impl MasterCurve {
             isotherms,
             log_shifts,
             log_errors: none.clone(),
+            log_factors: none.clone(),
             disagreements: none,
         })
     }
@@ -102,8 +127,13 @@ impl MasterCurve {
     /// Temperature \[K\] and shift factor a_T of each isotherm, by temperature: at T all times are a_T times
     /// the times at the reference.
     pub fn shift_factors(&self) -> Vec<(f64, f64)> {
-        let pairs = self.isotherms.iter().zip(&self.log_shifts);
-        pairs.map(|(isotherm, shift)| (isotherm.temperature, shift.exp())).collect()
+        self.of_each(&self.log_shifts, f64::exp).collect()
+    }
+
+    /// Temperature \[K\] and vertical factor b_T of each isotherm, by temperature: at T all values are b_T times those at the
+    /// reference. 1 without vertical shifts.
+    pub fn vertical_factors(&self) -> Vec<(f64, f64)> {
+        self.of_each(&self.log_factors, f64::exp).collect()
     }
 
     /// Temperature \[K\] and standard error of log₁₀ a_T of each isotherm, by temperature; 0 at the reference, and with a law.
@@ -111,19 +141,21 @@ impl MasterCurve {
     /// Neighbours are shifted one after the other, so that errors grow away from the reference. They include shifts that fit
     /// nearly as well, as where a curve is nearly a power law.
     pub fn shift_errors(&self) -> Vec<(f64, f64)> {
-        self.in_decades(&self.log_errors).collect()
+        self.of_each(&self.log_errors, decades).collect()
     }
 
     /// Temperatures \[K\] of isotherms that storage and loss moduli would shift differently relative to their neighbours, by
     /// more than their errors explain, and by how many decades: the body is not thermorheologically simple, or a modulus is
     /// disturbed by the machine.
     pub fn disagreements(&self) -> Vec<(f64, f64)> {
-        self.in_decades(&self.disagreements).filter(|(_, decades)| *decades > 0.0).collect()
+        self.of_each(&self.disagreements, decades).filter(|(_, decades)| *decades > 0.0).collect()
     }
 
-    fn in_decades(&self, logarithms: &[f64]) -> impl Iterator<Item = (f64, f64)> {
-        let pairs = self.isotherms.iter().zip(logarithms);
-        pairs.map(|(isotherm, logarithm)| (isotherm.temperature, logarithm / std::f64::consts::LN_10))
+    fn of_each(&self, logarithms: &[f64], value: fn(f64) -> f64) -> impl Iterator<Item = (f64, f64)> {
+        self.isotherms
+            .iter()
+            .zip(logarithms)
+            .map(move |(isotherm, &logarithm)| (isotherm.temperature, value(logarithm)))
     }
 
     /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁.
@@ -165,7 +197,7 @@ impl MasterCurve {
         pairs.map(|(isotherm, &shift)| (isotherm.temperature, shift)).filter(|(t, _)| *t != self.reference)
     }
 
-    /// The points of the curve: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
+    /// The points of the curve, with values as at the reference: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
     /// the lowest temperature to the highest.
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
         let functions = self.isotherms[0].experiment.layout().columns.iter().map(|&(_, function)| function);
@@ -176,9 +208,11 @@ impl MasterCurve {
 
     /// The rows of all isotherms, at reduced times or frequencies.
     fn reduced(&self) -> impl Iterator<Item = Row> {
-        self.isotherms.iter().zip(&self.log_shifts).flat_map(|(isotherm, &shift)| {
+        let shifts = self.log_shifts.iter().zip(&self.log_factors);
+        self.isotherms.iter().zip(shifts).flat_map(|(isotherm, (&shift, &vertical))| {
             let factor = if isotherm.experiment.layout().zero { (-shift).exp() } else { shift.exp() };
-            isotherm.rows.iter().map(move |row| Row { x: row.x * factor, ..row.clone() })
+            let values = move |row: &Row| row.values.iter().map(|value| value / vertical.exp()).collect();
+            isotherm.rows.iter().map(move |row| Row { x: row.x * factor, values: values(row), ..row.clone() })
         })
     }
 
@@ -213,6 +247,10 @@ impl MasterCurve {
         }
         Measurements::from_rows(self.isotherms[0].experiment, rows)?.fitted(deformation)
     }
+}
+
+fn decades(logarithm: f64) -> f64 {
+    logarithm / std::f64::consts::LN_10
 }
 
 /// Sorts isotherms by temperature, and checks that they measure the same quantity.

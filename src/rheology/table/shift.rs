@@ -35,6 +35,8 @@ const MOST_APART: f64 = 0.3;
 pub(super) struct Shift {
     pub(super) log: f64,
     pub(super) error: f64,
+    /// ln of the factor of the values of the warmer, 0 if they are not to be shifted.
+    pub(super) vertical: f64,
     /// The shifts by storage and by loss moduli alone differ by this, if it is more than their errors explain.
     pub(super) disagreement: f64,
 }
@@ -51,11 +53,13 @@ struct Difference {
 struct Pair<'a> {
     isotherms: [&'a Isotherm; 2],
     columns: usize,
+    /// Whether values may differ by a factor, the same in all columns.
+    is_vertical: bool,
 }
 
 /// The shift of `warmer` relative to `colder`.
-pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<Shift> {
-    let pair = Pair { isotherms: [colder, warmer], columns: colder.rows[0].values.len() };
+pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: bool) -> Result<Shift> {
+    let pair = Pair { isotherms: [colder, warmer], columns: colder.rows[0].values.len(), is_vertical };
     let temperatures = [colder.temperature(), warmer.temperature()];
     let all: Vec<usize> = (0..pair.columns).collect();
     let scatter: Vec<f64> = all.iter().map(|&column| pair.scatter(column)).collect();
@@ -100,7 +104,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<Shif
         let (between, by_error) = ((alone[0].0 - alone[1].0).abs(), alone[0].1.hypot(alone[1].1));
         disagreement = if between > LEAST_DISAGREEMENT.max(3.0 * by_error) { between } else { 0.0 };
     }
-    Ok(Shift { log: shift, error, disagreement })
+    Ok(Shift { log: shift, error, vertical: -pair.factor(shift, &all), disagreement })
 }
 
 impl Pair<'_> {
@@ -123,6 +127,16 @@ impl Pair<'_> {
         }
     }
 
+    /// The median of the differences, 0 if values are not to be shifted.
+    fn factor(&self, shift: f64, columns: &[usize]) -> f64 {
+        let mut values = Vec::new();
+        if self.is_vertical {
+            self.differences(shift, columns, |found| values.push(found.value));
+        }
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    }
+
     /// The scatter of a column about the lines between the neighbours of each row.
     fn scatter(&self, column: usize) -> f64 {
         let of_isotherm = |isotherm: &&Isotherm| {
@@ -138,15 +152,15 @@ impl Pair<'_> {
 
     /// The scatter of the differences of a column at a shift.
     fn residual(&self, shift: f64, column: usize, scatter: f64) -> f64 {
-        let mut values = Vec::new();
-        self.differences(shift, &[column], |found| values.push(found.value.abs() / found.variance.sqrt()));
+        let (mut values, factor) = (Vec::new(), self.factor(shift, &[column]));
+        self.differences(shift, &[column], |found| values.push((found.value - factor).abs() / found.variance.sqrt()));
         if values.is_empty() { scatter } else { deviation(values).max(0.3 * scatter) }
     }
 
     fn cost(&self, shift: f64, columns: &[usize], scatter: &[f64]) -> f64 {
-        let mut sum = 0.0;
+        let (mut sum, factor) = (0.0, self.factor(shift, columns));
         self.differences(shift, columns, |found| {
-            let z = found.value / scatter[found.column];
+            let z = (found.value - factor) / scatter[found.column];
             sum += (z * z / found.variance).ln_1p() - EXPECTED;
         });
         sum
@@ -160,12 +174,17 @@ impl Pair<'_> {
 
     /// The standard error of a shift: by the slopes, or as far as shifts are as good.
     fn error(&self, shift: f64, [low, high]: [f64; 2], columns: &[usize], scatter: &[f64]) -> f64 {
-        let mut information = 0.0;
+        let (mut sums, factor) = ([0.0; 3], self.factor(shift, columns));
         self.differences(shift, columns, |found| {
             let scatter = scatter[found.column];
-            let weight = 1.0 / (1.0 + (0.5 * found.value / scatter).powi(2) / found.variance);
-            information += weight * (found.slope / scatter).powi(2) / found.variance;
+            let robust = 1.0 / (1.0 + (0.5 * (found.value - factor) / scatter).powi(2) / found.variance);
+            let weight = robust / (found.variance * scatter * scatter);
+            for (power, sum) in sums.iter_mut().enumerate() {
+                *sum += weight * found.slope.powi(power as i32);
+            }
         });
+        // of slopes that are alike a factor takes the place of a shift
+        let information = sums[2] - if self.is_vertical { sums[1] * sums[1] / sums[0] } else { 0.0 };
         let by_slopes = (INFLATION / information).sqrt();
         let least = self.cost(shift, columns, scatter);
         let tried = (0..=TRIED).map(|k| low + (high - low) * k as f64 / TRIED as f64);
