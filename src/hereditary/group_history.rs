@@ -52,7 +52,7 @@ impl GroupHistory {
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial of lower degree is
     /// taken where a group would leave 0 ≤ W ≤ 1: an element that nothing presses on neither rises above the undisturbed surface nor
     /// sinks below the contact. A body without elastic response resists the rate alone, whose quadratic overshoots 1 in the groups that the
-    /// last step met: this is as it must be, and W of those that stay free is 1. Returns whether all are there.
+    /// last step met: this is as it must be, and W of groups that stay free is 1. Returns whether all are there.
     pub(crate) fn predict(&mut self, dt: f64, interpolant: Interpolant, free: &mut Vec<f64>) -> bool {
         self.rule.compute_weights(dt, interpolant);
         let most = if self.rule.has_dashpot() { f64::MAX } else { 1.0 + ROUNDING };
@@ -144,7 +144,7 @@ impl GroupHistory {
             && strains.all(|(column, modulus)| (difference - (column[a] - column[b]) / modulus).abs() <= most)
     }
 
-    /// Mixes a share of the past of group `b` into that of `a`.
+    /// Mixes a share of the past of group `b` into the past of group `a`.
     pub(crate) fn mix(&mut self, a: usize, b: usize, share: f64) {
         self.columns.iter_mut().for_each(|column| column[a] += share * (column[b] - column[a]));
     }

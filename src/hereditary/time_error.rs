@@ -301,7 +301,7 @@ struct Defect {
 }
 
 impl Sums {
-    /// The error of v by the kink that u has where cells leave: those that stay answer a force with a greater compliance, those that leave
+    /// The error of v by the kink that u has where cells leave: cells that stay answer a force with a greater compliance, cells that leave
     /// follow the body no longer. The pressure of the cells that leave falls as in the step before, which tells when they do. A dashpot
     /// has no kink in u as long as v has no jump.
     fn of_leaving(&self, rule: &ExponentialRule) -> f64 {

@@ -48,7 +48,7 @@ impl Text {
         Ok(Text { dialect: text.detected(format), ..text })
     }
 
-    /// The dialect that makes the most numbers of the fields, of those that `format` allows.
+    /// The dialect that makes the most numbers of the fields, among the dialects that `format` allows.
     fn detected(&self, format: TextFormat) -> Dialect {
         use Delimiter::{Blanks, Comma, Semicolon, Tab};
         let delimiters = match format.delimiter {

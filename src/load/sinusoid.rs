@@ -27,7 +27,7 @@ impl Sinusoid {
     ///
     /// # Errors
     /// If the frequency is not finite and positive, a load is invalid, the loads are of different kinds, or force, approach or drive of
-    /// `low` is above that of `high`.
+    /// `low` exceeds the value of `high`.
     pub fn new(low: Load, high: Load, frequency: f64) -> Result<Sinusoid> {
         Load::validate_all("sinusoid", [low, high])?;
         let (field, rule) = ("sinusoid from low to high", "not fall; `Sinusoid::about` takes mean and amplitude");

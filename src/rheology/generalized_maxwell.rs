@@ -86,7 +86,7 @@ impl GeneralizedMaxwell {
 /// A term of a Prony series relative to a modulus.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PronyTerm {
-    /// Its modulus over that of the series: g_k.
+    /// Its modulus over the modulus of the series: g_k.
     pub share: f64,
     /// Its relaxation time τ_k \[s\].
     pub time: f64,

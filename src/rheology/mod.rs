@@ -31,7 +31,7 @@
 //! | `with_time`, `with_times` | the same, with a time in place of each viscosity |
 //! | `relaxing` | glassy modulus, rubbery modulus, relaxation time |
 //! | [`GeneralizedMaxwell::prony`] | glassy modulus, share of it and relaxation time of each term ([`PronyTerm`]) |
-//! | [`GeneralizedMaxwell::prony_long_term`] | the same of the rubbery modulus |
+//! | [`GeneralizedMaxwell::prony_long_term`] | shares of the rubbery modulus |
 //!
 //! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, are a [`Tension`], of which [`Material::from_tension`] makes
 //! a material; elastic constants by [`Elastic::young`].

@@ -337,7 +337,7 @@ impl StepControl {
         Ok((report, worst))
     }
 
-    /// The greatest depth and force of the run, with those of the step being tried. Depths without contact are no scale.
+    /// The greatest depth and force of the run, the step being tried included. Depths without contact are no scale.
     fn greatest_with(&self, force: f64) -> [f64; 2] {
         let depth = if force == 0.0 { 0.0 } else { self.halves.depth().abs() };
         [self.greatest[0].max(depth), self.greatest[1].max(force)]

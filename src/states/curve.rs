@@ -58,7 +58,7 @@ pub struct ElasticStates {
     pub(crate) tilt: [Tilt; 2],
     /// Poisson's ratio of a layer, on which its elastic states depend.
     pub(crate) poisson: Option<f64>,
-    /// Greatest error that a state in the middle of two others showed, less those that the states added later removed.
+    /// Greatest error that a state in the middle of two others showed, less the errors that states added later removed.
     pub(crate) error: f64,
     /// Below this level the elastic contact does not only grow: these levels are held or free as a whole.
     pub(crate) first_level: f64,

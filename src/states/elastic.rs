@@ -48,7 +48,7 @@ impl ElasticContact {
             area: contact.contact_area(),
             cells: contact.contact_cells(),
             patches: contact.patches()?.all.len(),
-            // those of its own modulus and solver are none of the contacts that are made of it
+            // warnings of its own modulus and solver do not apply to the contacts that are made of it
             warnings: report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING,
             figures: Figures { modulus: None, ..report.figures },
         };

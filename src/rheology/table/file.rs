@@ -8,7 +8,7 @@ use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedC
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
 
-/// The units of a file in SI, which its headings must agree with, or those of its headings.
+/// The units of a file in SI, which its headings must agree with, or the units of its headings.
 ///
 /// ```
 /// use viscocontact::rheology::Units;
@@ -106,7 +106,7 @@ impl Measurements {
     /// tan δ or the phase angle in place of the loss modulus, and with them |G*| or |E*| in place of the storage modulus.
     /// Without headings there are the columns of the experiment, in their order.
     ///
-    /// Units are those of the headings (`t [min]`, `J (1/GPa)`, `E/MPa`) with [`Units::OF_HEADINGS`]; other `units` are stated,
+    /// Units come from the headings (`t [min]`, `J (1/GPa)`, `E/MPa`) with [`Units::OF_HEADINGS`]; other `units` are stated,
     /// and headings must agree with them. Headings that name moduli or compliances in tension (E, E′, E″, D) make a table for
     /// [`Measurements::fit_tension`]; those in shear, for [`Measurements::fit`].
     ///
@@ -259,7 +259,7 @@ impl Columns {
     }
 }
 
-/// A column with its unit: the one given for a field of [`Units`], with which the heading must agree, or that of the heading.
+/// A column with its unit: the one given for a field of [`Units`], with which the heading must agree, or the unit of the heading.
 fn sized(given: Option<(&'static str, Option<f64>)>, column: TakenColumn) -> Result<TakenColumn> {
     let Some((field, Some(given))) = given else {
         column.unit()?;

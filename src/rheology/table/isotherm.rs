@@ -16,7 +16,7 @@ const TEMPERATURE: WantedColumn = WantedColumn {
     quantity: Quantity::TEMPERATURE,
     by_unit: true,
 };
-/// Temperatures further apart than this \[K\] are those of two isotherms.
+/// Temperatures further apart than this \[K\] belong to two isotherms.
 const APART: f64 = 1.0;
 const ICE: f64 = 273.15;
 

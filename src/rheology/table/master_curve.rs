@@ -11,7 +11,7 @@ const NEAR: f64 = 0.5;
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
-/// The shift of each isotherm relative to its neighbour is that of the least difference of the logarithms of the values where
+/// The shift of each isotherm relative to its neighbour has the least difference of the logarithms of the values where
 /// the two overlap, each column relative to its own scatter; single outliers cost little. Vertical shifts: [`MasterCurve::with_vertical_shifts`].
 ///
 /// ```
@@ -51,7 +51,7 @@ pub struct MasterCurve {
 
 impl MasterCurve {
     /// Finds the shift factors from the data alone. `reference` \[K\] must be the temperature of an isotherm within 0.5 K, as
-    /// those of a file are means: the curve is at the temperature of that isotherm.
+    /// temperatures of a file are means: the curve is at the temperature of the nearest isotherm.
     ///
     /// # Errors
     /// If there is no isotherm, two have the same temperature, they measure different quantities, none is at the

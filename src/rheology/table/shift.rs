@@ -23,7 +23,7 @@ const PER_DECADE: f64 = 4.0;
 const AROUND: usize = 4;
 /// Shifts whose difference is less than this above the least are as good.
 const AS_GOOD: f64 = 8.0;
-/// The squared error over that of independent differences: each is counted from both sides, and outliers count less.
+/// The squared error over the squared error of independent differences: each is counted from both sides, and outliers count less.
 const INFLATION: f64 = 6.0;
 /// Shifts that differ by less, in ln a, agree: 0.05 decades.
 const LEAST_DISAGREEMENT: f64 = 0.115;
@@ -45,7 +45,7 @@ pub(super) struct Shift {
 struct Difference {
     column: usize,
     value: f64,
-    /// Its variance over that of a value.
+    /// Its variance over the variance of a value.
     variance: f64,
     slope: f64,
 }

@@ -33,8 +33,8 @@ impl Levels {
         }
     }
 
-    /// The most that a step may be longer than the one before, both taken whole and in halves, where the order of both is to be one: that of
-    /// a body without elastic response falls.
+    /// The most that a step may be longer than the one before, both taken whole and in halves, so that the rule has the same order in both:
+    /// the order falls on a body without elastic response.
     pub(in crate::states) fn longest_growth(&self, otherwise: f64) -> f64 {
         let rule = self.history.rule();
         // the whole follows half of the step before
@@ -43,7 +43,7 @@ impl Levels {
 
     /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|
     /// from below over the compliance, for X = W and X the strains as far as they can raise a free surface. This is the most that the
-    /// difference can ever add to a depth and to a force. The `cuts` are those of the other outcome.
+    /// difference can ever add to a depth and to a force. The `cuts` belong to the other outcome.
     pub(in crate::states) fn distance(
         &mut self,
         states: &ElasticStates,

@@ -140,7 +140,7 @@ const X: WantedColumn = coordinate("x", &["x", "x1"]);
 const Y: WantedColumn = coordinate("y", &["y", "x2"]);
 const HEIGHT: WantedColumn = coordinate("height", &["z", "height", "h"]);
 
-/// The points of a table with these columns, the last of which has the heights. `units` are those of coordinates and
+/// The points of a table with these columns, the last of which has the heights. `units` apply to coordinates and
 /// heights.
 fn points(
     table: &TextTable,
