@@ -122,14 +122,15 @@ impl Prony {
         prony
     }
 
-    /// The material of this contact modulus, against a rigid tip.
-    pub(crate) fn material(&self) -> Result<Material> {
+    /// The material of this contact modulus and Poisson's ratio, against a rigid tip.
+    pub(crate) fn material(&self, poisson: f64) -> Result<Material> {
         let equilibrium: f64 =
             self.moduli.iter().zip(&self.rates).filter(|(_, rate)| **rate == 0.0).map(|(e, _)| e).sum();
         let relaxing = self.moduli.iter().zip(&self.rates).filter(|(_, rate)| **rate > 0.0);
-        // E* = 4G of an incompressible body
-        let terms: Vec<(f64, f64)> = relaxing.map(|(e, rate)| (0.25 * e, 1.0 / rate)).collect();
-        Ok(Material::incompressible(GeneralizedMaxwell::new(0.25 * equilibrium, &terms)?))
+        // E* = 2G/(1 − ν)
+        let shear = 0.5 * (1.0 - poisson);
+        let terms: Vec<(f64, f64)> = relaxing.map(|(e, rate)| (shear * e, 1.0 / rate)).collect();
+        Ok(Material::constant_poisson(GeneralizedMaxwell::new(shear * equilibrium, &terms)?, poisson)?)
     }
 }
 

@@ -356,6 +356,11 @@ impl ElasticStates {
         (level > 0.0).then(|| &self.states[above.saturating_sub(1)])
     }
 
+    /// Poisson's ratio of the layer that was swept, which a material has to have; `None` of other bodies.
+    pub fn poisson_ratio(&self) -> Option<f64> {
+        self.poisson
+    }
+
     /// Stiffness over the contact modulus at a level \[m\], see [`ElasticState::stiffness`].
     pub fn stiffness(&self, level: f64) -> f64 {
         self.power_law(level, |state| state.stiffness, 1.0)

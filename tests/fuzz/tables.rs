@@ -137,7 +137,10 @@ fn csv(source: &mut Source) -> Verdict {
     // those of the headings, mostly
     let [abscissa, value] =
         if source.chance(0.7) { UNITS[which] } else { [source.scale(1e-3, 1e3), source.scale(1e-3, 1e3)] };
-    let units = Units::new(abscissa, value).map_err(|error| error.to_string())?;
+    let units = match Units::new(abscissa, value) {
+        Ok(units) => units,
+        Err(error) => return judged(Err::<(), _>(error), |()| Ok(())),
+    };
     let format = if source.chance(0.9) {
         match which {
             4 | 5 => TextFormat::default().with_decimal_comma(true),

@@ -200,7 +200,7 @@ impl Fit {
     /// # Errors
     /// If the modulus at t = 0 is not finite.
     pub fn material(&self) -> Result<Material> {
-        self.prony.material()
+        self.prony.material(0.5)
     }
 
     /// Force and depth of the fit at each sample of a curve; empty if there is no such curve, as its forces and residuals are.
