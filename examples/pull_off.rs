@@ -4,7 +4,8 @@
 //! pull finds the stiff body in the shape that the pressure p₀ gave it at rest, at the approach ω₀ and the relaxed compliance C.
 //! Where the bodies still touch, C K p₀ + (C/k) K (p − p₀) = ω − r²/2R and C K p₀ = ω₀ − r²/2R, so that
 //! (C/k) K p = ω − (1 − 1/k) ω₀ − r²/2kR: the contact of a stiff body with a ball of radius kR. By JKR it holds up to 3π k w R/2, as
-//! if the work of adhesion were k w.
+//! if the work of adhesion were k w. Between both, the edge of the contact opens as fast as the body lets it: the theory of an
+//! [`OpeningEdge`](viscocontact::analytic::OpeningEdge) holds while the bulk is relaxed.
 //!
 //! `cargo run --release --features plot --example pull_off`
 
@@ -17,7 +18,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
-use viscocontact::analytic::Jkr;
+use viscocontact::analytic::{Jkr, OpeningEdge};
 use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 
@@ -52,6 +53,9 @@ struct Args {
     #[arg(long, default_value = "out/pull_off")]
     output: PathBuf,
 }
+
+/// The zone of the exponential attraction over its length l and the stiffening, fitted (docs/guide/adhesion.md).
+const ZONE: f64 = 1.4;
 
 /// Least and greatest speed in unit depths a relaxation time, as powers of ten.
 const DECADES: [i32; 2] = [-3, 2];
@@ -90,11 +94,14 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let depth = width * width / radius;
     let (cells, longest, every) = if args.quick { (128, 0.3, 3) } else { (args.cells, 0.15, 1) };
     let grid = Grid::square(cells, 13.0 * width)?;
+    let material = Material::incompressible(body);
+    let edge = OpeningEdge::new(&material, work, args.range)?.with_zone(ZONE)?;
     println!(
-        "Tabor's number {:.2} relaxed, {:.2} at once; {:.1} cells in the zone of the attraction",
+        "Tabor's number {:.2} relaxed, {:.2} at once; {:.1} cells in the zone of the attraction, l = {:.2e} m",
         tabor_number(&law, radius, modulus)?,
         tabor_number(&law, radius, ratio * modulus)?,
-        modulus * args.range.powi(2) / work / grid.spacing()[0]
+        edge.length() / grid.spacing()[0],
+        edge.length()
     );
 
     // the limits of an attraction of vanishing range
@@ -111,7 +118,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
     let mut rested = ViscoelasticContact::builder(grid)
         .geometry(&Sphere::new(radius)?)
-        .material(Material::incompressible(body))
+        .material(material)
         .attraction(law)
         .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(true))
         .build()?;
@@ -129,10 +136,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_path(args.output.join("histories.csv"))?;
     table.write_record(["speed_m_s", "time_s", "approach_m", "force_n", "contact_area_m2"])?;
     let mut summary = csv::Writer::from_path(args.output.join("pulls.csv"))?;
-    summary.write_record(["speed_m_s", "greatest_pull_n", "apparent_work_of_adhesion_j_m2", "steps"])?;
+    summary.write_record(["speed_m_s", "greatest_pull_n", "apparent_work_of_adhesion_j_m2", "theory_j_m2", "steps"])?;
     let exponents: Vec<i32> = (3 * DECADES[0]..=3 * DECADES[1]).step_by(every).collect();
     let progress = support::progress(exponents.len() as u64);
-    let mut apparent = Vec::new();
+    let (mut apparent, mut theories) = (Vec::new(), Vec::new());
     for (n, &exponent) in exponents.iter().enumerate() {
         let speed = 10f64.powf(f64::from(exponent) / 3.0) * depth / args.tau;
         let path = pull(&mut rested.clone(), speed, longest * depth)?;
@@ -141,16 +148,20 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         }
         let greatest = path.iter().map(|point| -point[2]).fold(0.0, f64::max);
         let adhesion = greatest / (1.5 * PI * radius);
-        summary.serialize((speed, greatest, adhesion, path.len() - 1))?;
+        let theory = -edge.pull_off(radius, rest, speed)?.force / (1.5 * PI * radius);
+        summary.serialize((speed, greatest, adhesion, theory, path.len() - 1))?;
         progress.suspend(|| {
             println!(
-                "{speed:.1e} m/s: greatest pull {:.3} mN, apparent work of adhesion {:.2} w, {} steps",
+                "{speed:.1e} m/s (V τ/l = {:.1e}): greatest pull {:.3} mN, apparent work of adhesion {:.2} w (theory {:.2} w), {} steps",
+                speed * args.tau / edge.length(),
                 1e3 * greatest,
                 adhesion / work,
+                theory / work,
                 path.len() - 1
             );
         });
         apparent.push((speed, adhesion));
+        theories.push((speed, theory));
         if exponent % 3 == 0 {
             let color = COLORS[(n * every / 3) % 6];
             let points = path.iter().map(|point| (point[1], point[2])).collect();
@@ -174,6 +185,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         works.add(name, COLORS[n], Style::Line, across(-limits[n].pull_off_force() / (1.5 * PI * radius)));
     }
     works.add("computed", COLORS[2], Style::LineAndDots, apparent.clone());
+    works.add("an edge that opens, relaxed bulk", COLORS[3], Style::Line, theories);
     let [slow, fast] = dots;
     forces.add("JKR, relaxed; at once, kR", COLORS[6], Style::Dots, slow);
     forces.add("", COLORS[6], Style::Dots, fast);

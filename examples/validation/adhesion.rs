@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use viscocontact::Result;
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction};
-use viscocontact::analytic::MaugisDugdale;
+use viscocontact::analytic::{Jkr, MaugisDugdale, OpeningEdge};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
 
@@ -88,4 +88,34 @@ pub fn creeping() -> Outcome {
         ("greatest pull at V = 1000", greatest_pull(&fast), 33.078, 1e-2),
     ];
     Ok(Checked::new("sphere pulled off a creeping body, 144² cells", "axisymmetric computation, below", &rows))
+}
+
+/// The same body, pulled off slowly by Dugdale's attraction, against the theory of an opening edge. Both are divided by the pull-off force of the relaxed
+/// body, of a range and of none. Tabor's number is 2, relaxed.
+pub fn opening_edge() -> Outcome {
+    let (law, start) = (Dugdale::new(1.0, 0.5)?, 3.0);
+    let body = GeneralizedMaxwell::new(0.25, &[(2.25, 1.0)])?;
+    let edge = OpeningEdge::new(&Material::incompressible(body.clone()), 1.0, 0.5)?;
+    let mut relaxed = ball(128, 10.0, body, law)?;
+    for _ in 0..4 {
+        relaxed.step(1.0e4, Load::approach(start))?;
+    }
+    let [of_range, of_none] =
+        [MaugisDugdale::new(1.0, 1.0, 1.0, 2.0)?.pull_off()[0], Jkr::new(1.0, 1.0, 1.0)?.pull_off_force()];
+    let row = |speed: f64| {
+        let theory = edge.pull_off(1.0, start, speed)?;
+        let to = theory.approach - 0.3;
+        let path = pulled(&mut relaxed.clone(), to, (start - to) / speed, 80)?;
+        viscocontact::Result::Ok([-greatest_pull(&path) / of_range, theory.force / of_none])
+    };
+    let [slow, faster] = [row(0.01)?, row(0.03)?];
+    let rows = [
+        ("greatest pull at V = 0.01 over the relaxed one", slow[0], slow[1], 4e-2),
+        ("greatest pull at V = 0.03 over the relaxed one", faster[0], faster[1], 4e-2),
+    ];
+    Ok(Checked::new(
+        "sphere pulled off a creeping body, 128² cells",
+        "theory of an opening edge (Schapery 1975, Greenwood 2004)",
+        &rows,
+    ))
 }

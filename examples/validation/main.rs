@@ -89,6 +89,7 @@ const SCENES: [fn() -> Outcome; 32] = [
     adhesion::exponential,
     adhesion::dugdale,
     adhesion::creeping,
+    adhesion::opening_edge,
     energies::held,
     energies::loop_of_a_sticking_ball,
 ];

@@ -10,8 +10,9 @@ const PER_DECADE: i32 = 40;
 const DECADES: i32 = 9;
 /// Points of a quadrature between two gaps.
 const POINTS: usize = 12;
-/// Difference of an integral from a difference of energies, over the work of separation.
+/// Difference of an integral from a difference of energies, over the work of separation: of a law that is tested, and of one that a contact takes.
 const SAME: f64 = 1e-7;
+const USABLE: f64 = 1e-3;
 /// Halvings of an interval around a corner of the law, and halvings of every interval: by itself a corner may leave the halves as the whole.
 const HALVINGS: usize = 24;
 const LEAST_HALVINGS: usize = 2;
@@ -56,6 +57,13 @@ pub fn all(attraction: &dyn Attraction) -> Verdict {
     energy_is_the_integral(attraction)
 }
 
+/// Every law, as far as a contact needs it: an energy may be an integral by a rule of the user.
+pub(crate) fn usable(attraction: &dyn Attraction) -> Verdict {
+    scales_are_positive(attraction)?;
+    attracts_less_with_the_gap(attraction)?;
+    energy_is_within(USABLE, attraction)
+}
+
 /// Work of separation, range and greatest traction are finite and positive, and fit each other.
 ///
 /// # Errors
@@ -93,13 +101,17 @@ pub fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
 /// # Errors
 /// The first violation.
 pub fn energy_is_the_integral(attraction: &dyn Attraction) -> Verdict {
+    energy_is_within(SAME, attraction)
+}
+
+fn energy_is_within(same: f64, attraction: &dyn Attraction) -> Verdict {
     let (law, rule) = ("the energy is the integral of the traction", GaussLegendre::new(POINTS));
     let (work, mut from) = (attraction.work(), 0.0);
-    let accurate = 1e-3 * SAME * work;
+    let accurate = 1e-3 * same * work;
     for gap in gaps(attraction).skip(1) {
         let lost = attraction.energy(from) - attraction.energy(gap);
         let integral = integrate(&rule, [from, gap], accurate, HALVINGS, &|gap| attraction.traction(gap));
-        check(law, "energy", gap, [lost, integral], (lost - integral).abs() <= SAME * work)?;
+        check(law, "energy", gap, [lost, integral], (lost - integral).abs() <= same * work)?;
         from = gap;
     }
     let left = attraction.energy(from);

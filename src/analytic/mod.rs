@@ -7,6 +7,7 @@
 //! | [`GrowingSphere`] | sphere under a step load (Ting) or any load that never lets the contact shrink (Lee & Radok); viscoelastic |
 //! | [`Jkr`], [`MaugisDugdale`], [`Dmt`] | sphere that sticks, by an attraction of short, any and long range; elastic |
 //! | [`AdhesivePunch`], [`AdhesiveCylinder`], [`AdhesiveWave`] | other shapes that stick, by an attraction of short range; elastic |
+//! | [`OpeningEdge`] | edge of a contact that opens at a speed, sphere that is pulled off; viscoelastic |
 //!
 //! Sphere, cone, punch and other axisymmetric bodies under any load history, loading and unloading, are contacts on
 //! closed elastic states: [`ElasticStates::sphere`](crate::states::ElasticStates::sphere) and its neighbours.
@@ -19,7 +20,7 @@ mod hertz;
 mod hertz_ellipse;
 mod rigid_punch;
 
-pub use adhesion::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Jkr, MaugisDugdale};
+pub use adhesion::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Jkr, MaugisDugdale, OpeningEdge, PullOff};
 pub use growing_sphere::GrowingSphere;
 pub use hertz::Hertz;
 pub use hertz_ellipse::HertzEllipse;

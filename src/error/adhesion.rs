@@ -1,3 +1,4 @@
+use super::Violation;
 use crate::rounded::{TIME, rounded};
 
 /// What goes wrong with surfaces that attract each other.
@@ -12,6 +13,10 @@ pub enum AdhesionError {
         /// What to do.
         cure: &'static str,
     },
+
+    /// An attraction that is none: it grows with the gap, repels, or its energy is not its integral.
+    #[error("the attraction breaks a law: {0}; adhesion::laws::all tests it")]
+    Law(Violation),
 
     /// The mesh does not resolve the zone in which the attraction acts.
     #[error(

@@ -1,7 +1,7 @@
 //! Every law of attraction, and wrong ones, against the laws of the trait.
 
 use viscocontact::adhesion::{
-    Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals, laws, tabor_number,
+    AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals, laws, tabor_number,
 };
 use viscocontact::prelude::*;
 
@@ -73,6 +73,33 @@ fn a_wrong_law_is_found() {
     assert_eq!(growing.law, "the traction does not grow with the gap");
     assert_eq!(broken(|h| 1.0 - h, |h| 0.5 * (1.0 - h).powi(2)).law, "the traction is not negative");
     assert_eq!(broken(|_| 0.0, exponential).quantity, "range");
+}
+
+/// A contact takes no law that attracts more with the gap, repels, or whose energy is another one; an energy of a rule of the user serves.
+#[test]
+fn a_contact_takes_attractions_only() {
+    let built = |traction: fn(f64) -> f64, energy: fn(f64) -> f64| {
+        ViscoelasticContact::builder(Grid::square(16, 8.0).unwrap())
+            .geometry(&Sphere::new(1.0).unwrap())
+            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
+            .attraction(Wrong { traction, energy })
+            .build()
+    };
+    let exponential = |h: f64| (-h).exp();
+    assert!(built(exponential, |h| (-h).exp() * (1.0 + 1e-4 * h)).is_ok());
+    let wrong: [(fn(f64) -> f64, fn(f64) -> f64, &str); 6] = [
+        (|h| (-h).exp() * (1.0 + 3.0 * h), |h| (4.0 + 3.0 * h) * (-h).exp(), "does not grow with the gap"),
+        (|h| (-h).exp() + (-(h - 3.0).powi(2)).exp(), exponential, "does not grow with the gap"),
+        (|h| (1.0 - h) * (-0.5 * h).exp(), |h| (2.0 * h - 6.0) * (-0.5 * h).exp() + 8.0, "is not negative"),
+        (exponential, |h| 2.0 * (-h).exp(), "energy is the integral"),
+        (|h| if h > 1.0 { f64::NAN } else { 1.0 }, exponential, "is not negative"),
+        (exponential, |h| (-0.5 * h).exp(), "energy is the integral"),
+    ];
+    for (traction, energy, what) in wrong {
+        let refused = built(traction, energy).unwrap_err();
+        assert!(matches!(refused, Error::Adhesion(AdhesionError::Law(_))), "{refused}");
+        assert!(refused.to_string().contains(what), "{refused}");
+    }
 }
 
 #[test]

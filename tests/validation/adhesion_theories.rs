@@ -2,8 +2,10 @@
 
 use std::f64::consts::PI;
 
-use viscocontact::analytic::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Hertz, Jkr, MaugisDugdale};
-use viscocontact::prelude::Error;
+use viscocontact::analytic::{
+    AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Hertz, Jkr, MaugisDugdale, OpeningEdge,
+};
+use viscocontact::prelude::{Error, GeneralizedMaxwell, Material, Maxwell};
 
 fn close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "{found} in place of {expected}");
@@ -101,4 +103,69 @@ fn scales_out_of_range_are_refused() {
         assert!(refused.iter().all(|refused| matches!(refused, Err(Error::OutOfRange { .. }))), "{refused:?}");
     }
     assert!(AdhesiveWave::new(1.0, 0.0, 1.0, 1.0).is_err() && MaugisDugdale::new(1.0, 1.0, 1.0, 0.0).is_err());
+}
+
+/// The edge of a body that is ten times as stiff at once, with the range ρ.
+fn edge(range: f64) -> OpeningEdge {
+    let body = GeneralizedMaxwell::new(0.25, &[(2.25, 1.0)]).unwrap();
+    OpeningEdge::new(&Material::incompressible(body), 1.0, range).unwrap()
+}
+
+/// Against an independent program: a table of the integral, explicit steps of 2e-4 of the approach, l = 1/4 and 1/9.
+#[test]
+fn a_sphere_is_pulled_off_a_creeping_body() {
+    for (speed, work) in [(1e-3, 1.036421), (1e-2, 1.239672), (0.1, 2.226101), (1.0, 4.892816), (10.0, 8.375654)] {
+        close(edge(1.0).work(speed).unwrap(), work, 1e-5);
+    }
+    for (tabor, speed, pull, approach, edge_speed, work) in [
+        (2.0, 0.01, 6.36742, -1.1860, 0.0042917, 1.363912),
+        (2.0, 1.0, 21.52608, -3.6936, 0.2592502, 4.949113),
+        (3.0, 0.01, 7.54744, -1.4084, 0.0040032, 1.627207),
+        (3.0, 1.0, 26.01365, -4.4208, 0.2376845, 6.115631),
+    ] {
+        let found = edge(1.0 / tabor).pull_off(1.0, 3.0, speed).unwrap();
+        close(-found.force, pull, 1e-3);
+        close(found.approach, approach, 5e-3);
+        close(found.edge_speed, edge_speed, 2e-2);
+        close(found.work, work, 1e-2);
+    }
+}
+
+#[test]
+fn a_slow_and_a_fast_edge_are_limits() {
+    let edge = edge(0.5);
+    close(edge.length(), 0.25, 1e-14);
+    close(edge.work(0.0).unwrap(), 1.0, 1e-9);
+    close(edge.work(1e9).unwrap(), 10.0, 1e-9);
+    // Schapery's third: 1/y − 1/k = (1 − 1/k) α/3vθ, θ the retardation time
+    let (work, speed) = (edge.work(1e4).unwrap(), 1e4);
+    let passage = 0.25 * PI * work * 0.25 / speed;
+    close(1.0 / work - 0.1, 0.9 * passage / 3.0 / 10.0, 1e-3);
+    let slow = edge.pull_off(1.0, 3.0, 1e-7).unwrap();
+    close(slow.force, -1.5 * PI, 1e-3);
+    close(slow.contact_radius, Jkr::new(1.0, 1.0, 1.0).unwrap().radius_at_pull_off(), 1e-2);
+    // at once a contact wider than that of 10 w at its pull-off holds as long as 10 w do
+    let fast = edge.pull_off(1.0, 20.0, 1e9).unwrap();
+    close(fast.force, -15.0 * PI, 1e-3);
+    // other units
+    let body = Material::incompressible(GeneralizedMaxwell::new(0.25e5, &[(2.25e5, 3.0)]).unwrap());
+    let (radius, work) = (2e-3, 0.1);
+    let width = (radius * radius * work / 1e5f64).cbrt();
+    let depth = width * width / radius;
+    let other = OpeningEdge::new(&body, work, 0.5 * depth).unwrap();
+    let [one, same] =
+        [edge.pull_off(1.0, 3.0, 0.1), other.pull_off(radius, 3.0 * depth, 0.1 * depth / 3.0)].map(Result::unwrap);
+    close(same.force / (work * radius), one.force, 1e-9);
+    close(same.edge_speed / width * 3.0, one.edge_speed, 1e-9);
+}
+
+#[test]
+fn an_opening_edge_needs_a_body_that_answers_and_ends() {
+    let fluid = Material::incompressible(Maxwell::with_time(1.0, 1.0).unwrap());
+    let refused = OpeningEdge::new(&fluid, 1.0, 1.0).unwrap_err().to_string();
+    assert!(refused.contains("fluidity of the body"), "{refused}");
+    let edge = edge(1.0);
+    for refused in [edge.work(-1.0).err(), edge.pull_off(1.0, -1.7, 1.0).err(), edge.clone().with_zone(0.0).err()] {
+        assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
+    }
 }

@@ -1,10 +1,11 @@
-//! Elastic bodies that stick.
+//! Bodies that stick.
 
 mod dmt;
 mod flat_punch;
 mod jkr;
 mod line_contact;
 mod maugis_dugdale;
+mod opening_edge;
 mod wave;
 
 pub use dmt::Dmt;
@@ -12,6 +13,7 @@ pub use flat_punch::AdhesivePunch;
 pub use jkr::Jkr;
 pub use line_contact::AdhesiveCylinder;
 pub use maugis_dugdale::MaugisDugdale;
+pub use opening_edge::{OpeningEdge, PullOff};
 pub use wave::AdhesiveWave;
 
 use crate::error::{Result, positive};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::adhesion::{Attraction, softening};
+use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
@@ -283,10 +283,11 @@ fn longer_side(grid: &Grid) -> f64 {
     sides.map(|(side, _)| side).reduce(f64::max).unwrap_or(grid.spacing()[0])
 }
 
-/// Rejects a mesh on which even the elastic response has too short a zone.
+/// Rejects a law that is no attraction, and a mesh on which even the elastic response has too short a zone.
 fn zone_is_resolved(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<()> {
     positive("work of separation", law.work())?;
     length("range of the attraction", law.range())?;
+    laws::usable(law).map_err(AdhesionError::Law)?;
     let cells = cells_in_zone(softening(law), material.checked_compliance(0.0, (0.0, 0.0))?, grid);
     if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
         return Ok(());
