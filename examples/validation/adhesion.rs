@@ -106,7 +106,7 @@ pub fn opening_edge() -> Outcome {
         let theory = edge.pull_off(1.0, start, speed)?;
         let to = theory.approach - 0.3;
         let path = pulled(&mut relaxed.clone(), to, (start - to) / speed, 80)?;
-        viscocontact::Result::Ok([-greatest_pull(&path) / of_range, theory.force / of_none])
+        Ok::<_, viscocontact::Error>([-greatest_pull(&path) / of_range, theory.force / of_none])
     };
     let [slow, faster] = [row(0.01)?, row(0.03)?];
     let rows = [

@@ -58,7 +58,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 32] = [
+const SCENES: [fn() -> Outcome; 33] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,

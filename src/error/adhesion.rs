@@ -20,7 +20,7 @@ pub enum AdhesionError {
 
     /// The mesh does not resolve the zone in which the attraction acts.
     #[error(
-        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of separation changes the pull-off force by little while Tabor's number stays above 3)",
+        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of separation changes the pull-off force of an elastic body by little while Tabor's number stays above 3; on a creeping body it stands for a slower pull)",
         rounded(*.spacing, 3), rounded(*.range, 3)
     )]
     ZoneNotResolved {
