@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use num_complex::Complex64;
-use realfft::RealFftPlanner;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
 use crate::parallel::{cut, fork, lanes};
@@ -89,21 +89,77 @@ impl Plane {
     }
 }
 
-/// The Fourier coefficients of a real field on `cells` points, normalised so that the sum of all waves is the field: for
-/// each k2 from 0 to n2/2 all k1, the negative ones after the positive. The other k2 have the conjugate coefficients.
-pub(crate) fn fourier_coefficients(field: &[f64], [n1, n2]: [usize; 2]) -> Vec<Complex64> {
-    let along2 = RealFftPlanner::new().plan_fft_forward(n2);
-    let (mut input, mut output) = (along2.make_input_vec(), along2.make_output_vec());
-    let mut coefficients = vec![Complex64::ZERO; (n2 / 2 + 1) * n1];
-    for (i, row) in field.chunks_exact(n2).enumerate() {
-        input.copy_from_slice(row);
-        let done = along2.process(&mut input, &mut output);
-        debug_assert!(done.is_ok());
-        for (k2, value) in output.iter().enumerate() {
-            coefficients[k2 * n1 + i] = value / (n1 * n2) as f64;
+/// Transforms of real planes, row-major, of one size. Coefficients: for each k2 from 0 to n2/2 all k1, the negative ones after the
+/// positive; the other k2 have the conjugate coefficients.
+#[derive(Clone)]
+pub(crate) struct RealPlane {
+    along1: Lines,
+    forward2: Arc<dyn RealToComplex<f64>>,
+    inverse2: Arc<dyn ComplexToReal<f64>>,
+    /// A row, its coefficients, and the scratch of either transform.
+    row: Vec<f64>,
+    half_row: Vec<Complex64>,
+    scratch: Vec<Complex64>,
+}
+
+debug_by!(self: RealPlane => cells: [self.along1.len(), self.row.len()]);
+
+impl RealPlane {
+    pub(crate) fn new([n1, n2]: [usize; 2]) -> RealPlane {
+        let mut planner = RealFftPlanner::new();
+        let (forward2, inverse2) = (planner.plan_fft_forward(n2), planner.plan_fft_inverse(n2));
+        let scratch = vec![Complex64::ZERO; forward2.get_scratch_len().max(inverse2.get_scratch_len())];
+        let (row, half_row) = (forward2.make_input_vec(), forward2.make_output_vec());
+        RealPlane { along1: Lines::new(n1), forward2, inverse2, row, half_row, scratch }
+    }
+
+    /// The number of coefficients.
+    pub(crate) fn coefficients(&self) -> usize {
+        self.along1.len() * self.half_row.len()
+    }
+
+    /// The coefficients Σ x e^(−2πi (k1 i/n1 + k2 j/n2)) of rows, of which those after the last are zero.
+    pub(crate) fn forward<'a>(&mut self, rows: impl Iterator<Item = &'a [f64]>, coefficients: &mut [Complex64]) {
+        let n1 = self.along1.len();
+        let mut count = 0;
+        for (i, row) in rows.enumerate() {
+            self.row[..row.len()].copy_from_slice(row);
+            self.row[row.len()..].fill(0.0);
+            let done = self.forward2.process_with_scratch(&mut self.row, &mut self.half_row, &mut self.scratch);
+            debug_assert!(done.is_ok());
+            self.half_row.iter().enumerate().for_each(|(k2, value)| coefficients[k2 * n1 + i] = *value);
+            count = i + 1;
+        }
+        coefficients.chunks_exact_mut(n1).for_each(|line| line[count..].fill(Complex64::ZERO));
+        self.along1.forward(coefficients);
+    }
+
+    /// The inverse of [`RealPlane::forward`], times the number of values; of the first rows, and of the first values of each.
+    pub(crate) fn inverse<'a>(&mut self, coefficients: &mut [Complex64], rows: impl Iterator<Item = &'a mut [f64]>) {
+        let (n1, n2) = (self.along1.len(), self.row.len());
+        self.along1.inverse(coefficients);
+        for (i, row) in rows.enumerate() {
+            for (k2, value) in self.half_row.iter_mut().enumerate() {
+                *value = coefficients[k2 * n1 + i];
+                if k2 == 0 || 2 * k2 == n2 {
+                    // real except for rounding, which the transform would reject
+                    value.im = 0.0;
+                }
+            }
+            let done = self.inverse2.process_with_scratch(&mut self.half_row, &mut self.row, &mut self.scratch);
+            debug_assert!(done.is_ok());
+            row.copy_from_slice(&self.row[..row.len()]);
         }
     }
-    Lines::new(n1).forward(&mut coefficients);
+}
+
+/// The Fourier coefficients of a real field on `cells` points, as those of a [`RealPlane`], normalised so that the sum of all waves is the
+/// field.
+pub(crate) fn fourier_coefficients(field: &[f64], cells: [usize; 2]) -> Vec<Complex64> {
+    let mut plane = RealPlane::new(cells);
+    let mut coefficients = vec![Complex64::ZERO; plane.coefficients()];
+    plane.forward(field.chunks_exact(cells[1]), &mut coefficients);
+    coefficients.iter_mut().for_each(|value| *value /= field.len() as f64);
     coefficients
 }
 

@@ -200,6 +200,8 @@ mod quadrature;
 pub mod rheology;
 mod rounded;
 pub mod run;
+
+pub mod sliding;
 mod solver;
 pub mod states;
 mod sum;
@@ -242,6 +244,7 @@ pub mod prelude {
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Tension, Zener,
     };
     pub use crate::run::{Crossing, Run, SteadyMotion, Stepping, Times};
+    pub use crate::sliding::SteadySliding;
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }

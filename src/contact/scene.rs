@@ -26,6 +26,8 @@ pub(crate) struct Scene {
     pub(crate) attraction: Option<Arc<dyn Attraction>>,
     /// The slope at which it softens \[Pa/m\]; 0 without one.
     pub(crate) softening: f64,
+    /// Whether the contact shows steady motions, and takes no steps.
+    pub(crate) steady: bool,
     /// Number of rigid bodies.
     pub(crate) bodies: usize,
     /// Fingerprint of the gap as built.

@@ -7,8 +7,9 @@ use crate::contact::moving::along_path::IndenterBuffer;
 use crate::contact::read::accessors::View;
 use crate::contact::{Computation, Scene, StepReport};
 use crate::error::Result;
-use crate::geometry::Missed;
+use crate::geometry::{Gap, Missed};
 use crate::load::Load;
+use crate::solver::RigidMotion;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -71,6 +72,23 @@ impl ViscoelasticContact {
             saved_run: None,
             indenter_buffer: IndenterBuffer::default(),
         }
+    }
+
+    /// The gap before the bodies deform.
+    pub(crate) fn initial_gap(&self) -> &Gap {
+        self.computation.state.indenter.gap()
+    }
+
+    /// Takes over the state of a steady motion, of which it has the fields but not the past.
+    pub(crate) fn show_steady(&mut self, load: Load, motion: RigidMotion, pressure: Vec<f64>, displacement: Vec<f64>) {
+        let state = &mut self.computation.state;
+        state.loads[0] = load;
+        state.current.motions[0] = motion;
+        state.current.contact_cells = pressure.iter().filter(|p| **p > 0.0).count();
+        state.current.solution.pressure = pressure;
+        state.history.show(displacement);
+        state.sum_up();
+        self.view.refresh(state);
     }
 }
 

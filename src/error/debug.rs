@@ -38,7 +38,7 @@ macro_rules! fmt_fields {
 }
 
 fmt_fields! {
-    Adhesion File Kernel Load Map Material Output Ranks States Step Table Text User;
+    Adhesion File Kernel Load Map Material Output Ranks Sliding States Step Table Text User;
     Cancelled { what }
     #[cfg(feature = "checkpoint")]
     Checkpoint { path source }

@@ -13,6 +13,7 @@ mod map;
 mod material;
 mod output;
 mod ranks;
+mod sliding;
 mod states;
 mod step;
 mod table;
@@ -35,6 +36,7 @@ pub use map::MapError;
 pub use material::MaterialError;
 pub use output::OutputError;
 pub use ranks::RanksError;
+pub use sliding::SlidingError;
 pub use states::StatesError;
 pub use step::StepError;
 pub use table::{Place, TableError};
@@ -163,6 +165,10 @@ pub enum Error {
     /// An influence kernel is not allowed.
     #[error(transparent)]
     Kernel(#[from] KernelError),
+
+    /// A steady motion is not covered, or was not found.
+    #[error(transparent)]
+    Sliding(#[from] SlidingError),
 
     /// A call needs the grid in the other [`Frame`](crate::contact::Frame): fixed to the indenter for a step over the
     /// bodies, fixed to the bodies for a path or a direct sum.

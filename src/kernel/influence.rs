@@ -158,6 +158,11 @@ impl InfluenceKernel {
         (indices(count).map(|at| (self.response)(at)), count[1])
     }
 
+    /// The compliance \[m\] of the wave with these absolute numbers of a body that is periodic along both axes.
+    pub(crate) fn of_wave(&self, k: [usize; 2]) -> f64 {
+        (self.response)(k)
+    }
+
     /// The greatest compliance of a wave \[m\], if the mean has none.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         *self.facts.softest.get_or_init(|| match self.body {

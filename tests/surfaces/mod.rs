@@ -2,4 +2,5 @@
 
 mod motion;
 mod rough;
+mod sliding;
 mod steady;

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time, hunter};
 use crate::common::{Draws, from_environment};
-use viscocontact::contact::{Edge, Unsteady};
+use viscocontact::contact::{Builder, Edge, Unsteady};
 use viscocontact::prelude::*;
 
 /// Glassy compliance of the contact \[1/Pa\].
-const GLASSY: f64 = 0.25e-6;
+pub(super) const GLASSY: f64 = 0.25e-6;
 
 /// What a run lacks of its steady state.
 #[derive(Debug, PartialEq)]
@@ -23,12 +23,12 @@ enum Lacks {
 
 /// A slider or roller on cells with sides of 1 m. It moves by one cell in 1 s.
 #[derive(Debug, Clone)]
-struct Scene {
-    below: Below,
+pub(super) struct Scene {
+    pub(super) below: Below,
     /// Whether u is linear in time within all steps.
-    linear: bool,
-    axis: Axis,
-    velocity: f64,
+    pub(super) linear: bool,
+    pub(super) axis: Axis,
+    pub(super) velocity: f64,
     /// Waves under a periodic slider: periods along the motion and across it, phase, height. Else it is a ball or a cylinder.
     waves: Vec<[f64; 4]>,
     /// Half the length of the relaxed contact of a ball or a cylinder.
@@ -36,18 +36,18 @@ struct Scene {
     /// Cells behind the middle of the contact and ahead of it, and across the motion.
     behind: usize,
     ahead: usize,
-    across: usize,
+    pub(super) across: usize,
     /// Compliance relative to the glassy one, and v τ, of each term.
-    terms: Vec<(f64, f64)>,
-    fluidity: f64,
-    force: f64,
+    pub(super) terms: Vec<(f64, f64)>,
+    pub(super) fluidity: f64,
+    pub(super) force: f64,
     tolerance: f64,
     max_distance: Option<f64>,
 }
 
 impl Scene {
     /// `easy`: no free dashpot, a track of twenty times the longest v τ, and a grid that reaches by ten times as much behind.
-    fn draw(draws: &mut Draws, easy: bool) -> Scene {
+    pub(super) fn draw(draws: &mut Draws, easy: bool) -> Scene {
         let below = match draws.below(4) {
             0 | 1 => Below::Periodic,
             2 => Below::HalfSpace,
@@ -131,12 +131,12 @@ impl Scene {
         }
     }
 
-    fn length(&self) -> usize {
+    pub(super) fn length(&self) -> usize {
         self.behind + self.ahead
     }
 
     /// In the order of x1 and x2, from along and across the motion.
-    fn by_axis<T>(&self, along: T, across: T) -> [T; 2] {
+    pub(super) fn by_axis<T>(&self, along: T, across: T) -> [T; 2] {
         if self.axis == Axis::X1 { [along, across] } else { [across, along] }
     }
 
@@ -150,7 +150,7 @@ impl Scene {
         self.waves.iter().map(wave).sum()
     }
 
-    fn shape(&self) -> impl Geometry + 'static {
+    pub(super) fn shape(&self) -> impl Geometry + 'static {
         let scene = self.clone();
         let middle = 0.5 * (self.behind as f64 - self.ahead as f64);
         FnGeometry::new(move |x1: f64, x2: f64| {
@@ -159,8 +159,8 @@ impl Scene {
         })
     }
 
-    /// Runs to the steady state; returns the contact, and what it lacks.
-    fn run(&self) -> (ViscoelasticContact, Lacks) {
+    /// The contact, but for its settings.
+    pub(super) fn builder(&self) -> Builder {
         let cells = self.by_axis(self.length(), self.across);
         let grid = Grid::new(cells, cells.map(|count| count as f64)).unwrap();
         let kernel = match self.below {
@@ -169,15 +169,17 @@ impl Scene {
             Below::Line(datum) => InfluenceKernel::line(&grid, datum),
         };
         let terms: Vec<(f64, f64)> = self.terms.iter().map(|&(c, reach)| (4.0 * GLASSY * c, reach)).collect();
-        let rule = if self.linear { TimeRule::ExponentialLinear } else { TimeRule::Exponential };
-        let settings = Settings::default().with_frame(Frame::Indenter).with_time_rule(rule).with_edge(Edge::Allow);
-        let mut contact = ViscoelasticContact::builder(grid)
+        ViscoelasticContact::builder(grid)
             .geometry(&self.shape())
             .material(Material::incompressible(GeneralizedKelvin::new(4.0 * GLASSY, self.fluidity, &terms).unwrap()))
             .kernel(Arc::new(kernel.unwrap()))
-            .settings(settings.with_tolerance(1e-3 * self.tolerance))
-            .build()
-            .unwrap();
+    }
+
+    /// Runs to the steady state; returns the contact, and what it lacks.
+    fn run(&self) -> (ViscoelasticContact, Lacks) {
+        let rule = if self.linear { TimeRule::ExponentialLinear } else { TimeRule::Exponential };
+        let settings = Settings::default().with_frame(Frame::Indenter).with_time_rule(rule).with_edge(Edge::Allow);
+        let mut contact = self.builder().settings(settings.with_tolerance(1e-3 * self.tolerance)).build().unwrap();
         let motion = SteadyMotion::new(self.axis, self.velocity, Load::force(self.force))
             .with_tolerance(self.tolerance)
             .with_max_distance(self.max_distance);
@@ -190,7 +192,7 @@ impl Scene {
         (contact, lacks)
     }
 
-    fn reference(&self, time: Time) -> Option<SteadyState> {
+    pub(super) fn reference(&self, time: Time) -> Option<SteadyState> {
         // cells about the middle of the contact that it may touch, of which there is one behind for each ahead
         let count = if self.waves.is_empty() { 2 * (2.0 * self.half) as usize } else { self.length() };
         let at = |k: usize, shift: f64| {

@@ -70,12 +70,13 @@ impl Builder {
 
     /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
     fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
-        let Builder { grid, waves, temperature, attraction, .. } = self;
+        let Builder { grid, waves, temperature, attraction, steady, .. } = self;
         let Parts { settings, material, kernel, history, .. } = parts;
         let missed = Missed::of(&waves, &grid, kernel.periodic_axes());
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
             built: Built::new(indenter.gap(), &region.of_gap()),
+            steady,
             bodies: indenter.bodies(),
             grid,
             kernel,

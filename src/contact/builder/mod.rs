@@ -35,13 +35,15 @@ pub struct Builder {
     pub(super) material: Option<Material>,
     pub(super) counter_body: Option<Material>,
     pub(super) times: Option<Times>,
-    pub(super) temperature: Option<TemperatureHistory>,
-    pub(super) attraction: Option<Arc<dyn Attraction>>,
+    pub(crate) temperature: Option<TemperatureHistory>,
+    pub(crate) attraction: Option<Arc<dyn Attraction>>,
     pub(super) kernel: Option<Arc<InfluenceKernel>>,
-    pub(super) settings: Settings,
-    pub(super) ranks: Option<Arc<dyn Ranks>>,
+    pub(crate) settings: Settings,
+    pub(crate) ranks: Option<Arc<dyn Ranks>>,
     /// Whether the grid was chosen by a plan, for surfaces that do not attract each other.
     pub(crate) planned: bool,
+    /// Whether the contact shows steady motions, and takes no steps.
+    pub(crate) steady: bool,
 }
 
 /// Rows of the grid, and a gap on them if there was memory for it.
@@ -63,6 +65,7 @@ impl ViscoelasticContact {
             settings: Settings::default(),
             ranks: None,
             planned: false,
+            steady: false,
         }
     }
 }

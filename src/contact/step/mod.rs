@@ -32,7 +32,7 @@ use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::{
     Computation, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
 };
-use crate::error::{Error, Result, StepError, non_negative};
+use crate::error::{Error, Result, SlidingError, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, StepContext, TimeError};
@@ -92,6 +92,10 @@ impl ViscoelasticContact {
     /// A step of `length` to the time `time`, without motion along the surface.
     pub(crate) fn request<'a>(&self, time: f64, length: f64, loads: &'a [Load], tolerance: f64) -> Result<Step<'a>> {
         let State { indenter, clock, .. } = &self.computation.state;
+        if self.scene.steady {
+            let (what, cure) = ("a step of a contact in steady motion", "build one by Builder::build to step");
+            return Err(SlidingError::NotCovered { what, cure }.into());
+        }
         non_negative("time", time)?;
         let dt = self.scene.reduced_length([clock.time, time], length)?;
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };

@@ -1,0 +1,222 @@
+//! Steady sliding and rolling as one contact problem for each velocity.
+//!
+//! In the frame of an indenter that moves steadily over creeping bodies nothing changes, and no time step is needed: a wave of the pressure
+//! displaces by the compliance of the bodies at the frequency at which it passes a point. [`SteadySliding`] finds the one state of
+//! contact of a velocity and a load, however long the relaxation times are. To step there takes as many steps as the longest of them:
+//! [`ViscoelasticContact::toward_steady`] is for watching the approach.
+//!
+//! Friction is that of hysteresis: the surfaces have none of their own.
+
+mod contact_problem;
+mod gmres;
+mod operator;
+
+pub use crate::error::SlidingError;
+
+use std::fmt;
+
+use crate::contact::{Builder, Edge, Frame, ViscoelasticContact};
+use crate::error::{Error, Result, StepError, finite};
+use crate::load::{Load, Tilt};
+use crate::rheology::CreepSpectrum;
+use crate::rounded::rounded;
+use crate::solver::RigidMotion;
+use contact_problem::{Found, Problem};
+use operator::MovingBodies;
+
+/// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// // a wavy indenter of 1 mm period slides over a rubber
+/// let grid = Grid::square(64, 1.0e-3)?;
+/// let shape = FnGeometry::new(|x1, x2| 4.0e-6 * (2.0 - (6283.2 * x1).cos() - (6283.2 * x2).cos()));
+/// let rubber = GeneralizedMaxwell::new(1.0e6, &[(1.0e7, 1.0e-5), (1.0e7, 1.0e-3), (3.0e6, 0.1)])?;
+/// let mut sliding = ViscoelasticContact::builder(grid.clone())
+///     .geometry(&shape)
+///     .material(Material::incompressible(rubber))
+///     .kernel(InfluenceKernel::periodic(&grid)?)
+///     .build_sliding()?;
+/// for speed in [1.0e-4, 1.0e-2, 1.0, 1.0e2, 1.0e4] {
+///     let report = sliding.at([speed, 0.0], Load::force(0.02))?;
+///     println!("{report}");
+///     assert!(report.friction() > 0.0);
+/// }
+/// assert!(sliding.contact().contact_area() < 1.0e-6);
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug)]
+pub struct SteadySliding {
+    /// Shows the state; it has no past, and takes no steps.
+    contact: ViscoelasticContact,
+    creep: CreepSpectrum,
+}
+
+/// The state of a steady motion, in numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct SlidingReport {
+    /// Velocity of the indenter over the bodies \[m/s\].
+    pub velocity: [f64; 2],
+    /// Normal force \[N\].
+    pub force: f64,
+    /// Approach \[m\].
+    pub approach: f64,
+    /// Force that keeps the indenter moving, along x1 and x2 \[N\]: −∬ p ∇u.
+    pub lateral_force: [f64; 2],
+    /// Cells in contact.
+    pub contact_cells: usize,
+    /// Contact area \[m²\].
+    pub contact_area: f64,
+    /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
+    pub residual: f64,
+    /// Sets of cells that were tried.
+    pub sets: usize,
+    /// Pairs of transforms.
+    pub transforms: usize,
+}
+
+impl SlidingReport {
+    /// The power that the bodies dissipate \[W\]: lateral force times velocity.
+    pub fn dissipation(&self) -> f64 {
+        self.lateral_force[0] * self.velocity[0] + self.lateral_force[1] * self.velocity[1]
+    }
+
+    /// The coefficient of friction: the lateral force against the motion over the normal force; 0 at rest and without load.
+    pub fn friction(&self) -> f64 {
+        let speed = self.velocity[0].hypot(self.velocity[1]);
+        if speed > 0.0 && self.force != 0.0 { self.dissipation() / speed / self.force } else { 0.0 }
+    }
+}
+
+/// "1e0 m/s: friction 0.0193, 2 N, approach …".
+impl fmt::Display for SlidingReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let speed = self.velocity[0].hypot(self.velocity[1]);
+        let [speed, force, friction] = [speed, self.force, self.friction()].map(|value| rounded(value, 4));
+        write!(f, "{speed:e} m/s: {force:e} N, friction {friction:e}, {} cells in contact", self.contact_cells)
+    }
+}
+
+impl Builder {
+    /// A contact in steady motion, for [`SteadySliding::at`]: the parts are those of [`Builder::build`]. All fields take the whole grid.
+    ///
+    /// The bodies are periodic along both axes ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic),
+    /// [`InfluenceKernel::from_spectrum`](crate::InfluenceKernel::from_spectrum), layers that are), and so must the shape be: a height map
+    /// that jumps at its ends slides over an edge there.
+    ///
+    /// # Errors
+    /// As [`Builder::build`], and if the bodies are not periodic, flow without end, attract each other, there are several rigid bodies, or a history
+    /// of the temperature was given: scale the velocity by the shift factor instead.
+    pub fn build_sliding(mut self) -> Result<SteadySliding> {
+        let refuse = |what, cure| Err(SlidingError::NotCovered { what, cure }.into());
+        if self.attraction.is_some() {
+            return refuse("a contact of surfaces that attract each other", "build it without attraction");
+        }
+        if self.temperature.is_some() {
+            return refuse(
+                "a history of the temperature",
+                "multiply the velocity by the shift factor of the temperature",
+            );
+        }
+        if self.ranks.is_some() {
+            return refuse("a contact that ranks share out", "compute it in one process");
+        }
+        self.settings =
+            self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies).with_edge(Edge::Allow);
+        self.steady = true;
+        let contact = self.build()?;
+        if contact.kernel().periodic_axes() != [true; 2] {
+            return refuse(
+                "a body that is not periodic along both axes",
+                "take InfluenceKernel::periodic, or ViscoelasticContact::toward_steady",
+            );
+        }
+        if contact.bodies() > 1 {
+            return refuse("a contact of several rigid bodies", "take one");
+        }
+        let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series("a motion"))?;
+        if creep.fluidity() > 0.0 {
+            return refuse(
+                "a periodic body that flows",
+                "take a body with an equilibrium modulus: under a flowing one the mean sinks for ever",
+            );
+        }
+        Ok(SteadySliding { contact, creep })
+    }
+}
+
+impl SteadySliding {
+    /// Finds the state of contact under `load`, a force or an approach, of the indenter that moves over the bodies with `velocity` \[m/s\]
+    /// along x1 and x2. At velocity 0 it is the relaxed contact, at a great one the one of the elastic response. The search begins at the state found
+    /// last, so that sweeps over velocities or loads cost less.
+    ///
+    /// Creep at another temperature is that at the velocity times the shift factor
+    /// ([`TimeTemperature::factor`](crate::rheology::TimeTemperature::factor)).
+    ///
+    /// # Errors
+    /// If the velocity is not finite, the load is neither a force nor an approach without tilt, or the approach is beyond full contact, or the
+    /// state is not found ([`SlidingError::NotConverged`]). The state found last is then kept.
+    pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
+        finite("velocity along x1", velocity[0])?;
+        finite("velocity along x2", velocity[1])?;
+        load.validate()?;
+        if load.tilt() != [Tilt::Fixed(0.0); 2] {
+            let (what, cure) = ("a body that tilts", "a periodic body does not: give a centric load without tilt");
+            return Err(SlidingError::NotCovered { what, cure }.into());
+        }
+        let gap = self.contact.initial_gap();
+        let (datum, cell_area, tolerance) =
+            (gap.datum, self.contact.grid().cell_area(), self.contact.settings().tolerance);
+        let mut heights = gap.above.clone();
+        let (total, begins_at) = match load {
+            Load::Force { normal, .. } => (Some(normal / cell_area), datum),
+            Load::Approach { approach, .. } => {
+                heights.iter_mut().for_each(|h| *h -= approach - datum);
+                let left = heights.iter().sum::<f64>() / heights.len() as f64;
+                if left <= 0.0 && self.contact.kernel().mean_is_held() {
+                    let greatest = approach + left;
+                    return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
+                }
+                (None, approach)
+            }
+            Load::Spring { .. } => {
+                let (what, cure) = ("a body on a spring", "give the force or the approach");
+                return Err(SlidingError::NotCovered { what, cure }.into());
+            }
+        };
+        let mut bodies = MovingBodies::periodic(self.contact.kernel(), &self.creep, velocity);
+        let problem = Problem { gap: &heights, total, tolerance };
+        let found = if total == Some(0.0) {
+            Found::apart(heights.len())
+        } else {
+            problem.solve(&mut bodies, self.contact.pressure())
+        };
+        let Found { pressure, displacement, lowered, residual, sets, converged } = found;
+        if !converged {
+            return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
+        }
+        let transforms = bodies.response.pairs + bodies.inverse.pairs;
+        let lateral_force = bodies.drag(&pressure).map(|force| force * cell_area);
+        let motion = RigidMotion { approach: begins_at + lowered, tilt: [0.0; 2] };
+        self.contact.show_steady(load, motion, pressure, displacement);
+        Ok(SlidingReport {
+            velocity,
+            force: self.contact.force(),
+            approach: motion.approach,
+            lateral_force,
+            contact_cells: self.contact.contact_cells(),
+            contact_area: self.contact.contact_area(),
+            residual,
+            sets,
+            transforms,
+        })
+    }
+
+    /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.
+    pub fn contact(&self) -> &ViscoelasticContact {
+        &self.contact
+    }
+}

@@ -1,0 +1,181 @@
+//! Steady motions as one problem, against dense ones, closed forms and limits. `SLIDING_SCENES` (60) random sliders and rollers, `SLIDING_SEED` (1).
+
+use std::f64::consts::TAU;
+
+use super::steady::Scene;
+use crate::common::steady_sliding::{Below, Time};
+use crate::common::{Draws, from_environment};
+use viscocontact::prelude::*;
+use viscocontact::sliding::SlidingError;
+
+/// Waves of an indenter over its period of 1 m: numbers along x1 and x2, phase, height.
+const WAVES: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.3, 2e-4], [2.0, 1.0, 1.0, 1e-4], [-1.0, 3.0, 2.0, 1e-4], [3.0, 3.0, 4.0, 5e-5]];
+
+fn rubber() -> Material {
+    Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &[(2e-6, 1e-3), (3e-6, 0.1), (4e-6, 30.0)]).unwrap())
+}
+
+fn wavy(cells: usize) -> SteadySliding {
+    let grid = Grid::square(cells, 1.0).unwrap();
+    let height = |x1: f64, x2: f64| {
+        WAVES.iter().map(|[a, b, phase, h]| h * (TAU * (a * x1 + b * x2) + phase).cos()).sum::<f64>()
+    };
+    ViscoelasticContact::builder(grid.clone())
+        .geometry(&FnGeometry::new(height))
+        .material(rubber())
+        .kernel(InfluenceKernel::periodic(&grid).unwrap())
+        .settings(Settings::default().with_tolerance(1e-10))
+        .build_sliding()
+        .unwrap()
+}
+
+/// C(iω) of the contact from the series, an eighth of J: an incompressible body has C = J/4.
+fn complex_compliance(omega: f64) -> [f64; 2] {
+    [(2e-6, 1e-3), (3e-6, 0.1), (4e-6, 30.0)].iter().fold([0.25e-6, 0.0], |[real, imaginary], (j, time)| {
+        let x: f64 = omega * time;
+        [real + 0.25 * j / (1.0 + x * x), imaginary - 0.25 * j * x / (1.0 + x * x)]
+    })
+}
+
+/// In full contact every wave has its own resistance, ¼ |q| (q·v/v) h² Im 1/C*(i q·v) on a unit of area, whatever the direction.
+#[test]
+fn full_contact_resists_wave_by_wave() {
+    let mut sliding = wavy(16);
+    for (speed, angle) in [(0.0, 0.0), (1e-3, 0.4), (0.1, 2.0), (1.0, -1.0), (30.0, 0.0), (1e4, 1.5)] {
+        let velocity = [speed * f64::cos(angle), speed * f64::sin(angle)];
+        let report = sliding.at(velocity, Load::force(1e5)).unwrap();
+        assert_eq!(report.contact_cells, 256);
+        let exact = WAVES.iter().fold([0.0; 2], |[f1, f2], [a, b, _, h]| {
+            let q = [TAU * a, TAU * b];
+            let [real, imaginary] = complex_compliance(q[0] * velocity[0] + q[1] * velocity[1]);
+            let loss = -imaginary / (real * real + imaginary * imaginary);
+            let part = 0.25 * q[0].hypot(q[1]) * h * h * loss;
+            [f1 + q[0] * part, f2 + q[1] * part]
+        });
+        let scale = exact[0].hypot(exact[1]).max(1e-6);
+        for axis in 0..2 {
+            let error = (report.lateral_force[axis] - exact[axis]).abs();
+            assert!(error < 1e-8 * scale, "{speed} {angle}: {:?} {exact:?}", report.lateral_force);
+        }
+    }
+}
+
+/// At rest the contact is that of the relaxed body, and at a great speed that of the elastic response, which has no friction.
+#[test]
+fn slow_and_fast_motions_are_elastic() {
+    let mut sliding = wavy(32);
+    let velocities = [(0.0, 10e-6), (1e12, 1e-6)];
+    for load in [Load::force(40.0), Load::approach(1e-4)] {
+        for (speed, compliance) in velocities {
+            let report = sliding.at([0.61 * speed, 0.79 * speed], load).unwrap();
+            let contact = sliding.contact();
+            let mut elastic = ViscoelasticContact::builder(contact.grid().clone())
+                .geometry(&FnGeometry::new(|x1, x2| {
+                    WAVES.iter().map(|[a, b, phase, h]| h * (TAU * (a * x1 + b * x2) + phase).cos()).sum::<f64>()
+                }))
+                .material(Material::incompressible(Elastic::new(1.0 / compliance).unwrap()))
+                .kernel(contact.kernel().clone())
+                .settings(Settings::default().with_tolerance(1e-10))
+                .build()
+                .unwrap();
+            elastic.step(0.0, load).unwrap();
+            assert!((report.force / elastic.force() - 1.0).abs() < 1e-7, "{load} {speed}");
+            assert!((report.approach - elastic.approach()).abs() < 1e-11, "{load} {speed}");
+            let most = contact.max_pressure();
+            let differ =
+                contact.pressure().iter().zip(elastic.pressure()).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
+            assert!(differ < 1e-6 * most, "{load} {speed}: {differ} of {most}");
+            assert!(report.friction().abs() < 1e-8);
+        }
+    }
+}
+
+/// Random sliders and rollers against a dense problem with the same mesh.
+#[test]
+fn random_motions_are_those_of_a_dense_problem() {
+    let (scenes, seed) = (from_environment("SLIDING_SCENES", 60), from_environment("SLIDING_SEED", 1));
+    let (mut compared, mut worst) = (0, [0.0_f64; 4]);
+    for number in 0..scenes {
+        let mut draws = Draws::new(1000 * seed as u64 + number as u64);
+        let mut scene = Scene::draw(&mut draws, false);
+        scene.fluidity = 0.0;
+        if scene.below != Below::Periodic {
+            continue;
+        }
+        let mut sliding = scene.builder().settings(Settings::default().with_tolerance(1e-9)).build_sliding().unwrap();
+        let velocity = scene.by_axis(scene.velocity, 0.0);
+        let report = sliding
+            .at(velocity, Load::force(scene.force))
+            .unwrap_or_else(|error| panic!("{number} {scene:?}: {error}"));
+        let exact = scene.reference(Time::Exact).expect("the dense problem has a solution");
+        let contact = sliding.contact();
+        // the dense problem goes along the motion, ahead being its end
+        let [n1, n2] = contact.grid().cells();
+        let place = |i: usize, j: usize| {
+            let [along, aside] = scene.by_axis(i, j);
+            let along = if scene.velocity > 0.0 { along } else { scene.length() - 1 - along };
+            along * scene.across + aside
+        };
+        let cells = (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j)));
+        let differ: f64 =
+            cells.map(|(i, j)| (contact.pressure()[i * n2 + j] - exact.pressure[place(i, j)]).abs()).sum();
+        let lateral = scene.velocity * contact.lateral_force(&scene.shape())[scene.axis.index()];
+        let errors = [
+            differ / scene.force,
+            (report.approach / exact.approach - 1.0).abs(),
+            (lateral / scene.force - exact.friction).abs(),
+            (contact.force() / scene.force - 1.0).abs(),
+        ];
+        println!("{number}: {errors:?} {report}, {} sets, {} transforms", report.sets, report.transforms);
+        compared += 1;
+        (0..4).for_each(|k| worst[k] = worst[k].max(errors[k]));
+    }
+    println!("{compared} scenes, worst {worst:?}");
+    assert!(3 * compared >= scenes);
+    for (error, most) in worst.into_iter().zip([1e-6, 1e-7, 1e-7, 1e-12]) {
+        assert!(error < most, "{worst:?}");
+    }
+}
+
+#[test]
+fn what_is_not_steady_is_refused() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    let builder = || ViscoelasticContact::builder(grid.clone()).geometry(&FnGeometry::new(|x1, _| (TAU * x1).cos()));
+    let periodic = || builder().material(rubber()).kernel(InfluenceKernel::periodic(&grid).unwrap());
+    let fluid = Material::incompressible(Maxwell::with_time(1.0, 1.0).unwrap());
+    for refused in [
+        builder().material(rubber()).build_sliding().unwrap_err(),
+        periodic().material(fluid).build_sliding().unwrap_err(),
+        periodic().another_body(&FnGeometry::new(|x1, _| (TAU * x1).sin())).build_sliding().unwrap_err(),
+        periodic()
+            .attraction(viscocontact::adhesion::ExponentialAttraction::new(1.0, 1.0).unwrap())
+            .build_sliding()
+            .unwrap_err(),
+    ] {
+        assert!(matches!(refused, Error::Sliding(SlidingError::NotCovered { .. })), "{refused}");
+    }
+    let mut sliding = periodic().build_sliding().unwrap();
+    let before = sliding.at([1.0, 0.0], Load::force(1.0)).unwrap();
+    let pressure = sliding.contact().pressure().to_vec();
+    for load in
+        [Load::eccentric_force(1.0, [0.1, 0.0]), Load::spring(1.0, 1.0), Load::approach_and_tilt(0.0, [0.1, 0.0])]
+    {
+        assert!(matches!(sliding.at([1.0, 0.0], load), Err(Error::Sliding(SlidingError::NotCovered { .. }))), "{load}");
+    }
+    assert!(matches!(
+        sliding.at([1.0, 0.0], Load::approach(1.0)),
+        Err(Error::Step(StepError::BeyondFullContact { .. }))
+    ));
+    assert!(matches!(
+        sliding.at([f64::NAN, 0.0], Load::force(1.0)),
+        Err(Error::OutOfRange { field: "velocity along x1", .. })
+    ));
+    let pull = sliding.at([1.0, 0.0], Load::force(-1.0)).unwrap_err();
+    assert!(matches!(pull, Error::OutOfRange { .. }), "{pull}");
+    assert_eq!(sliding.contact().pressure(), pressure);
+    let apart = sliding.at([1.0, 0.0], Load::force(0.0)).unwrap();
+    assert!(apart.contact_cells == 0 && apart.friction() == 0.0 && before.friction() > 0.0);
+    let mut stepped = sliding.contact().clone();
+    assert!(matches!(stepped.step(1.0, Load::force(1.0)), Err(Error::Sliding(SlidingError::NotCovered { .. }))));
+}
