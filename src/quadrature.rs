@@ -30,6 +30,11 @@ impl GaussLegendre {
         GaussLegendre { points }
     }
 
+    /// Nodes and weights.
+    pub(crate) fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
     /// Σ w_k f(x_k): the integral of `f` over [−1, 1].
     pub(crate) fn sum(&self, mut f: impl FnMut(f64) -> f64) -> f64 {
         self.points.iter().map(|&(x, w)| w * f(x)).sum()

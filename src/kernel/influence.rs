@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::even_spectrum::{Symbol, even_spectrum};
 use super::layout::{is_fast, waves_at};
-use super::line_load::uniform;
+use super::line_load::{Strip, uniform};
+use super::love::Love;
 use super::{Ends, InfluenceKernel, Layer, Layout, Shares, wave_number};
 use crate::Grid;
 
@@ -161,6 +162,27 @@ impl InfluenceKernel {
     /// The compliance \[m\] of the wave with these absolute numbers of a body that is periodic along both axes.
     pub(crate) fn of_wave(&self, k: [usize; 2]) -> f64 {
         (self.response)(k)
+    }
+
+    /// Distance from a line load at which the displacement is zero \[m\].
+    pub(crate) fn datum(&self) -> Option<f64> {
+        self.datum
+    }
+
+    /// The displacement at a distance \[m\] along each axis from a cell of a half-space that is loaded on the grid, or in plane strain.
+    pub(crate) fn around_a_cell(&self) -> Option<Box<dyn Fn([f64; 2]) -> f64>> {
+        let spacing = self.grid.spacing();
+        match self.half_space_below()? {
+            HalfSpace::LoadedOnGrid => {
+                let love = Love::new(spacing);
+                Some(Box::new(move |distance| love.at(distance)))
+            }
+            HalfSpace::Line { across } => {
+                let strip = Strip { side: spacing[across], datum: self.datum? };
+                Some(Box::new(move |distance| strip.at(distance[across])))
+            }
+            HalfSpace::Periodic => None,
+        }
     }
 
     /// The greatest compliance of a wave \[m\], if the mean has none.

@@ -46,6 +46,17 @@ impl Strip {
         -FRAC_2_PI * (self.side * (x / self.datum).ln() + x * series_of_excess(z).unwrap_or(excess))
     }
 
+    /// The displacement at a distance x from the middle of the cell \[m\], for the mean.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        let (a, x) = (0.5 * self.side, x.abs());
+        if x >= 9.0 * self.side {
+            let z = a / x;
+            return -FRAC_2_PI * (self.side * (x / self.datum).ln() + x * series_of_excess(z).unwrap_or(f64::NAN));
+        }
+        let term = |x: f64| if x == 0.0 { 0.0 } else { x * (x.abs() / self.datum).ln() };
+        -FRAC_2_PI * (term(x + a) - term(x - a) - self.side)
+    }
+
     /// (2/π) ∫ K0(κ |s|) ds over a cell, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, integrated over the cell first.
     fn wave(&self, i: usize, kappa: f64) -> f64 {
         let (far, width) = match i {

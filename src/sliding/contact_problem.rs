@@ -5,6 +5,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::gmres::gmres;
 use super::operator::MovingBodies;
+use crate::Grid;
+use crate::solver::{Freedom, RigidMotion};
 
 /// Sets of cells in contact that are tried.
 const MOST_SETS: usize = 60;
@@ -19,14 +21,17 @@ const FIRST_PART: f64 = 0.3;
 const SLACK: f64 = 10.0;
 /// A negative pressure of this part of the greatest is rounding.
 const ROUNDING: f64 = 1e-9;
+/// The least range of the gap in contact, over that of the whole gap.
+const FLAT: f64 = 1e-4;
 
 /// Gap and load.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Problem<'a> {
-    /// The gap before the bodies deform \[m\], +∞ where there is no surface; under a given approach less that approach.
+    pub(super) grid: &'a Grid,
+    /// The gap before the bodies deform \[m\], less the prescribed motion; +∞ where there is no surface.
     pub(super) gap: &'a [f64],
-    /// Σ p \[Pa\] of a given force; `None` under a given approach.
-    pub(super) total: Option<f64>,
+    /// The motion that the load leaves free, and its balance.
+    pub(super) free: Freedom,
     /// Residual allowed, over the range of the gap that the contact closes.
     pub(super) tolerance: f64,
 }
@@ -36,8 +41,8 @@ pub(super) struct Problem<'a> {
 pub(super) struct Found {
     pub(super) pressure: Vec<f64>,
     pub(super) displacement: Vec<f64>,
-    /// How far the rigid body is below the gap of the problem \[m\]: 0 under a given approach.
-    pub(super) lowered: f64,
+    /// The free part of the motion.
+    pub(super) motion: RigidMotion,
     /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
     pub(super) residual: f64,
     pub(super) sets: usize,
@@ -51,135 +56,220 @@ impl Found {
     }
 }
 
+/// The modes of the free motion on a set of cells, orthonormal, with what their balance requires.
+struct Balance {
+    /// Values on the set, Σ p of the mode, and the motion of a unit of the mode: ω and the tilts.
+    modes: Vec<(Vec<f64>, f64, [f64; 3])>,
+}
+
+impl Balance {
+    fn new(problem: &Problem<'_>, set: &[usize]) -> Balance {
+        let Problem { grid, free, .. } = problem;
+        let n2 = grid.cells()[1];
+        let position = |k: usize| [grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)];
+        let mut modes: Vec<(Vec<f64>, f64, [f64; 3])> = Vec::new();
+        for kind in 0..3 {
+            if !(if kind == 0 { free.translation } else { free.tilt[kind - 1] }) {
+                continue;
+            }
+            let value = |&k: &usize| if kind == 0 { 1.0 } else { position(k)[kind - 1] - free.point[kind - 1] };
+            let mut values: Vec<f64> = set.iter().map(value).collect();
+            let mut motion = [0.0; 3];
+            motion[kind] = 1.0;
+            if kind > 0 {
+                motion[0] = -free.point[kind - 1];
+            }
+            let (mut total, whole) = (if kind == 0 { free.total } else { 0.0 }, norm(&values));
+            for (other, own, of_other) in &modes {
+                let part = dot(&values, other);
+                values.iter_mut().zip(other).for_each(|(v, other)| *v -= part * other);
+                total -= part * own;
+                (0..3).for_each(|k| motion[k] -= part * of_other[k]);
+            }
+            let length = norm(&values);
+            // on a set along a line a tilt about it is none
+            if length > DEPENDENT * whole {
+                values.iter_mut().for_each(|v| *v /= length);
+                modes.push((values, total / length, motion.map(|own| own / length)));
+            }
+        }
+        Balance { modes }
+    }
+
+    /// Takes from a field what the free motion can close.
+    fn project(&self, field: &mut [f64]) {
+        for (values, ..) in &self.modes {
+            let part = dot(field, values);
+            field.iter_mut().zip(values).for_each(|(own, value)| *own -= part * value);
+        }
+    }
+
+    /// Adds to a pressure what it lacks of the load.
+    fn satisfy(&self, pressure: &mut [f64]) {
+        for (values, total, _) in &self.modes {
+            let missing = total - dot(pressure, values);
+            pressure.iter_mut().zip(values).for_each(|(p, value)| *p += missing * value);
+        }
+    }
+
+    /// The motion that closes a gap on the set best.
+    fn motion(&self, gap: &[f64]) -> RigidMotion {
+        let mut sum = [0.0; 3];
+        for (values, _, motion) in &self.modes {
+            let part = dot(gap, values);
+            (0..3).for_each(|k| sum[k] += part * motion[k]);
+        }
+        RigidMotion { approach: sum[0], tilt: [sum[1], sum[2]] }
+    }
+}
+
+/// A mode of which the others leave less than this part is one of them.
+const DEPENDENT: f64 = 1e-8;
+
 impl Problem<'_> {
     /// The state, from the `guess` of a pressure, where it is positive somewhere.
     ///
     /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves with the
     /// inverse of the bodies' response, restricted to the set, as preconditioner. Cells that pull leave the set, cells that penetrate join.
     pub(super) fn solve(&self, bodies: &mut MovingBodies, guess: &[f64]) -> Found {
-        let Problem { gap, total, tolerance } = *self;
-        let cells = gap.len();
+        let Problem { gap, tolerance, grid, .. } = *self;
+        let (cells, n2) = (gap.len(), grid.cells()[1]);
         let mut pressed: Vec<bool> = guess.iter().map(|&p| p > 0.0).collect();
         if !pressed.contains(&true) {
             pressed = self.lowest();
         }
         let mut found = Found { pressure: guess.to_vec(), displacement: vec![0.0; cells], ..Found::default() };
-        let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
-        let finite = gap.iter().copied().filter(|h| h.is_finite());
-        let [low, high] = [finite.clone().fold(f64::INFINITY, f64::min), finite.fold(f64::NEG_INFINITY, f64::max)];
         let mut tried = HashSet::new();
         while found.sets < MOST_SETS {
             found.sets += 1;
             let set: Vec<usize> = (0..cells).filter(|&k| pressed[k]).collect();
-            let count = set.len() as f64;
-            // under a given force the rigid body moves: gaps count without their mean
-            let project = |field: &mut [f64]| {
-                if total.is_some() {
-                    let mean = field.iter().sum::<f64>() / count;
-                    field.iter_mut().for_each(|value| *value -= mean);
-                }
-            };
-            let mut x: Vec<f64> = set.iter().map(|&k| found.pressure[k]).collect();
-            if let Some(total) = total {
-                let missing = (total - x.iter().sum::<f64>()) / count;
-                x.iter_mut().for_each(|p| *p += missing);
-            }
-            let mut heights: Vec<f64> = set.iter().map(|&k| gap[k]).collect();
-            project(&mut heights);
-            let range = norm(&heights) / count.sqrt();
-            let unit = range.max(1e-4 * (high - low)).max(1e-9 * high.abs());
-            let target = tolerance * unit * count.sqrt();
-            let mut residual = Vec::new();
-            let mut left = f64::INFINITY;
-            let mut goal = target;
-            for cycle in 0..CYCLES {
-                scatter(&x, &set, &mut full);
-                bodies.response.apply(&full, &mut found.displacement);
-                residual = set.iter().map(|&k| -(found.displacement[k] + gap[k])).collect();
-                project(&mut residual);
-                left = norm(&residual);
-                if cycle == 0 && found.sets <= FIRST_SETS {
-                    goal = target.max(ROUGHLY * left);
-                }
-                if left <= goal || cycle + 1 == CYCLES {
-                    break;
-                }
-                gmres(&mut x, &residual, goal, |direction| {
-                    scatter(direction, &set, &mut full);
-                    bodies.inverse.apply(&full, &mut image);
-                    let mut better: Vec<f64> = set.iter().map(|&k| image[k]).collect();
-                    project(&mut better);
-                    scatter(&better, &set, &mut full);
-                    bodies.response.apply(&full, &mut image);
-                    let mut own: Vec<f64> = set.iter().map(|&k| image[k]).collect();
-                    project(&mut own);
-                    [better, own]
-                });
-            }
-            drop(residual);
-            // under a given force the gap in contact is how far the body is to be lowered
+            let balance = Balance::new(self, &set);
+            let mut p: Vec<f64> = set.iter().map(|&k| found.pressure[k]).collect();
+            balance.satisfy(&mut p);
+            let allowed = tolerance * self.unit(&set, &balance) * (set.len() as f64).sqrt();
+            let first = found.sets <= FIRST_SETS;
+            let left = self.solve_on(
+                &set,
+                &balance,
+                [allowed, if first { ROUGHLY } else { 0.0 }],
+                bodies,
+                &mut p,
+                &mut found.displacement,
+            );
             let open = |k: usize| found.displacement[k] + gap[k];
-            found.lowered = if total.is_some() { set.iter().map(|&k| open(k)).sum::<f64>() / count } else { 0.0 };
-            found.residual = left / (unit * count.sqrt());
-            let most = x.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-            let mut pulls: Vec<(f64, usize)> =
-                x.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
-            let deep = -SLACK * tolerance * unit;
-            let outside = (0..cells).filter(|&k| !pressed[k]);
-            let mut penetrates: Vec<(f64, usize)> =
-                outside.map(|k| (open(k) - found.lowered, k)).filter(|(h, _)| *h < deep).collect();
+            found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
+            found.residual = tolerance * left / allowed;
+            let height = |k: usize| open(k) - found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
+            let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+            let deep = -SLACK * allowed / (set.len() as f64).sqrt();
+            let pulls = p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
+            let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
+            let penetrates: Vec<(f64, usize)> = outside.filter(|(h, _)| *h < deep).collect();
+            let mut changes: [Vec<(f64, usize)>; 2] = [pulls, penetrates];
             found.pressure.fill(0.0);
-            x.iter().zip(&set).for_each(|(&p, &k)| found.pressure[k] = p.max(0.0));
-            if pulls.is_empty() && penetrates.is_empty() && left <= 1.5 * target {
+            p.iter().zip(&set).for_each(|(&p, &k)| found.pressure[k] = p.max(0.0));
+            if changes.iter().all(Vec::is_empty) && left <= 1.5 * allowed {
                 found.converged = true;
                 break;
             }
-            // where a set comes back, the worse half changes
-            let mut next = pressed.clone();
-            pulls.iter().for_each(|&(_, k)| next[k] = false);
-            penetrates.iter().for_each(|&(_, k)| next[k] = true);
+            let changed = |changes: &[Vec<(f64, usize)>; 2]| {
+                let mut next = pressed.clone();
+                (0..2).for_each(|kind| changes[kind].iter().for_each(|&(_, k)| next[k] = kind == 1));
+                next
+            };
+            let mut next = changed(&changes);
             let mut hasher = DefaultHasher::new();
             next.hash(&mut hasher);
             if !tried.insert(hasher.finish()) {
-                for changes in [&mut pulls, &mut penetrates] {
-                    changes.sort_by(|a, b| a.0.total_cmp(&b.0));
-                    changes.truncate(changes.len().div_ceil(2));
+                // where a set comes back, the worse half changes
+                for own in &mut changes {
+                    own.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    own.truncate(own.len().div_ceil(2));
                 }
-                next.copy_from_slice(&pressed);
-                pulls.iter().for_each(|&(_, k)| next[k] = false);
-                penetrates.iter().for_each(|&(_, k)| next[k] = true);
+                next = changed(&changes);
             }
             pressed = next;
             if !pressed.contains(&true) {
-                if total.is_none() {
-                    // nothing presses: the bodies are apart
-                    found.pressure.fill(0.0);
-                    found.displacement.fill(0.0);
-                    found.converged = true;
-                    break;
+                if !self.free.translation {
+                    return Found { sets: found.sets, ..Found::apart(cells) };
                 }
+                let low = gap.iter().copied().fold(f64::INFINITY, f64::min);
                 pressed = gap.iter().map(|&h| h <= low).collect();
             }
         }
         found
     }
 
+    /// Solves for the pressure on a set down to a residual allowed, or to a part of the first one. Returns the residual left, and writes the
+    /// displacement.
+    fn solve_on(
+        &self,
+        set: &[usize],
+        balance: &Balance,
+        [allowed, part]: [f64; 2],
+        bodies: &mut MovingBodies,
+        pressure: &mut [f64],
+        displacement: &mut [f64],
+    ) -> f64 {
+        let cells = self.gap.len();
+        let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
+        let mut goal = 0.0;
+        for cycle in 0..CYCLES {
+            scatter(pressure, set, &mut full);
+            bodies.response.apply(&full, displacement);
+            let mut residual: Vec<f64> = set.iter().map(|&k| -(displacement[k] + self.gap[k])).collect();
+            balance.project(&mut residual);
+            let left = norm(&residual);
+            if cycle == 0 {
+                goal = allowed.max(part * left);
+            }
+            if left <= goal || cycle + 1 == CYCLES {
+                return left;
+            }
+            gmres(pressure, &residual, goal, |direction| {
+                scatter(direction, set, &mut full);
+                bodies.inverse.apply(&full, &mut image);
+                let mut better: Vec<f64> = set.iter().map(|&k| image[k]).collect();
+                balance.project(&mut better);
+                scatter(&better, set, &mut full);
+                bodies.response.apply(&full, &mut image);
+                let mut own: Vec<f64> = set.iter().map(|&k| image[k]).collect();
+                balance.project(&mut own);
+                [better, own]
+            });
+        }
+        f64::INFINITY
+    }
+
+    /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps
+    /// where the contact is flat.
+    fn unit(&self, set: &[usize], balance: &Balance) -> f64 {
+        let mut heights: Vec<f64> = set.iter().map(|&k| self.gap[k]).collect();
+        balance.project(&mut heights);
+        let finite = || self.gap.iter().copied().filter(|h| h.is_finite());
+        let [low, high] = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
+        (norm(&heights) / (set.len() as f64).sqrt()).max(FLAT * (high - low)).max(ROUNDING * high.abs())
+    }
+
     /// The cells of a first set: the lowest ones, those below zero under a given approach.
     fn lowest(&self) -> Vec<bool> {
         let mut heights: Vec<f64> = self.gap.iter().copied().filter(|h| h.is_finite()).collect();
-        let level = if self.total.is_some() {
+        let level = if self.free.translation {
             let place = ((FIRST_PART * heights.len() as f64) as usize).min(heights.len() - 1);
             *heights.select_nth_unstable_by(place, f64::total_cmp).1
         } else {
             0.0
         };
-        let lowest: Vec<bool> = self.gap.iter().map(|&h| h <= level).collect();
-        lowest
+        self.gap.iter().map(|&h| h <= level).collect()
     }
 }
 
 fn norm(field: &[f64]) -> f64 {
-    field.iter().map(|v| v * v).sum::<f64>().sqrt()
+    dot(field, field).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn scatter(values: &[f64], set: &[usize], field: &mut [f64]) {

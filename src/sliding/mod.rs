@@ -7,6 +7,7 @@
 //!
 //! Friction is that of hysteresis: the surfaces have none of their own.
 
+mod coefficients;
 mod contact_problem;
 mod gmres;
 mod operator;
@@ -15,7 +16,7 @@ pub use crate::error::SlidingError;
 
 use std::fmt;
 
-use crate::contact::{Builder, Edge, Frame, ViscoelasticContact};
+use crate::contact::{Builder, Frame, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite};
 use crate::load::{Load, Tilt};
 use crate::rheology::CreepSpectrum;
@@ -124,15 +125,13 @@ impl Builder {
         if self.ranks.is_some() {
             return refuse("a contact that ranks share out", "compute it in one process");
         }
-        self.settings =
-            self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies).with_edge(Edge::Allow);
+        self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         self.steady = true;
         let contact = self.build()?;
-        if contact.kernel().periodic_axes() != [true; 2] {
-            return refuse(
-                "a body that is not periodic along both axes",
-                "take InfluenceKernel::periodic, or ViscoelasticContact::toward_steady",
-            );
+        let kernel = contact.kernel();
+        let cure = "take a half-space, InfluenceKernel::periodic or InfluenceKernel::line, or go to the steady state by ViscoelasticContact::toward_steady";
+        if kernel.periodic_axes() != [true; 2] && kernel.around_a_cell().is_none() {
+            return refuse("a body that is neither a half-space nor periodic along both axes", cure);
         }
         if contact.bodies() > 1 {
             return refuse("a contact of several rigid bodies", "take one");
@@ -146,6 +145,14 @@ impl Builder {
         }
         Ok(SteadySliding { contact, creep })
     }
+}
+
+/// The prescribed part of a motion.
+fn prescribed(load: Load) -> RigidMotion {
+    let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
+    let approach = if let Load::Approach { approach, .. } = load { approach } else { 0.0 };
+    // the approach is that of the point about which the body tilts
+    RigidMotion { approach, tilt }
 }
 
 impl SteadySliding {
@@ -162,45 +169,39 @@ impl SteadySliding {
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
-        load.validate()?;
-        if load.tilt() != [Tilt::Fixed(0.0); 2] {
-            let (what, cure) = ("a body that tilts", "a periodic body does not: give a centric load without tilt");
+        if let Load::Spring { .. } = load {
+            let (what, cure) = ("a body on a spring", "give the force or the approach");
             return Err(SlidingError::NotCovered { what, cure }.into());
         }
-        let gap = self.contact.initial_gap();
-        let (datum, cell_area, tolerance) =
-            (gap.datum, self.contact.grid().cell_area(), self.contact.settings().tolerance);
-        let mut heights = gap.above.clone();
-        let (total, begins_at) = match load {
-            Load::Force { normal, .. } => (Some(normal / cell_area), datum),
-            Load::Approach { approach, .. } => {
-                heights.iter_mut().for_each(|h| *h -= approach - datum);
-                let left = heights.iter().sum::<f64>() / heights.len() as f64;
-                if left <= 0.0 && self.contact.kernel().mean_is_held() {
-                    let greatest = approach + left;
-                    return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
-                }
-                (None, approach)
-            }
-            Load::Spring { .. } => {
-                let (what, cure) = ("a body on a spring", "give the force or the approach");
-                return Err(SlidingError::NotCovered { what, cure }.into());
-            }
-        };
-        let mut bodies = MovingBodies::periodic(self.contact.kernel(), &self.creep, velocity);
-        let problem = Problem { gap: &heights, total, tolerance };
-        let found = if total == Some(0.0) {
+        let (free, given) = (self.contact.free_motion(load)?, prescribed(load));
+        let mut bodies = self.bodies(velocity, load)?;
+        let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
+        let (gap, n2) = (self.contact.initial_gap(), grid.cells()[1]);
+        let datum = gap.datum;
+        // without translation the prescribed approach counts from the plane of the gap, else the free one from first touch
+        let lowered = RigidMotion { approach: if free.translation { 0.0 } else { given.approach - datum }, ..given };
+        let lower = |k: usize| lowered.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
+        let heights: Vec<f64> = gap.above.iter().enumerate().map(|(k, h)| h - lower(k)).collect();
+        let mean = heights.iter().sum::<f64>() / heights.len() as f64;
+        if !free.translation && mean <= 0.0 && self.contact.kernel().mean_is_held() {
+            let (approach, greatest) = (given.approach, given.approach + mean);
+            return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
+        }
+        let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
+        let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
         } else {
             problem.solve(&mut bodies, self.contact.pressure())
         };
-        let Found { pressure, displacement, lowered, residual, sets, converged } = found;
+        let Found { pressure, displacement, motion, residual, sets, converged } = found;
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }
-        let transforms = bodies.response.pairs + bodies.inverse.pairs;
+        self.contact.check_edge(&pressure)?;
+        let cell_area = grid.cell_area();
+        let transforms = bodies.transforms();
         let lateral_force = bodies.drag(&pressure).map(|force| force * cell_area);
-        let motion = RigidMotion { approach: begins_at + lowered, tilt: [0.0; 2] };
+        let motion = RigidMotion { approach: datum, tilt: [0.0; 2] } + lowered + motion;
         self.contact.show_steady(load, motion, pressure, displacement);
         Ok(SlidingReport {
             velocity,
@@ -213,6 +214,32 @@ impl SteadySliding {
             sets,
             transforms,
         })
+    }
+
+    /// The bodies under a pressure with this velocity.
+    fn bodies(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
+        let (kernel, grid) = (self.contact.kernel(), self.contact.grid());
+        let Some(influence) = kernel.around_a_cell() else {
+            return Ok(MovingBodies::periodic(kernel, &self.creep, velocity));
+        };
+        let periodic = kernel.periodic_axes();
+        // in plane strain a motion along the lines changes nothing
+        let across = periodic.iter().position(|&periodic| periodic).map(|along| 1 - along);
+        let axis = across.unwrap_or(usize::from(velocity[0] == 0.0));
+        if across.is_none() && velocity[1 - axis] != 0.0 {
+            let (what, cure) =
+                ("a motion over a half-space that follows neither x1 nor x2", "rotate the shape (geometry::Rotated)");
+            return Err(SlidingError::NotCovered { what, cure }.into());
+        }
+        let farthest = self.creep.terms().iter().map(|(_, time)| time * velocity[axis].abs()).fold(0.0, f64::max);
+        if across.is_some()
+            && !matches!(load, Load::Force { .. })
+            && kernel.datum() < Some(grid.lengths()[axis] + farthest)
+        {
+            let what = "a line contact of given approach whose datum is nearer than the grid and the longest memory of the motion";
+            return Err(SlidingError::NotCovered { what, cure: "give the force, or a datum farther away" }.into());
+        }
+        Ok(MovingBodies::half_space(grid, &*influence, &self.creep, axis, velocity[axis]))
     }
 
     /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.

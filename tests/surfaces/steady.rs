@@ -150,9 +150,14 @@ impl Scene {
         self.waves.iter().map(wave).sum()
     }
 
+    /// The middle of the contact, along the motion from that of the grid.
+    pub(super) fn middle(&self) -> f64 {
+        0.5 * (self.behind as f64 - self.ahead as f64)
+    }
+
     pub(super) fn shape(&self) -> impl Geometry + 'static {
         let scene = self.clone();
-        let middle = 0.5 * (self.behind as f64 - self.ahead as f64);
+        let middle = self.middle();
         FnGeometry::new(move |x1: f64, x2: f64| {
             let [along, aside] = scene.by_axis(x1, x2);
             scene.gap(scene.velocity * along - middle, aside)

@@ -30,7 +30,8 @@ use std::sync::atomic::Ordering;
 use crate::contact::builder::build::cells_in_zone;
 use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::{
-    Computation, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial, ViscoelasticContact,
+    Computation, Edge, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial,
+    ViscoelasticContact,
 };
 use crate::error::{Error, Result, SlidingError, StepError, non_negative};
 use crate::events;
@@ -38,7 +39,7 @@ use crate::extent::Extent;
 use crate::hereditary::{Interval, StepContext, TimeError};
 use crate::load::{Load, Loads};
 use crate::parallel::in_pool;
-use crate::solver::{RigidMotion, Solution, Stop};
+use crate::solver::{Freedom, RigidMotion, Solution, Stop};
 use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
@@ -92,16 +93,31 @@ impl ViscoelasticContact {
     /// A step of `length` to the time `time`, without motion along the surface.
     pub(crate) fn request<'a>(&self, time: f64, length: f64, loads: &'a [Load], tolerance: f64) -> Result<Step<'a>> {
         let State { indenter, clock, .. } = &self.computation.state;
-        if self.scene.steady {
-            let (what, cure) = ("a step of a contact in steady motion", "build one by Builder::build to step");
-            return Err(SlidingError::NotCovered { what, cure }.into());
-        }
         non_negative("time", time)?;
         let dt = self.scene.reduced_length([clock.time, time], length)?;
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
         Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, cancelled: None })
+    }
+
+    /// The motion that a load leaves free to the body of a contact in steady motion, if it can be balanced.
+    pub(crate) fn free_motion(&self, load: Load) -> Result<Freedom> {
+        let loads = [load];
+        let step = self.request(0.0, 0.0, &loads, self.settings().tolerance)?;
+        validate_loads(&self.scene, &step)?;
+        let mut free = self.computation.trial.free.clone();
+        find_free_motions(&self.scene, &self.computation.state.region, &step, &mut free);
+        Ok(free[0])
+    }
+
+    /// Rejects a pressure at an edge of the grid that is not periodic, unless the settings allow it.
+    pub(crate) fn check_edge(&self, pressure: &[f64]) -> Result<()> {
+        let cells = self.computation.state.region.positive_on_edge(pressure, self.scene.kernel.periodic_axes());
+        if cells == 0 || self.settings().edge == Edge::Allow {
+            return Ok(());
+        }
+        Err(Error::Step(StepError::ContactAtEdge { time: 0.0, cells, lengths: self.grid().lengths(), needed: None }))
     }
 
     /// Computes a step and accepts it.
@@ -118,6 +134,10 @@ impl ViscoelasticContact {
 
     /// Computes a step. The state stays as it is.
     pub(crate) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
+        if self.scene.steady {
+            let (what, cure) = ("a step of a contact in steady motion", "build one by Builder::build to step");
+            return Err(SlidingError::NotCovered { what, cure }.into());
+        }
         let (mut larger, region) = (None, &self.computation.state.region);
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other

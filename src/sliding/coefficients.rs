@@ -1,0 +1,251 @@
+//! Influence coefficients of creeping bodies under a pressure that moves along a row of cells.
+//!
+//! A term C_k (1 − e^(−t/λ)) of the creep displaces by C_k f p,
+//!
+//! f(x) = ∫ e^(−s/l) K(x + s) ds/l over s > 0, l = v λ:
+//!
+//! the influence K of where the pressure has been. All parts are positive, so that f follows without cancellation from one recursion against the
+//! motion, f(x) = I(x) + e^(−d/l) f(x + d), with the integral I over one cell. The tail beyond the grid is taken in panels that double.
+
+use crate::quadrature::GaussLegendre;
+
+/// The influence of a cell on a row of points, and where it is not analytic.
+pub(super) struct Row<'a> {
+    /// K at a distance x ≥ 0 along the row \[m\].
+    pub(super) influence: &'a dyn Fn(f64) -> f64,
+    /// Singular points at ± `half` ± i `aside` from the cell \[m\].
+    pub(super) half: f64,
+    pub(super) aside: f64,
+}
+
+/// Numbers of points of a panel.
+const POINTS: [usize; 5] = [6, 8, 12, 16, 20];
+/// Error of a panel relative to its integral.
+const EXACT: f64 = 1e-15;
+/// A kink is enclosed in a panel of this part of a cell.
+const LEAST_PANEL: f64 = 1.0 / (1_u64 << 46) as f64;
+/// What is left of a term after its tail.
+const NEGLIGIBLE: f64 = 1e-19;
+
+/// A part of an interval: its begin and length \[m\], and the number of its points, an index of [`POINTS`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Panel {
+    begin: f64,
+    length: f64,
+    points: usize,
+}
+
+impl Row<'_> {
+    /// The smallest number of points that integrates over a panel exactly, as an index of [`POINTS`]: the error is ρ^(−n), ρ of the
+    /// greatest ellipse about the panel in which the influence is analytic.
+    fn points(&self, begin: f64, length: f64) -> Option<usize> {
+        let rho = |at: f64| {
+            let [x, y] = [(at - begin - 0.5 * length) / (0.5 * length), self.aside / (0.5 * length)];
+            // half of the sum of the distances from the foci, the ends of the panel
+            let axis = 0.5 * ((x - 1.0).hypot(y) + (x + 1.0).hypot(y));
+            axis + (axis * axis - 1.0).max(0.0).sqrt()
+        };
+        let rho = rho(self.half).min(rho(-self.half));
+        POINTS.iter().position(|&points| rho.powi(-(points as i32)) < EXACT)
+    }
+
+    /// Panels that integrate over an interval, halved towards singular points.
+    fn panels(&self, begin: f64, length: f64, least: f64, panels: &mut Vec<Panel>) {
+        match self.points(begin, length) {
+            Some(points) => panels.push(Panel { begin, length, points }),
+            None if length <= least => panels.push(Panel { begin, length, points: 0 }),
+            None => {
+                let half = 0.5 * length;
+                self.panels(begin, half, least, panels);
+                self.panels(begin + half, half, least, panels);
+            }
+        }
+    }
+
+    /// f of each of the `reaches` l at the cells −(n − 1) to n − 1 of a row, of cells of the side d.
+    pub(super) fn terms(&self, n: usize, d: f64, reaches: &[f64], rules: &Rules) -> Vec<Vec<f64>> {
+        let mut ahead = vec![vec![0.0; n]; reaches.len()];
+        let mut behind = ahead.clone();
+        let (mut panels, mut values) = (Vec::new(), Vec::new());
+        let mut weights: Vec<Vec<[Vec<f64>; 2]>> = Vec::new();
+        let mut known = Vec::new();
+        for m in 0..n {
+            let begin = m as f64 * d;
+            panels.clear();
+            self.panels(begin, d, LEAST_PANEL * d, &mut panels);
+            // the influence does not depend on the reach: its values serve all terms, and both sides of the cell
+            values.clear();
+            for panel in &panels {
+                rules.each(panel, |x| values.push((self.influence)(x)));
+            }
+            let same: Vec<Panel> = panels.iter().map(|panel| Panel { begin: panel.begin - begin, ..*panel }).collect();
+            // far from the singular points all cells have the same single panel
+            if m == 0 || same.len() > 1 || known != same {
+                weights =
+                    reaches.iter().map(|&l| same.iter().map(|panel| rules.weights(panel, d, l)).collect()).collect();
+                known = same;
+            }
+            for (k, weights) in weights.iter().enumerate() {
+                let mut from = 0;
+                for [forward, mirrored] in weights {
+                    let own = &values[from..from + forward.len()];
+                    ahead[k][m] += own.iter().zip(forward).map(|(v, w)| v * w).sum::<f64>();
+                    behind[k][m] += own.iter().zip(mirrored).map(|(v, w)| v * w).sum::<f64>();
+                    from += forward.len();
+                }
+            }
+        }
+        let tails = self.tails(n as f64 * d, reaches, rules);
+        let each = reaches.iter().zip(tails).zip(ahead.iter().zip(&behind));
+        each.map(|((&l, tail), (ahead, behind))| {
+            let (decay, mut sum, mut row) = ((-d / l).exp(), tail, vec![0.0; 2 * n - 1]);
+            for m in (0..n).rev() {
+                sum = ahead[m] + decay * sum;
+                row[n - 1 + m] = sum;
+            }
+            for m in 0..n - 1 {
+                sum = behind[m] + decay * sum;
+                row[n - 2 - m] = sum;
+            }
+            row
+        })
+        .collect()
+    }
+
+    /// f of each reach at the distance `from` \[m\].
+    fn tails(&self, from: f64, reaches: &[f64], rules: &Rules) -> Vec<f64> {
+        let (mut begin, mut length, mut panels) = (from, from, Vec::new());
+        let mut tails = vec![0.0; reaches.len()];
+        loop {
+            let left: Vec<f64> = reaches.iter().map(|l| (-(begin - from) / l).exp()).collect();
+            if left.iter().all(|&left| left < NEGLIGIBLE) {
+                return tails;
+            }
+            panels.clear();
+            self.panels(begin, length, LEAST_PANEL * from, &mut panels);
+            for panel in &panels {
+                let mut values = Vec::new();
+                rules.each(panel, |x| values.push((self.influence)(x)));
+                for (k, &l) in reaches.iter().enumerate().filter(|(k, _)| left[*k] >= NEGLIGIBLE) {
+                    let own = Panel { begin: panel.begin - begin, ..*panel };
+                    let [weights, _] = rules.weights(&own, length, l);
+                    tails[k] += left[k] * values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
+                }
+            }
+            (begin, length) = (begin + length, 2.0 * length);
+        }
+    }
+}
+
+/// Gauss points of the panels, and weights for an exponential times a polynomial.
+#[derive(Debug)]
+pub(super) struct Rules([GaussLegendre; POINTS.len()]);
+
+/// From this half length over the reach on, the moments are those of the end of the panel.
+const STEEP: f64 = 1e5;
+/// Below it they are those of a constant and a straight line.
+const FLAT: f64 = 1e-9;
+
+impl Rules {
+    pub(super) fn new() -> Rules {
+        Rules(POINTS.map(GaussLegendre::new))
+    }
+
+    /// Visits the points of a panel.
+    fn each(&self, panel: &Panel, mut visit: impl FnMut(f64)) {
+        for &(t, _) in self.0[panel.points].points() {
+            visit(panel.begin + 0.5 * panel.length * (1.0 + t));
+        }
+    }
+
+    /// Weights of ∫ e^(−s/l) g ds/l over a panel of the interval [0, `whole`], s from its begin, and from its end.
+    fn weights(&self, panel: &Panel, whole: f64, reach: f64) -> [Vec<f64>; 2] {
+        let moments = moments(panel.length / reach, POINTS[panel.points]);
+        let of_point = |&(t, gauss): &(f64, f64)| {
+            // Σ (k + 1/2) P_k(t) m_k
+            let (mut before, mut now, mut sum) = (0.0, 1.0, 0.0);
+            for (k, moment) in moments.iter().enumerate() {
+                let k = k as f64;
+                sum += (k + 0.5) * now * moment;
+                (before, now) = (now, ((2.0 * k + 1.0) * t * now - k * before) / (k + 1.0));
+            }
+            gauss * sum
+        };
+        let own: Vec<f64> = self.0[panel.points].points().iter().map(of_point).collect();
+        let after = whole - panel.begin - panel.length;
+        let [forward, mirrored] = [panel.begin, after.max(0.0)].map(|s| (-s / reach).exp());
+        [own.iter().map(|w| forward * w).collect(), own.iter().rev().map(|w| mirrored * w).collect()]
+    }
+}
+
+/// λ ½ ∫ e^(−λ (1 + t)/2) P_k(t) dt over [−1, 1] = λ (−1)^k e^(−z) i_k(z), z = λ/2, i_k the modified spherical Bessel functions
+/// (NIST Handbook of Mathematical Functions, 2010, 10.49 and 10.54).
+fn moments(length_over_reach: f64, count: usize) -> Vec<f64> {
+    let (lambda, z) = (length_over_reach, 0.5 * length_over_reach);
+    let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+    if z > STEEP {
+        let end = |k: usize| {
+            let a = (k * (k + 1)) as f64;
+            sign(k) * (1.0 - a / (2.0 * z) * (1.0 - (a - 2.0) / (4.0 * z)))
+        };
+        return (0..count).map(end).collect();
+    }
+    let first = if z > 0.0 { -(-lambda).exp_m1() } else { 0.0 };
+    if z < FLAT {
+        return (0..count).map(|k| [first, -first * z / 3.0].get(k).copied().unwrap_or(0.0)).collect();
+    }
+    // i_k/i_(k−1) downwards from where it no longer matters
+    let start = count + 20 + (9.0 * z.sqrt()) as usize;
+    let mut ratios = vec![0.0; start + 1];
+    for k in (1..start).rev() {
+        ratios[k] = 1.0 / ((2 * k + 1) as f64 / z + ratios[k + 1]);
+    }
+    let mut value = first;
+    let moment = |k: usize| {
+        value *= if k == 0 { 1.0 } else { ratios[k] };
+        sign(k) * value
+    };
+    (0..count).map(moment).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the integral by many points, from a constant weight to one at the begin.
+    #[test]
+    fn weights_integrate_an_exponential_times_a_polynomial() {
+        let (rules, fine) = (Rules::new(), GaussLegendre::new(40));
+        for reach in [1e-9, 1e-5, 1e-3, 0.03, 0.3, 1.0, 50.0, 1e6, 1e12] {
+            let panel = Panel { begin: 0.25, length: 0.5, points: 1 };
+            let g = |s: f64| 1.0 + s - 2.0 * s.powi(3) + s.powi(7);
+            let pieces = |from: f64, to: f64, weight: &dyn Fn(f64) -> f64| {
+                let (mut sum, mut begin, mut length) = (0.0, from, f64::min(0.1 * reach, to - from));
+                while begin < to {
+                    sum += fine.integrate(begin, begin + length, |s| weight(s) * g(s));
+                    begin += length;
+                    length = (2.0 * length).min(to - begin);
+                }
+                sum
+            };
+            let exact = [
+                pieces(0.25, 0.75, &|s| (-s / reach).exp() / reach),
+                // from the other end of the interval [0, 1], whose values are mirrored
+                pieces(0.25, 0.75, &|s| (-s / reach).exp() / reach * g(1.0 - s) / g(s)),
+            ];
+            let mut values = Vec::new();
+            rules.each(&panel, |s| values.push(g(s)));
+            let weights = rules.weights(&panel, 1.0, reach);
+            let found = [
+                weights[0].iter().zip(&values).map(|(w, v)| w * v).sum::<f64>(),
+                weights[1].iter().zip(&values).map(|(w, v)| w * v).sum::<f64>(),
+            ];
+            for k in 0..2 {
+                assert!(
+                    (found[k] - exact[k]).abs() <= 2e-12 * exact[k].abs() + 1e-300,
+                    "{reach} {k}: {found:?} {exact:?}"
+                );
+            }
+        }
+    }
+}
