@@ -113,6 +113,11 @@ impl RealPlane {
         RealPlane { along1: Lines::new(n1), forward2, inverse2, row, half_row, scratch }
     }
 
+    /// Lengths along x1 and x2.
+    pub(crate) fn periods(&self) -> [usize; 2] {
+        [self.along1.len(), self.row.len()]
+    }
+
     /// The number of coefficients.
     pub(crate) fn coefficients(&self) -> usize {
         self.along1.len() * self.half_row.len()

@@ -10,9 +10,10 @@ use crate::solver::{Freedom, RigidMotion};
 
 /// Sets of cells in contact that are tried.
 const MOST_SETS: usize = 60;
-/// The first sets are solved to this part of the first residual, until the set no longer changes much.
-const FIRST_SETS: usize = 4;
-const ROUGHLY: f64 = 1e-2;
+/// Until the set stands, its residual is brought down to this part of the first one.
+const ROUGHLY: f64 = 3e-2;
+/// A cell joins for no less penetration than so many root mean squares of the residual.
+const CERTAIN: f64 = 3.0;
 /// Restarts of the iteration on a set.
 const CYCLES: usize = 3;
 /// The part of the lowest cells that a first set takes.
@@ -139,7 +140,7 @@ impl Problem<'_> {
             pressed = self.lowest();
         }
         let mut found = Found { pressure: guess.to_vec(), displacement: vec![0.0; cells], ..Found::default() };
-        let mut tried = HashSet::new();
+        let (mut tried, mut stands) = (HashSet::new(), false);
         while found.sets < MOST_SETS {
             found.sets += 1;
             let set: Vec<usize> = (0..cells).filter(|&k| pressed[k]).collect();
@@ -147,30 +148,27 @@ impl Problem<'_> {
             let mut p: Vec<f64> = set.iter().map(|&k| found.pressure[k]).collect();
             balance.satisfy(&mut p);
             let allowed = tolerance * self.unit(&set, &balance) * (set.len() as f64).sqrt();
-            let first = found.sets <= FIRST_SETS;
-            let left = self.solve_on(
-                &set,
-                &balance,
-                [allowed, if first { ROUGHLY } else { 0.0 }],
-                bodies,
-                &mut p,
-                &mut found.displacement,
-            );
+            let part = if stands { 0.0 } else { ROUGHLY };
+            let left = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
             let open = |k: usize| found.displacement[k] + gap[k];
             found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
             found.residual = tolerance * left / allowed;
             let height = |k: usize| open(k) - found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-            let deep = -SLACK * allowed / (set.len() as f64).sqrt();
+            let deep = -(SLACK * allowed).max(CERTAIN * left) / (set.len() as f64).sqrt();
             let pulls = p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
             let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
             let penetrates: Vec<(f64, usize)> = outside.filter(|(h, _)| *h < deep).collect();
             let mut changes: [Vec<(f64, usize)>; 2] = [pulls, penetrates];
             found.pressure.fill(0.0);
             p.iter().zip(&set).for_each(|(&p, &k)| found.pressure[k] = p.max(0.0));
-            if changes.iter().all(Vec::is_empty) && left <= 1.5 * allowed {
-                found.converged = true;
-                break;
+            if changes.iter().all(Vec::is_empty) {
+                found.converged = left <= 1.5 * allowed;
+                if found.converged || stands {
+                    break;
+                }
+                stands = true;
+                continue;
             }
             let changed = |changes: &[Vec<(f64, usize)>; 2]| {
                 let mut next = pressed.clone();

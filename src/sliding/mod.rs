@@ -190,6 +190,13 @@ impl SteadySliding {
         let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
+        } else if self.contact.contact_cells() == 0 {
+            // the symmetric part of the response gives a first contact: in slow motion a set would grow by one row of cells at a time
+            let mut symmetric = bodies.symmetric();
+            let first = problem.solve(&mut symmetric, self.contact.pressure());
+            let found = problem.solve(&mut bodies, &first.pressure);
+            bodies.response.pairs += symmetric.transforms();
+            Found { sets: found.sets + first.sets, ..found }
         } else {
             problem.solve(&mut bodies, self.contact.pressure())
         };

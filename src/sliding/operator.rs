@@ -111,6 +111,18 @@ impl MovingBodies {
         }
     }
 
+    /// Bodies with the symmetric part of the response, that of a pressure that moves both ways.
+    pub(super) fn symmetric(&self) -> MovingBodies {
+        let Multiplier { cells, ref plane, ref factors, .. } = self.response;
+        let real = factors.iter().map(|factor| Complex64::from(factor.re)).collect();
+        let none = Multiplier::new(cells, [1, 1], vec![Complex64::ZERO]);
+        MovingBodies {
+            response: Multiplier::new(cells, plane.periods(), real),
+            inverse: Multiplier { pairs: 0, ..self.inverse.clone() },
+            drag: Drag::OfLoss(none, [0.0; 2]),
+        }
+    }
+
     /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies resist.
     pub(super) fn drag(&mut self, pressure: &[f64]) -> [f64; 2] {
         match &mut self.drag {

@@ -1,6 +1,6 @@
 //! Steady motions as one problem, against dense ones, closed forms and limits. `SLIDING_SCENES` (60) random sliders and rollers, `SLIDING_SEED` (1).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::steady::Scene;
 use crate::common::steady_sliding::Time;
@@ -138,6 +138,47 @@ fn random_motions_are_those_of_a_dense_problem() {
     for (error, most) in worst.into_iter().zip([1e-6, 1e-7, 1e-7, 1e-12]) {
         assert!(error < most, "{worst:?}");
     }
+}
+
+/// A rolling cylinder against its closed form, at memories from a hundredth of the contact to 10⁵ times its length; the error falls with the mesh.
+#[test]
+fn a_rolling_cylinder_is_hunters() {
+    let (radius, c0, c1, force) = (1.0, 0.25e-6, 2.25e-6, 5.0e3);
+    let half = (4.0_f64 * radius * (c0 + c1) * force / PI).sqrt();
+    let body = || GeneralizedKelvin::new(4.0 * c0, 0.0, &[(4.0 * c1, 1.0)]).unwrap();
+    let friction = |cells: usize, reach: f64, axis: Axis| {
+        let grid = Grid::new([cells, 1], [3.0 * half, 1.0]).unwrap();
+        let cylinder = Cylinder::new(radius).unwrap();
+        let mut sliding = ViscoelasticContact::builder(grid.clone())
+            .geometry(&cylinder)
+            .material(Material::incompressible(body()))
+            .kernel(InfluenceKernel::line(&grid, 100.0).unwrap())
+            .settings(Settings::default().with_tolerance(1e-9))
+            .build_sliding()
+            .unwrap();
+        let velocity = if axis == Axis::X1 { [reach, 0.0] } else { [0.0, reach] };
+        let report = sliding.at(velocity, Load::force(force)).unwrap();
+        println!("l/w {}, {cells} cells: {} sets, {} transforms", reach / half, report.sets, report.transforms);
+        assert!(report.transforms <= 600);
+        [report.friction(), sliding.contact().lateral_force(&cylinder)[0] / force]
+    };
+    // the closed form (tests/common/steady_sliding.rs) with 40 digits: of a long memory most cancel
+    for (over_half, exact, most) in [
+        (0.01, 0.00112916499941, 5e-5),
+        (0.05, 0.0055210009519, 2e-5),
+        (0.5, 0.0417296683762, 2e-5),
+        (5.0, 0.0350524117689, 2e-5),
+        (100.0, 0.00347562378807, 2e-5),
+        (1e3, 0.000478290020837, 2e-5),
+        (1e5, 7.39727865853e-6, 3e-3),
+    ] {
+        let reach = over_half * half;
+        let errors = [256, 2048].map(|cells| friction(cells, reach, Axis::X1).map(|found| found / exact - 1.0));
+        println!("l/w {over_half}: {errors:?}");
+        assert!(errors[1].iter().all(|error| error.abs() < most), "{over_half}: {errors:?}");
+    }
+    // along the lines nothing resists
+    assert!(friction(256, half, Axis::X2).iter().all(|friction| friction.abs() < 1e-12));
 }
 
 #[test]
