@@ -161,7 +161,7 @@ impl SteadySliding {
     /// last, so that sweeps over velocities or loads cost less.
     ///
     /// Creep at another temperature is that at the velocity times the shift factor
-    /// ([`TimeTemperature::factor`](crate::rheology::TimeTemperature::factor)).
+    /// ([`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor)).
     ///
     /// # Errors
     /// If the velocity is not finite, the load is neither a force nor an approach without tilt, or the approach is beyond full contact, or the

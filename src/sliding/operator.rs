@@ -33,7 +33,7 @@ enum Drag {
     /// From each wave, with its wave numbers \[1/m\].
     OfWaves(Vec<[f64; 2]>),
     /// Σ p L p along a direction, L = Σ C_k (K − f_k)/l_k.
-    OfLoss(Multiplier, [f64; 2]),
+    OfLoss(Box<Multiplier>, [f64; 2]),
 }
 
 impl MovingBodies {
@@ -107,7 +107,7 @@ impl MovingBodies {
         MovingBodies {
             response: Multiplier::of_coefficients(cells, &|at| table(&response, at)),
             inverse: Multiplier::of_circulant(cells, &|at| table(&response, at)),
-            drag: Drag::OfLoss(Multiplier::of_coefficients(cells, &|at| table(&loss, at)), direction),
+            drag: Drag::OfLoss(Box::new(Multiplier::of_coefficients(cells, &|at| table(&loss, at))), direction),
         }
     }
 
@@ -119,7 +119,7 @@ impl MovingBodies {
         MovingBodies {
             response: Multiplier::new(cells, plane.periods(), real),
             inverse: Multiplier { pairs: 0, ..self.inverse.clone() },
-            drag: Drag::OfLoss(none, [0.0; 2]),
+            drag: Drag::OfLoss(Box::new(none), [0.0; 2]),
         }
     }
 

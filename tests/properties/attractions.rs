@@ -44,11 +44,13 @@ fn the_widest_end_is_linear_softening() {
     }
 }
 
+type Function = fn(f64) -> f64;
+
 /// s = a + b h + c e^(−h), with an energy of its own.
 #[derive(Debug)]
 struct Wrong {
-    traction: fn(f64) -> f64,
-    energy: fn(f64) -> f64,
+    traction: Function,
+    energy: Function,
 }
 
 impl Attraction for Wrong {
@@ -63,7 +65,7 @@ impl Attraction for Wrong {
 #[test]
 fn a_wrong_law_is_found() {
     let exponential = |h: f64| (-h).exp();
-    let broken = |traction: fn(f64) -> f64, energy: fn(f64) -> f64| laws::all(&Wrong { traction, energy }).unwrap_err();
+    let broken = |traction: Function, energy: Function| laws::all(&Wrong { traction, energy }).unwrap_err();
     assert!(laws::all(&Wrong { traction: exponential, energy: exponential }).is_ok());
     let violation = broken(exponential, |h| (-h).exp() * (1.0 + 1e-4 * h));
     assert_eq!(violation.law, "the energy is the integral of the traction");
@@ -78,7 +80,7 @@ fn a_wrong_law_is_found() {
 /// A contact takes no law that attracts more with the gap, repels, or whose energy is another one; an energy of a rule of the user serves.
 #[test]
 fn a_contact_takes_attractions_only() {
-    let built = |traction: fn(f64) -> f64, energy: fn(f64) -> f64| {
+    let built = |traction: Function, energy: Function| {
         ViscoelasticContact::builder(Grid::square(16, 8.0).unwrap())
             .geometry(&Sphere::new(1.0).unwrap())
             .material(Material::incompressible(Elastic::new(0.25).unwrap()))
@@ -87,7 +89,7 @@ fn a_contact_takes_attractions_only() {
     };
     let exponential = |h: f64| (-h).exp();
     assert!(built(exponential, |h| (-h).exp() * (1.0 + 1e-4 * h)).is_ok());
-    let wrong: [(fn(f64) -> f64, fn(f64) -> f64, &str); 6] = [
+    let wrong: [(Function, Function, &str); 6] = [
         (|h| (-h).exp() * (1.0 + 3.0 * h), |h| (4.0 + 3.0 * h) * (-h).exp(), "does not grow with the gap"),
         (|h| (-h).exp() + (-(h - 3.0).powi(2)).exp(), exponential, "does not grow with the gap"),
         (|h| (1.0 - h) * (-0.5 * h).exp(), |h| (2.0 * h - 6.0) * (-0.5 * h).exp() + 8.0, "is not negative"),
