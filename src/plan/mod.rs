@@ -3,12 +3,14 @@
 mod accuracy;
 mod builder;
 mod convergence;
+mod difference;
 mod domain;
 mod error_law;
 mod levels;
 mod loads;
+mod meshes;
+mod scene;
 mod steps;
-mod trial_runs;
 
 pub use accuracy::Accuracy;
 pub use builder::{PlanBuilder, PlanProgress};
