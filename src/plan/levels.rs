@@ -18,7 +18,8 @@ use crate::states::{ElasticStates, Rest, StatesContact};
 const PARTS: usize = 16;
 const MAX_PARTS: usize = 4096;
 const MIN_PARTS: usize = 2;
-/// Level of a curve beyond its last state, over the level of that state.
+/// Levels of a curve below its first state and beyond its last, over the levels of these states.
+const BELOW: f64 = 1e-12;
 const BEYOND: f64 = 16.0;
 /// δ ∝ l^(2/3), A ∝ l^(2/3) of a paraboloid.
 const PARABOLOID: f64 = 2.0 / 3.0;
@@ -38,7 +39,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Through the elastic states of a scene: powers between two of them, and beyond the last.
+    /// Through the elastic states of a scene: powers between two of them, below the first and beyond the last.
     pub(super) fn through(elastic: &Run, tilt: [Tilt; 2], line: bool) -> Result<Curve> {
         let states = elastic.states.iter().filter(|state| state.force > 0.0 && state.depth > elastic.rest);
         let mut points: Vec<[f64; 3]> =
@@ -48,14 +49,19 @@ impl Curve {
         for k in 1..points.len() {
             points[k][2] = points[k][2].max(points[k - 1][2]);
         }
-        let last = *points.last().ok_or(Error::Missing { part: "elastic states" })?;
+        let [first, last] =
+            [points.first(), points.last()].map(|end| end.ok_or(Error::Missing { part: "elastic states" }));
+        let (first, last) = (*first?, *last?);
         // dln of a quantity over dln l
         let power = |[before, next]: [&[f64; 3]; 2], k: usize| (next[k] / before[k]).ln() / (next[0] / before[0]).ln();
-        let [depth, area] = [1, 2].map(|k| match &points[..] {
-            [.., before, last] => power([before, last], k),
-            _ => PARABOLOID,
-        });
-        points.push([BEYOND * last[0], last[1] * BEYOND.powf(depth), last[2] * BEYOND.powf(area)]);
+        let beyond = |end: [f64; 3], other: Option<&[f64; 3]>, ratio: f64| {
+            let [depth, area] = [1, 2].map(|k| other.map_or(PARABOLOID, |other| power([other, &end], k)));
+            [ratio * end[0], end[1] * ratio.powf(depth), end[2] * ratio.powf(area)]
+        };
+        let lowest = beyond(first, points.get(1), BELOW);
+        let highest = beyond(last, points.iter().rev().nth(1), BEYOND);
+        points.insert(0, lowest);
+        points.push(highest);
         let row = |(k, &[level, depth, area]): (usize, &[f64; 3])| {
             let around = [&points[k.saturating_sub(1)], &points[(k + 1).min(points.len() - 1)]];
             // dl/dδ of a power l ∝ δ^(1/n)
