@@ -184,6 +184,7 @@ mod linalg;
 pub mod load;
 mod memory;
 pub mod motion;
+pub mod numeric;
 pub mod observe;
 pub mod output;
 pub mod parallel;
