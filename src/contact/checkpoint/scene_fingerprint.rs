@@ -107,8 +107,11 @@ impl Fingerprint {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::difference;
     use crate::Grid;
+    use crate::contact::Region;
+    use crate::contact::checkpoint::built::Built;
+    use crate::geometry::Gap;
     use crate::parallel::{Rows, Threads};
 
     /// What ranks find of a gap, each on own rows, is what one process finds of the whole, folded or not.
