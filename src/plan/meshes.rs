@@ -70,7 +70,7 @@ pub(super) struct Meshes {
     pub(super) highest: Option<usize>,
     /// Error of the contact radius due to creep at the rim, on the coarsest mesh.
     pub(super) rim: f64,
-    /// Errors of approach and force, and of the greatest pressure, over those of the states; `None` where these states do not have it.
+    /// Errors of approach and force, and of the greatest pressure, over the errors of the states; `None` where no state has it.
     pub(super) force_amplification: f64,
     pub(super) pressure_amplification: Option<f64>,
     /// Power of the cells across with which the convolutions grow.
