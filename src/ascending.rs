@@ -244,8 +244,8 @@ mod tests {
             assert_eq!(schedule.after(next.next_down()), Some(next));
         }
         assert!(schedule.after(1e300).unwrap() > 1e300);
-        assert!(schedule.add(Times::every(0.0), 0.0).is_err());
-        assert!(schedule.add(Times::decades(1.0, 0), 0.0).is_err());
+        assert_eq!(schedule.add(Times::every(0.0), 0.0).unwrap_err().kind(), crate::ErrorKind::Value);
+        assert_eq!(schedule.add(Times::decades(1.0, 0), 0.0).unwrap_err().kind(), crate::ErrorKind::Value);
         assert!(Schedule::default().after(0.0).is_none());
     }
 }

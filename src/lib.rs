@@ -184,6 +184,7 @@ mod linalg;
 pub mod load;
 mod memory;
 pub mod motion;
+pub mod numeric;
 pub mod observe;
 pub mod output;
 pub mod parallel;
@@ -208,7 +209,9 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, FileError, KernelError, OutputError, Result, TextError, Trend, UserError};
+pub use error::{
+    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, TextError, Trend, UserError,
+};
 pub use grid::Grid;
 pub use input::{Delimiter, TextFormat};
 pub use kernel::{InfluenceKernel, Layer, Workspace};

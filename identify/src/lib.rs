@@ -50,7 +50,6 @@ mod least_squares;
 mod many;
 mod model;
 mod noise;
-mod non_negative;
 mod parameters;
 #[cfg(feature = "plot")]
 mod plot;

@@ -1,12 +1,12 @@
 //! A relaxation spectrum without a model, and the decades of time that data determine.
 
 use faer::linalg::solvers::DenseSolveCore;
-use faer::{Mat, Side};
+use faer::{Col, Mat, Side};
+use viscocontact::numeric::non_negative_least_squares;
 
 use crate::error::{Error, Result};
 use crate::fit::Fit;
 use crate::model::Prony;
-use crate::non_negative::non_negative;
 use crate::parameters::Kind;
 use crate::problem::Problem;
 
@@ -262,13 +262,19 @@ fn smoothed(matrix: &Mat<f64>) -> (Vec<f64>, f64, f64) {
         let gram = Mat::from_fn(count, count, |i, j| {
             all[(i, j)] + scale * (strength * penalty[(i, j)] + if i == j { 1e-14 } else { 0.0 })
         });
-        let (moduli, free) = non_negative(&gram, &right);
+        // with G = L Lᵀ, ½ xᵀ G x − hᵀ x is least where |Lᵀ x − L⁻¹ h| is
+        let Ok(factor) = gram.llt(Side::Lower) else { continue };
+        let lower = factor.L();
+        let mut reduced = Col::from_fn(count, |i| right[i]);
+        lower.solve_lower_triangular_in_place(reduced.as_mut());
+        let reduced: Vec<f64> = reduced.iter().copied().collect();
+        let moduli = non_negative_least_squares(&reduced, count, |i, j| lower[(j, i)]);
         let product = |j: usize| (0..count).map(|i| all[(j, i)] * moduli[i]).sum::<f64>();
         let sum = (all[(count, count)] - 2.0 * (0..count).map(|j| moduli[j] * right[j]).sum::<f64>()
             + (0..count).map(|j| moduli[j] * product(j)).sum::<f64>())
         .max(0.0);
         // degrees of freedom: the trace of the influence matrix over the free unknowns
-        let at: Vec<usize> = (0..count).filter(|&j| free[j]).collect();
+        let at: Vec<usize> = (0..count).filter(|&j| moduli[j] > 0.0).collect();
         let part = |of: &Mat<f64>| Mat::from_fn(at.len(), at.len(), |i, j| of[(at[i], at[j])]);
         let freedom = part(&gram).llt(Side::Lower).map_or(at.len() as f64, |factor| {
             let influence = factor.inverse() * part(&all);

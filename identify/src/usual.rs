@@ -12,6 +12,8 @@
 
 use std::f64::consts::PI;
 
+use viscocontact::numeric::least;
+
 use crate::error::{Error, Result, positive};
 use crate::experiment::Curve;
 
@@ -19,6 +21,8 @@ use crate::experiment::Curve;
 const UNLOADING: [f64; 2] = [0.98, 0.20];
 /// ε of a paraboloid, and about that of a cone, in h_c = h − ε F/S.
 const EPSILON: f64 = 0.75;
+/// Points at which a least value is looked for first.
+const POINTS: usize = 60;
 /// Fewest points of a fit.
 const LEAST_POINTS: usize = 5;
 /// Drives that differ from the greatest one by this share of the range belong to its hold.
@@ -79,7 +83,7 @@ pub fn oliver_pharr(curve: &Curve, contact_point: f64, area: impl Fn(f64) -> f64
         let rest = lowest - range * below.exp();
         (rest, line(&fitted.iter().map(|&k| (depth[k] - rest).ln()).collect::<Vec<_>>(), &logs))
     };
-    let (rest, [intercept, exponent, _]) = power(least([-7.0, 4.0], |below| power(below).1[2]));
+    let (rest, [intercept, exponent, _]) = power(least(-7.0, 4.0, POINTS, |below| power(below).1[2]));
     let stiffness = exponent * (intercept + (exponent - 1.0) * (depth[onset] - rest).ln()).exp();
     positive("stiffness at the onset of unloading", stiffness)?;
     let contact_depth = positive("contact depth", depth[onset] - EPSILON * greatest / stiffness)?;
@@ -135,7 +139,7 @@ pub fn hold_relaxation(curve: &Curve, contact_point: f64, correction: RampCorrec
     let ages: Vec<f64> = times[start..=end].iter().map(|time| time - times[start]).collect();
     let fit =
         |log_time: f64| line(&ages.iter().map(|age| (-age * (-log_time).exp()).exp()).collect::<Vec<_>>(), &moduli);
-    let time = least([(0.5 * ages[1]).ln(), (10.0 * ages[ages.len() - 1]).ln()], |log_time| fit(log_time)[2]);
+    let time = least((0.5 * ages[1]).ln(), (10.0 * ages[ages.len() - 1]).ln(), POINTS, |log_time| fit(log_time)[2]);
     let ([equilibrium, at_end, _], time) = (fit(time), time.exp());
     let touch = (0..start).find(|&k| drive[k + 1] > contact_point).unwrap_or_default();
     // the drive is linear in time around the first touch
@@ -186,7 +190,7 @@ pub fn loading_modulus(curve: &Curve, contact_point: Option<f64>) -> Result<Load
             let lowest = drive[..=end].iter().copied().fold(f64::INFINITY, f64::min);
             let travel = drive[end] - lowest;
             // also a little before the first point, and a contact over a tenth of the travel at least
-            least([lowest - 0.1 * travel, lowest + 0.9 * travel], |point| {
+            least(lowest - 0.1 * travel, lowest + 0.9 * travel, POINTS, |point| {
                 fit(point).map_or(f64::INFINITY, |[.., sum]| sum)
             })
         }
@@ -232,20 +236,4 @@ fn line(x: &[f64], y: &[f64]) -> [f64; 3] {
     let [xx, xy] = offsets().fold([0.0; 2], |[xx, xy], [x, y]| [xx + x * x, xy + x * y]);
     let slope = if xx > 0.0 { xy / xx } else { 0.0 };
     [mean_y - slope * mean_x, slope, offsets().map(|[x, y]| (y - slope * x).powi(2)).sum()]
-}
-
-/// Where a function is least: the best of some points, and then the golden section between its neighbours.
-fn least([from, to]: [f64; 2], of: impl Fn(f64) -> f64) -> f64 {
-    const POINTS: usize = 60;
-    const SECTIONS: usize = 50;
-    let at = |k: usize| from + (to - from) * k as f64 / POINTS as f64;
-    let values: Vec<f64> = (0..=POINTS).map(|k| of(at(k))).collect();
-    let best = (0..=POINTS).min_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or_default();
-    let [mut low, mut high] = [at(best.saturating_sub(1)), at((best + 1).min(POINTS))];
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    for _ in 0..SECTIONS {
-        let [a, b] = [high - golden * (high - low), low + golden * (high - low)];
-        if of(a) < of(b) { high = b } else { low = a }
-    }
-    0.5 * (low + high)
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::adhesion::Attraction;
 #[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::scene_fingerprint::Built;
+use crate::contact::checkpoint::built::Built;
 use crate::contact::read::limits::Limits;
 use crate::contact::{Clock, Settings};
 use crate::error::Result;

@@ -8,6 +8,7 @@ mod convergence;
 mod debug;
 mod file;
 mod kernel;
+mod kind;
 mod load;
 mod map;
 mod material;
@@ -31,6 +32,7 @@ pub(crate) use checks::{
 pub use convergence::{Convergence, Trend};
 pub use file::FileError;
 pub use kernel::KernelError;
+pub use kind::ErrorKind;
 pub use load::LoadError;
 pub use map::MapError;
 pub use material::MaterialError;

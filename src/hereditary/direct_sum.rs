@@ -4,8 +4,7 @@ use educe::Educe;
 
 use crate::error::{Error, MaterialError, Result, StepError};
 use crate::hereditary::field::{Field, Role};
-use crate::hereditary::history::HistoryInputs;
-use crate::hereditary::interval::Interval;
+use crate::hereditary::interval::{HistoryInputs, Interval};
 
 /// The end of a step to which its increment is assigned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

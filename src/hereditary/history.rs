@@ -6,11 +6,11 @@ use crate::error::Result;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::field::Field;
-use crate::hereditary::interval::Interval;
+use crate::hereditary::interval::{HistoryInputs, Interval};
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
 use crate::kernel::{LocalKernel, Workspace};
-use crate::rheology::{CreepSpectrum, Material};
+use crate::rheology::CreepSpectrum;
 
 /// The displacement of a contact and the memory of its past.
 #[derive(Debug, Educe)]
@@ -36,18 +36,6 @@ pub(crate) struct History {
 enum Rule {
     Exponential(ExponentialRule),
     DirectSum(DirectSum),
-}
-
-/// Inputs of a time rule besides the past.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct HistoryInputs<'a> {
-    pub(crate) material: &'a Material,
-    /// Bytes that a direct sum may fill with its past.
-    pub(crate) history_limit: usize,
-    /// Whether tractions may raise the surface.
-    pub(crate) pulls: bool,
-    /// The shorter side of a cell \[m\].
-    pub(crate) least_side: f64,
 }
 
 impl History {

@@ -1,6 +1,19 @@
-//! Time steps.
+//! Time steps, and what else a time rule takes.
 
 use crate::hereditary::exponential_rule::Interpolant;
+use crate::rheology::Material;
+
+/// Inputs of a time rule besides the past.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HistoryInputs<'a> {
+    pub(crate) material: &'a Material,
+    /// Bytes that a direct sum may fill with its past.
+    pub(crate) history_limit: usize,
+    /// Whether tractions may raise the surface.
+    pub(crate) pulls: bool,
+    /// The shorter side of a cell \[m\].
+    pub(crate) least_side: f64,
+}
 
 /// A time step.
 #[derive(Debug, Clone, Copy)]

@@ -45,8 +45,8 @@ pub(crate) use field::{Field, Role};
 #[cfg(feature = "checkpoint")]
 pub(crate) use field::{interleaved, runs};
 pub(crate) use group_history::GroupHistory;
-pub(crate) use history::{History, HistoryInputs};
-pub(crate) use interval::Interval;
+pub(crate) use history::History;
+pub(crate) use interval::{HistoryInputs, Interval};
 pub(crate) use lasting_error::LastingError;
 pub(crate) use step_context::{Meeting, StepContext};
 pub(crate) use time_error::{ErrorMeasure, TimeError};

@@ -34,6 +34,7 @@ mod csv;
 mod deferred;
 mod field;
 mod field_values;
+mod format;
 mod metadata;
 #[cfg(feature = "npy")]
 mod npy;
@@ -47,10 +48,11 @@ mod vtk;
 
 pub use csv::CsvHistory;
 pub use field::Field;
+pub use format::Format;
 pub use metadata::Metadata;
 #[cfg(feature = "npy")]
 pub use npy::{write_field_npy, write_npy};
-pub use series::{Format, FrameSeries};
+pub use series::FrameSeries;
 #[cfg(feature = "npy")]
 pub use states::{read_states, write_states};
 pub use stress::write_stress;

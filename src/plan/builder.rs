@@ -9,10 +9,10 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::convergence::{ConvergedRun, MOST_PLANNED_CELLS, converge};
+use crate::plan::convergence::converge;
 use crate::plan::domain::{Body, Side};
-use crate::plan::error_law::ErrorLaw;
-use crate::plan::trial_runs::TrialScene;
+use crate::plan::meshes::{Laws, MOST_PLANNED_CELLS};
+use crate::plan::scene::TrialScene;
 use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
 use crate::run::Stepping;
@@ -157,35 +157,25 @@ impl<'a> PlanBuilder<'a> {
                 ControlFlow::Break(()) => Err(Error::Cancelled { what: "a plan" }),
             }
         };
-        let (tolerance, progress, kernels) = (accuracy.step_tolerance(), &progress, &RefCell::default());
+        let (progress, kernels) = (&progress, &RefCell::default());
         if let Some(temperature) = temperature {
             // before the fit, whose error would name a shift factor
             temperature.reduced_time(0.0, until)?;
         }
         let fitted = &Builder::material_of_run(material, history, until, temperature, &accuracy.settings())?;
-        let scene = TrialScene {
-            geometry,
-            material: fitted,
-            temperature,
-            history,
-            until,
-            accuracy,
-            tolerance,
-            progress,
-            body,
-            kernels,
-        };
+        let scene =
+            TrialScene { geometry, material: fitted, temperature, history, until, accuracy, progress, body, kernels };
         let converged = converge(&scene, area)?;
         let size = &converged.size;
-        let needed = |pressure: ErrorLaw| {
-            let across = converged.across_for(pressure, accuracy, area).max(FEWEST_ACROSS);
+        let needed = |laws: &Laws| {
+            let across = laws.across_for(&converged.wanted).max(FEWEST_ACROSS);
             (across, size.cells(across))
         };
-        let mut pressure = converged.pressure;
-        let (mut across, mut sides) = needed(pressure);
+        let mut laws = converged.laws;
+        let (mut across, mut sides) = needed(&laws);
         if sides[0].max(sides[1]) > MOST_PLANNED_CELLS {
-            pressure = ErrorLaw::NONE;
-            (across, sides) = needed(pressure);
+            laws = laws.without_pressure();
+            (across, sides) = needed(&laws);
         }
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_PLANNED_CELLS {
@@ -194,13 +184,13 @@ impl<'a> PlanBuilder<'a> {
         }
         let grid = size.grid(across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
-        let ConvergedRun { steps, main, singular, radius, work, .. } = &converged;
-        let converges = pressure.converges && steps.resolve_pressure(accuracy);
+        let steps = &converged.steps;
+        let converges = laws.pressure.converges && steps.resolve_pressure(accuracy);
         let mesh_error = MeshError {
-            approach: main.at(across).max(singular.at(across)),
-            max_pressure: converges.then(|| pressure.at(across)),
-            area: 2.0 * radius.at(across),
-            singular: singular.at(across),
+            approach: laws.main.at(across).max(laws.singular.at(across)),
+            max_pressure: converges.then(|| laws.pressure.at(across)),
+            area: 2.0 * laws.radius.at(across),
+            singular: laws.singular.at(across),
         };
         let mut builder = scene.builder(grid.clone())?.material(material.clone()).times_of(history, until);
         builder.planned = true;
@@ -213,13 +203,13 @@ impl<'a> PlanBuilder<'a> {
             accuracy,
             reach: size.reach,
             steps: steps.run.steps.len(),
-            convolutions: work.at(across),
+            convolutions: converged.work(across),
             // adaptive steps keep the rate of the displacement
             bytes: memory.total() + 8 * memory.computed_cells as u64,
             time_error: steps.error.map(|error| error.main),
             mesh_error,
             pressure_error_at_all_times: excess
-                + converged.pressure_over_time.at(across)
+                + laws.pressure_over_time.at(across)
                 + steps.error.map_or(0.0, |error| error.pressure_over_time),
         })
     }

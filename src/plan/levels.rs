@@ -4,12 +4,13 @@
 //! and the same steps on levels give the same levels, whatever the mesh. So the error in time of a run is the difference
 //! between its steps and finer ones on levels, which cost no contact problem.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, StepError};
 use crate::load::{Load, Tilt};
-use crate::plan::steps::{Differences, relative, unseen};
-use crate::plan::trial_runs::{Run, StepState, TrialScene};
+use crate::plan::difference::{Differences, relative, unseen};
+use crate::plan::scene::{Run, StepState, TrialScene};
 use crate::states::{ElasticStates, Rest, StatesContact};
 
 /// Number of parts of a step of the run that is taken as exact, fewer where all parts would be more than so many: their
@@ -17,7 +18,8 @@ use crate::states::{ElasticStates, Rest, StatesContact};
 const PARTS: usize = 16;
 const MAX_PARTS: usize = 4096;
 const MIN_PARTS: usize = 2;
-/// Level of a curve beyond its last state, over the level of that state.
+/// Levels of a curve below its first state and beyond its last, over the levels of these states.
+const BELOW: f64 = 1e-12;
 const BEYOND: f64 = 16.0;
 /// δ ∝ l^(2/3), A ∝ l^(2/3) of a paraboloid.
 const PARABOLOID: f64 = 2.0 / 3.0;
@@ -29,49 +31,45 @@ const RIM_MARGIN: f64 = 1.5;
 /// Squared distances from the middle of the contact at which the pressure is compared, over the squared radius.
 const PLACES: [f64; 7] = [0.1, 0.3, 0.6, 0.85, 0.95, 0.99, 0.999];
 
-/// Depth and area of the elastic contact by its level, as powers between a few states.
+/// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {
     states: Arc<ElasticStates>,
     /// Whether the contact is a line, whose half width is proportional to the area.
     line: bool,
-    /// ln l and ln A of the states.
-    areas: Vec<[f64; 2]>,
 }
 
 impl Curve {
-    fn new(points: &[[f64; 3]], rest: f64, tilt: [Tilt; 2], line: bool) -> Result<Curve> {
-        let exponent = |k: usize| {
-            let [before, next] = [&points[k.saturating_sub(1)], &points[(k + 1).min(points.len() - 1)]];
-            (next[1] / before[1]).ln() / (next[0] / before[0]).ln()
-        };
-        // dl/dδ of a power l ∝ δ^(1/n)
-        let row =
-            |(k, &[level, depth, area]): (usize, &[f64; 3])| (level, rest + depth, level / (depth * exponent(k)), area);
-        let at_rest = Rest { approach: rest, tilt: [0.0; 2] };
-        let states = ElasticStates::from_rows(points.iter().enumerate().map(row), at_rest, tilt)?;
-        let areas = points.iter().map(|[level, _, area]| [level.ln(), area.ln()]).collect();
-        Ok(Curve { states, line, areas })
-    }
-
-    /// Through the elastic states of a scene.
+    /// Through the elastic states of a scene: powers between two of them, below the first and beyond the last.
     pub(super) fn through(elastic: &Run, tilt: [Tilt; 2], line: bool) -> Result<Curve> {
         let states = elastic.states.iter().filter(|state| state.force > 0.0 && state.depth > elastic.rest);
         let mut points: Vec<[f64; 3]> =
-            states.map(|state| [state.force, state.depth - elastic.rest, state.radius * state.radius]).collect();
+            states.map(|state| [state.force, state.depth - elastic.rest, PI * state.radius * state.radius]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         points.dedup_by(|b, a| b[0] <= a[0] || b[1] <= a[1]);
-        points.iter_mut().fold(0.0, |least, point| {
-            point[2] = point[2].max(least);
-            point[2]
-        });
-        let last = *points.last().ok_or(Error::Missing { part: "elastic states" })?;
-        let powers = match points[..] {
-            [.., before, _] => [1, 2].map(|k| (last[k] / before[k]).ln() / (last[0] / before[0]).ln()),
-            _ => [PARABOLOID; 2],
+        for k in 1..points.len() {
+            points[k][2] = points[k][2].max(points[k - 1][2]);
+        }
+        let [first, last] =
+            [points.first(), points.last()].map(|end| end.ok_or(Error::Missing { part: "elastic states" }));
+        let (first, last) = (*first?, *last?);
+        // dln of a quantity over dln l
+        let power = |[before, next]: [&[f64; 3]; 2], k: usize| (next[k] / before[k]).ln() / (next[0] / before[0]).ln();
+        let beyond = |end: [f64; 3], other: Option<&[f64; 3]>, ratio: f64| {
+            let [depth, area] = [1, 2].map(|k| other.map_or(PARABOLOID, |other| power([other, &end], k)));
+            [ratio * end[0], end[1] * ratio.powf(depth), end[2] * ratio.powf(area)]
         };
-        let [depth, area] = [0, 1].map(|k| last[k + 1] * BEYOND.powf(powers[k]));
-        points.push([BEYOND * last[0], depth, area]);
-        Curve::new(&points, elastic.rest, tilt, line)
+        let lowest = beyond(first, points.get(1), BELOW);
+        let highest = beyond(last, points.iter().rev().nth(1), BEYOND);
+        points.insert(0, lowest);
+        points.push(highest);
+        let row = |(k, &[level, depth, area]): (usize, &[f64; 3])| {
+            let around = [&points[k.saturating_sub(1)], &points[(k + 1).min(points.len() - 1)]];
+            // dl/dδ of a power l ∝ δ^(1/n)
+            (level, elastic.rest + depth, level / (depth * power(around, 1)), area)
+        };
+        let at_rest = Rest { approach: elastic.rest, tilt: [0.0; 2] };
+        let states = ElasticStates::from_rows(points.iter().enumerate().map(row), at_rest, tilt)?;
+        Ok(Curve { states, line })
     }
 
     /// The contact of a scene on this curve, by the rule of adaptive steps.
@@ -86,13 +84,7 @@ impl Curve {
 
     /// Contact radius √(A/π) at a level [m].
     pub(super) fn radius(&self, level: f64) -> f64 {
-        if level <= 0.0 {
-            return 0.0;
-        }
-        let level = level.ln();
-        let upper = self.areas.partition_point(|[other, _]| *other < level).clamp(1, self.areas.len() - 1);
-        let [[l0, a0], [l1, a1]] = [self.areas[upper - 1], self.areas[upper]];
-        (0.5 * (a0 + (a1 - a0) / (l1 - l0) * (level - l0))).exp()
+        (self.states.area(level) / PI).sqrt()
     }
 
     /// What is proportional to the radius of the contact, or to its half width on a line.

@@ -3,12 +3,14 @@
 mod accuracy;
 mod builder;
 mod convergence;
+mod difference;
 mod domain;
 mod error_law;
 mod levels;
 mod loads;
+mod meshes;
+mod scene;
 mod steps;
-mod trial_runs;
 
 pub use accuracy::Accuracy;
 pub use builder::{PlanBuilder, PlanProgress};
@@ -29,7 +31,7 @@ use crate::run::Stepping;
 /// time without a contact problem; where it exceeds its share, the steps are shortened. Where the pressure is greatest
 /// while the contact is small, as under a constant force on a body that creeps much, this contact gets a separate domain.
 /// Where the tilt or the load point changes, or the pressure of the elastic contact falls somewhere while its load grows, the contact is no
-/// superposition: then the coarse run is repeated with shorter steps and on finer meshes. The domain reaches from the origin as far as the
+/// superposition: then a run in shorter steps and runs on finer meshes stand beside the coarse one. The domain reaches from the origin as far as the
 /// contact does; the cells are
 /// elongated like the contact.
 ///

@@ -130,12 +130,6 @@ fn round_step(least: f64) -> f64 {
     if exponent < 0.0 { multiple / 10_f64.powf(-exponent) } else { multiple * power }
 }
 
-/// A number without trailing zeros, without the sign of a negative zero, and with a minus instead of a hyphen.
-pub(super) fn shortened(text: &str) -> String {
-    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
-    if short == "-0" { "0".into() } else { short.replace('-', "−") }
-}
-
 /// A number as digits and a power of ten, for labels: `4.5×10⁻²` with one decimal, `10⁻²` for 1e-2 with none.
 fn scientific(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$e}");

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::plot::curve::Curve;
 use crate::plot::frame::width_beside;
 use crate::plot::legend::{self, points_along};
 use crate::plot::map::extremes;
 use crate::plot::quantity::drawable_as_power;
-use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Picture, Quantity, Room, drawable};
+use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Legend, Picture, Quantity, Room, Style, drawable};
 
 /// Width and height of a chart in pixels.
 const SIZE: [u32; 2] = [1200, 800];
@@ -15,9 +16,6 @@ const SIZE: [u32; 2] = [1200, 800];
 const RIGHT: f64 = 40.0;
 const LEAST_LEFT: f64 = 115.0;
 const TOP: f64 = 56.0;
-/// Width of lines and radius of dots in pixels.
-const LINE_WIDTH: f64 = 3.0;
-const DOT_RADIUS: f64 = 5.5;
 
 /// Which axes of a chart are logarithmic. Their numbers are powers of ten, in units without a prefix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -39,43 +37,6 @@ impl Scale {
     fn is_logarithmic(self) -> [bool; 2] {
         [matches!(self, Scale::LogX | Scale::LogLog), matches!(self, Scale::LogY | Scale::LogLog)]
     }
-}
-
-/// How a curve is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Style {
-    /// A line through its points.
-    Line,
-    /// A dot at each point.
-    Dots,
-    /// Both.
-    LineAndDots,
-}
-
-/// Preferred position of the legend in a chart. It stands elsewhere if it hides less of the curves there; the vertical axis
-/// becomes longer where no position is free.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names are self-explanatory")]
-#[expect(clippy::exhaustive_enums, reason = "there are nine positions")]
-pub enum Legend {
-    UpperLeft,
-    UpperMiddle,
-    UpperRight,
-    MiddleLeft,
-    MiddleMiddle,
-    MiddleRight,
-    LowerLeft,
-    LowerMiddle,
-    LowerRight,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Curve {
-    pub(super) label: String,
-    points: Vec<(f64, f64)>,
-    pub(super) color: Color,
-    pub(super) style: Style,
 }
 
 /// A chart of curves over two axes.
@@ -220,17 +181,5 @@ impl Chart {
         let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
         let (low, high) = (if low == 0.0 { 0.0 } else { low - margin }, high + margin);
         Ok(Axis::linear(quantity, greatest, [low, high + above * (high - low)], room))
-    }
-}
-
-impl Style {
-    /// Draws a curve through `pieces` with dots at `dots`.
-    pub(super) fn draw(self, canvas: &mut Canvas, pieces: &[Vec<[f64; 2]>], dots: &[[f64; 2]], color: Color) {
-        if self != Style::Dots {
-            canvas.lines(pieces, LINE_WIDTH, color);
-        }
-        if self != Style::Line {
-            canvas.dots(dots, DOT_RADIUS, color);
-        }
     }
 }

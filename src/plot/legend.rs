@@ -1,6 +1,6 @@
 //! The legend of a chart, and where it hides least.
 
-use crate::plot::chart::Curve;
+use crate::plot::curve::Curve;
 use crate::plot::{Anchor, Canvas, Color, Frame, Legend, TICK_SIZE, font};
 
 /// Height of an entry, length of its line, and the space around entries in pixels.

@@ -48,6 +48,7 @@ mod chart;
 mod color;
 mod color_bar;
 mod contact;
+mod curve;
 mod font;
 mod frame;
 mod history;
@@ -59,8 +60,9 @@ mod quantity;
 mod section;
 
 pub use animation::Animation;
-pub use chart::{Chart, Legend, Scale, Style};
+pub use chart::{Chart, Scale};
 pub use color::{COLORS, Color};
+pub use curve::{Legend, Style};
 pub use history::{History, HistoryColumn};
 pub use map::Map;
 pub use picture::Picture;

@@ -1,7 +1,6 @@
 //! Quantities of axes, and their numbers in units with a suitable prefix.
 
 use crate::error::{Result, within};
-use crate::plot::axis::shortened;
 
 /// The quantity of an axis or a colour bar.
 ///
@@ -106,6 +105,12 @@ pub(super) fn measure(value: f64, unit: &str) -> String {
     let number = value * factor;
     let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
     format!("{} {prefix}{unit}", shortened(&format!("{number:.*}", decimals as usize)))
+}
+
+/// A number without trailing zeros, without the sign of a negative zero, and with a minus instead of a hyphen.
+pub(super) fn shortened(text: &str) -> String {
+    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
+    if short == "-0" { "0".into() } else { short.replace('-', "−") }
 }
 
 #[cfg(test)]

@@ -19,9 +19,9 @@ mod trace;
 pub(crate) use active_set::ActiveSet;
 pub(crate) use bands::Bands;
 pub(crate) use extension::{Extension, HaloExchange, HaloRows};
-pub(crate) use outcome::{Outcome, PENETRATION_SLACK, Stop};
+pub(crate) use outcome::{Outcome, PENETRATION_SLACK};
 pub(crate) use polonsky_keer::PolonskyKeer;
-pub(crate) use problem::{Counts, Problem, Solution, Solve};
+pub(crate) use problem::{Counts, Problem, Solution, Solve, Stop};
 pub(crate) use rigid_motion::{Freedom, ModeCoefficients, Modes, RigidMotion};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
 

@@ -1,17 +1,8 @@
 //! The residual of a state, and the outcome of a solve.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
-use super::{ContactSet, Problem, Solution};
-
-/// When to stop.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Stop<'a> {
-    pub(crate) tolerance: f64,
-    pub(crate) max_iterations: usize,
-    /// Set by another thread to end the solve.
-    pub(crate) cancelled: Option<&'a AtomicBool>,
-}
+use super::{ContactSet, Problem, Solution, Stop};
 
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,10 @@
 //! The contact problem of one step, and its solution.
 
+use std::sync::atomic::AtomicBool;
+
 use educe::Educe;
 
-use super::{Cut, Freedom, Line, ModeCoefficients, Modes, Stop, Trace};
+use super::{Cut, Freedom, Line, ModeCoefficients, Modes, Trace};
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
 use crate::sum::greatest;
@@ -149,6 +151,15 @@ impl Solution {
             self.motions[body] = ModeCoefficients([lowest, 0.0, 0.0]);
         }
     }
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stop<'a> {
+    pub(crate) tolerance: f64,
+    pub(crate) max_iterations: usize,
+    /// Set by another thread to end the solve.
+    pub(crate) cancelled: Option<&'a AtomicBool>,
 }
 
 /// A problem, its solution so far, when to stop, and the buffers of the convolutions.

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::runs::{scenes, wandering};
+use viscocontact::ErrorKind;
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
@@ -316,7 +317,7 @@ fn runs_that_end_before_the_checkpoint_are_refused() {
     while run.next_step().unwrap().is_some() {}
     contact.resume(&path).unwrap();
     for _ in 0..2 {
-        assert!(contact.follow(&load, Stepping::fixed(0.1), 0.5).next_step().is_err());
+        assert_eq!(contact.follow(&load, Stepping::fixed(0.1), 0.5).next_step().unwrap_err().kind(), ErrorKind::Value);
     }
     contact.resume(&path).unwrap();
     assert_eq!(contact.follow(&load, Stepping::fixed(0.1), 1.0).next_step(), Ok(None));

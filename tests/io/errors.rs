@@ -6,6 +6,7 @@ use crate::common::{builder_on, maxwell, sphere, sphere_on};
 use std::process::Command;
 use std::sync::Arc;
 
+use viscocontact::ErrorKind;
 use viscocontact::KernelError;
 use viscocontact::load::LoadError;
 use viscocontact::prelude::*;
@@ -156,7 +157,7 @@ fn a_bad_geometry_leaves_the_old_one() {
     let mut contact = sphere_on(grid(), maxwell(), Settings::default());
     contact.step(0.0, Load::force(0.1)).unwrap();
     let before = seen(&contact);
-    assert!(contact.set_geometry(&FnGeometry::new(|x1, _| x1.sqrt())).is_err());
+    assert_eq!(contact.set_geometry(&FnGeometry::new(|x1, _| x1.sqrt())).unwrap_err().kind(), ErrorKind::Value);
     assert_eq!(seen(&contact), before);
     let mut gap = vec![0.0; 576];
     contact.gap_into(&mut gap).unwrap();

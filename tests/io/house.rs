@@ -1,11 +1,12 @@
 //! Do the folders of the crate depend on each other in one direction only?
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md describes them.
 const ORDER: &str = "\
-    values axis extent guide linalg quadrature rounded sum error events ascending file input grid \
+    values axis extent guide linalg quadrature numeric rounded sum error events ascending file input grid \
     memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic observe \
     contact run states laws output plan plot";
 
@@ -93,6 +94,137 @@ fn modules_use_only_those_above_them() {
     }
     assert!(arrows > 450, "only {arrows} uses were found");
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The names that a `use` brings: their paths, and what they are called here.
+fn expand(tree: &str, prefix: &[String], found: &mut Vec<(Vec<String>, String)>) {
+    let (path, list) = tree.split_once('{').unwrap_or((tree, ""));
+    let (path, alias) = path.split_once(" as ").map_or((path, None), |(path, alias)| (path, Some(alias.trim())));
+    let mut own = prefix.to_vec();
+    own.extend(path.split("::").map(str::trim).filter(|part| !part.is_empty() && *part != "self").map(String::from));
+    if list.is_empty() {
+        let name = alias.unwrap_or(own.last().map_or("", String::as_str)).to_owned();
+        return found.push((own, name));
+    }
+    let (mut depth, mut start) = (0, 0);
+    for (at, c) in list.char_indices() {
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        if depth < 0 || depth == 0 && c == ',' {
+            if !list[start..at].trim().is_empty() {
+                expand(list[start..at].trim(), &own, found);
+            }
+            start = at + 1;
+        }
+    }
+}
+
+/// The modules of a crate by their paths, and which file each names in its `use` lines, followed through `pub use`.
+#[derive(Default)]
+struct Modules {
+    files: BTreeMap<Vec<String>, PathBuf>,
+    exports: BTreeMap<(Vec<String>, String), Vec<String>>,
+    uses: Vec<(Vec<String>, Vec<String>)>,
+}
+
+impl Modules {
+    fn read(source: &Path) -> Modules {
+        let (mut all, mut modules) = (Vec::new(), Modules::default());
+        files(source, &mut all);
+        for path in all {
+            let inside = path.strip_prefix(source).unwrap().with_extension("");
+            if inside.to_string_lossy().contains("tests") {
+                continue;
+            }
+            let mut name: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            name.retain(|part| part != "mod" && part != "lib");
+            modules.files.insert(name, path);
+        }
+        for (module, path) in &modules.files {
+            let code = code(path);
+            for statement in code.split(';') {
+                let (before, tree) = match statement.rfind("use ") {
+                    Some(at) => (&statement[..at], &statement[at + 4..]),
+                    None => continue,
+                };
+                let line = before.rsplit('\n').next().unwrap_or_default().trim();
+                if !line.is_empty() && !line.starts_with("pub") {
+                    continue;
+                }
+                let mut names = Vec::new();
+                expand(tree, &[], &mut names);
+                for (path, name) in names {
+                    let Some(path) = modules.absolute(module, path) else { continue };
+                    if line.starts_with("pub") {
+                        modules.exports.insert((module.clone(), name), path);
+                    } else {
+                        modules.uses.push((module.clone(), path));
+                    }
+                }
+            }
+        }
+        modules
+    }
+
+    fn absolute(&self, module: &[String], path: Vec<String>) -> Option<Vec<String>> {
+        let ups = path.iter().take_while(|part| *part == "super").count();
+        let from = |here: &[String], rest: &[String]| Some([here, rest].concat());
+        match path.first()?.as_str() {
+            "crate" => Some(path[1..].to_vec()),
+            "super" => from(&module[..module.len().checked_sub(ups)?], &path[ups..]),
+            first => {
+                let child = [module, &[first.to_owned()]].concat();
+                if self.files.contains_key(&child) { from(module, &path) } else { None }
+            }
+        }
+    }
+
+    /// The module that holds what a path names.
+    fn owner(&self, path: &[String], depth: usize) -> Option<&Vec<String>> {
+        let known = (0..=path.len()).rev().find(|&n| self.files.contains_key(&path[..n]))?;
+        let shown = path.get(known).and_then(|name| self.exports.get(&(path[..known].to_vec(), name.clone())));
+        match shown.filter(|_| depth < 8) {
+            Some(shown) => self.owner(&[shown, &path[known + 1..]].concat(), depth + 1),
+            None => self.files.get_key_value(&path[..known]).map(|(module, _)| module),
+        }
+    }
+
+    /// Files that lead back to themselves; a child may take from the modules that hold it.
+    fn circular(&self) -> (usize, BTreeSet<String>) {
+        let mut edges: BTreeMap<&Vec<String>, BTreeSet<&Vec<String>>> = BTreeMap::new();
+        for (user, path) in &self.uses {
+            let owner = self.owner(path, 0);
+            let holds = |owner: &Vec<String>| {
+                user.starts_with(owner) && (owner.is_empty() || self.files[owner].ends_with("mod.rs"))
+            };
+            if let Some(owner) = owner.filter(|&owner| owner != user && !holds(owner)) {
+                edges.entry(user).or_default().insert(owner);
+            }
+        }
+        let comes_back = |start: &Vec<String>| {
+            let (mut seen, mut next) = (BTreeSet::new(), vec![start]);
+            while let Some(module) = next.pop() {
+                next.extend(edges.get(module).into_iter().flatten().filter(|used| seen.insert(**used)));
+            }
+            seen.contains(start)
+        };
+        let circular = edges.keys().filter(|module| comes_back(module)).map(|module| module.join("/"));
+        (edges.values().map(BTreeSet::len).sum(), circular.collect())
+    }
+}
+
+/// No file uses another one that uses it in turn, at whatever distance, but these. The list may only shrink.
+#[test]
+fn files_do_not_use_each_other_in_a_circle() {
+    const KNOWN: &str = "\
+        contact/step/request contact/step/spring contact/moving/along_path contact/read/accessors contact/stepper \
+        run/adaptive_step run/driven run/events run/follow run/in_space run/progress run/saving states/curve states/elastic";
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (arrows, circular) = Modules::read(&root.join("../src")).circular();
+    assert!(arrows > 900, "only {arrows} uses were found");
+    let known: BTreeSet<String> = KNOWN.split(' ').map(String::from).collect();
+    assert_eq!(circular, known, "a new circle, or a known one that is gone: take it from the list");
+    let (arrows, circular) = Modules::read(&root.join("../identify/src")).circular();
+    assert!(arrows > 80 && circular.is_empty(), "{arrows} uses, {circular:?}");
 }
 
 /// A program that is built to abort where it panics survives the loss of a rank: nothing in the crate is decided by unwinding.

@@ -5,6 +5,7 @@ use crate::common::{Temporary, contact_of, maxwell, sphere_on};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use viscocontact::ErrorKind;
 use viscocontact::observe::StressVolume;
 use viscocontact::output::{Field, Metadata};
 use viscocontact::prelude::*;
@@ -360,7 +361,7 @@ mod csv {
         }
         assert!(folder.names().is_empty());
         fs::write(&path, "years of work").unwrap();
-        assert!(CsvHistory::create(&path, &scene(), &contact, &[]).is_err());
+        assert_eq!(CsvHistory::create(&path, &scene(), &contact, &[]).unwrap_err().kind(), ErrorKind::File);
         assert_eq!(text_of(&path), "years of work");
     }
 }

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use proptest::prelude::*;
+use viscocontact::ErrorKind;
 use viscocontact::output::Field;
 use viscocontact::plot::{
     Animation, COLORS, Chart, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style,
@@ -95,7 +96,11 @@ fn pressure_is_blank_out_of_contact() {
 fn profiles_and_histories_hold_the_state() {
     let mut contact = ball();
     let mut history = History::new();
-    assert!(history.chart(HistoryColumn::Force).unwrap().draw().is_err(), "nothing to draw yet");
+    assert_eq!(
+        history.chart(HistoryColumn::Force).unwrap().draw().unwrap_err().kind(),
+        ErrorKind::Value,
+        "nothing to draw yet"
+    );
     for _ in 0..3 {
         history.record(&contact);
         contact.step(0.5, Load::force(0.3)).unwrap();
@@ -164,8 +169,8 @@ fn bad_pictures_are_refused_by_name() {
     }
     assert_eq!(field(Map::draw_row(&[])), "maps of a row");
     assert_eq!(field(Map::draw_row(&vec![map; 40])), "pixels along a side of a picture");
-    assert!(Map::new(&grid, vec![0.0; 3], "q").is_err());
-    assert!(Map::new(&grid, vec![1e101; 4], "q").is_err());
+    assert_eq!(Map::new(&grid, vec![0.0; 3], "q").unwrap_err().kind(), ErrorKind::Value);
+    assert_eq!(Map::new(&grid, vec![1e101; 4], "q").unwrap_err().kind(), ErrorKind::Value);
     let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
     assert_eq!(field(chart.draw()), "points to draw in the chart");
     chart.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::Temporary;
+use viscocontact::ErrorKind;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
@@ -64,16 +65,16 @@ fn contacts_on_states_come_back_to_the_last_bit() {
     let mut wrong = StatesContact::new(&states, &stiffer).unwrap();
     assert!(matches!(wrong.resume(&path), Err(Error::Checkpoint { .. })));
     let table = ElasticStates::from_table(&[(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)]).unwrap();
-    assert!(StatesContact::new(&table, &material()).unwrap().resume(&path).is_err());
+    assert_eq!(StatesContact::new(&table, &material()).unwrap().resume(&path).unwrap_err().kind(), ErrorKind::File);
     let before = format!("{again:?}");
     let bytes = std::fs::read(&path).unwrap();
     for cut in (0..bytes.len()).step_by(97) {
         std::fs::write(&path, &bytes[..cut]).unwrap();
-        assert!(again.resume(&path).is_err());
+        assert_eq!(again.resume(&path).unwrap_err().kind(), ErrorKind::File);
         let mut damaged = bytes.clone();
         damaged[cut] ^= 0x10;
         std::fs::write(&path, damaged).unwrap();
-        assert!(again.resume(&path).is_err(), "{cut}");
+        assert_eq!(again.resume(&path).unwrap_err().kind(), ErrorKind::File, "{cut}");
     }
     assert_eq!(format!("{again:?}"), before);
 }
@@ -162,7 +163,7 @@ fn states_in_files_are_the_states() {
         let bytes = std::fs::read(&path).unwrap();
         for cut in (0..bytes.len()).step_by(1 + bytes.len() / 60) {
             std::fs::write(&path, &bytes[..cut]).unwrap();
-            assert!(read_states(&path).is_err());
+            assert_eq!(read_states(&path).unwrap_err().kind(), ErrorKind::File);
         }
     }
     // a layer keeps its Poisson's ratio
@@ -170,8 +171,8 @@ fn states_in_files_are_the_states() {
     let sweep = Sweep::new(grid.clone(), &Sphere::new(10.0).unwrap());
     let states = sweep.kernel(InfluenceKernel::layer(&grid, layer).unwrap()).run(Reach::Level(0.01)).unwrap();
     write_states(&path, &states, &Metadata::default()).unwrap();
-    assert!(StatesContact::new(&read_states(&path).unwrap(), &material()).is_err());
-    assert!(read_states(folder.join("absent.npz")).is_err());
+    assert_eq!(StatesContact::new(&read_states(&path).unwrap(), &material()).unwrap_err().kind(), ErrorKind::Value);
+    assert_eq!(read_states(folder.join("absent.npz")).unwrap_err().kind(), ErrorKind::File);
 }
 
 /// A state within a step is as exact as one at its end.
@@ -218,7 +219,7 @@ fn tables_that_are_no_states_are_refused() {
             let mut table = good.map(|(a, b, c, d)| [a, b, c, d]);
             table[row][column] = bad;
             let table = table.map(|[a, b, c, d]| (a, b, c, d));
-            assert!(ElasticStates::from_table(&table).is_err(), "{table:?}");
+            assert_eq!(ElasticStates::from_table(&table).unwrap_err().kind(), ErrorKind::Value, "{table:?}");
         }
     }
     let falls = [(1.0, 1.0, 1.0, 1.0), (2.0, 0.5, 2.0, 2.0)];

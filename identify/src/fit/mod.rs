@@ -2,6 +2,7 @@
 
 mod intervals;
 mod report;
+mod search;
 
 use faer::Mat;
 use viscocontact::rheology::Material;

@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 
 use super::Bodies;
 use crate::error::{Result, finite, positive};
+use crate::numeric::golden_section;
 use crate::quadrature::bisect;
 
 /// A sphere that sticks to an elastic half-space by Dugdale's attraction, a constant traction σ₀ up to the gap w/σ₀ (Maugis, J. Colloid
@@ -59,13 +60,7 @@ impl MaugisDugdale {
     pub fn pull_off(&self) -> [f64; 2] {
         let [unit, force, _] = self.units();
         // the force has one minimum in the radius, or its least value at radius zero
-        let golden = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut low, mut high) = (0.0, 3.0);
-        for _ in 0..90 {
-            let [inner, outer] = [high - golden * (high - low), low + golden * (high - low)];
-            if self.reduced(inner)[0] < self.reduced(outer)[0] { high = outer } else { low = inner }
-        }
-        let radius = 0.5 * (low + high);
+        let radius = golden_section(0.0, 3.0, 90, |radius| self.reduced(radius)[0]);
         [force * self.reduced(radius)[0], unit * radius]
     }
 

@@ -7,7 +7,7 @@ use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::symmetry_of;
 #[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::scene_fingerprint::Built;
+use crate::contact::checkpoint::built::Built;
 use crate::contact::distributed::gap::SharedGap;
 use crate::contact::read::limits::Limits;
 use crate::contact::{

@@ -1,9 +1,10 @@
 //! Checkpoint and resume: the state of a contact in a file, and on from there.
 
+pub(in crate::contact) mod built;
 mod fields;
 pub(crate) mod format;
 mod saved;
-pub(in crate::contact) mod scene_fingerprint;
+mod scene_fingerprint;
 
 use std::borrow::Cow;
 use std::io;
@@ -17,11 +18,12 @@ use crate::contact::{Computation, Indenter, State, ViscoelasticContact};
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;
+use built::Built;
 use fields::{FieldWriter, read_state};
 use format::{Input, Output};
 pub(crate) use saved::check_clocks;
 use saved::{Saved, check_fields, malformed, moved_indenter};
-use scene_fingerprint::{Built, difference};
+use scene_fingerprint::difference;
 
 /// How far a run has come, as a file keeps it. Runs use contacts, so their type is a parameter here.
 pub(crate) trait SavedRun: Clone + Serialize + DeserializeOwned {

@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(entry, 2);
         // their differences and sums would overflow
         assert!(matches!(refused(vec![1e305, 0.0, -1e308, 0.0]), Error::Map(MapError::NotFinite { entry: 0, .. })));
-        assert!(HeightMap::new([0, 2], [1.0, 1.0], vec![]).is_err());
+        assert_eq!(HeightMap::new([0, 2], [1.0, 1.0], vec![]).unwrap_err().kind(), crate::ErrorKind::Value);
     }
 
     #[test]

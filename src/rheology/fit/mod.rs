@@ -11,16 +11,16 @@
 
 mod basis;
 mod measured;
-mod nnls;
 mod polish;
 mod report;
 mod uncertainty;
+
+use crate::numeric::non_negative_least_squares;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
 pub use report::{FitReport, FitSample, FitWarning};
 
-use faer::{Col, Mat};
 use measured::DENSITY;
 use polish::polish;
 
@@ -84,7 +84,7 @@ impl Search {
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
         let (rows, root) = (samples.len(), smoothing.sqrt());
         let differences = if smoothing > 0.0 { times.len() - 2 } else { 0 };
-        let matrix = Mat::from_fn(rows + differences, ends + times.len(), |i, j| {
+        let entry = |i: usize, j: usize| {
             if let Some(Sample { function, x, value, weight }) = samples.get(i) {
                 let entry = match j {
                     0 if self.constant.is_none() => function.constant(),
@@ -98,13 +98,12 @@ impl Search {
                 Some(1) => -2.0 * root,
                 _ => 0.0,
             }
-        });
+        };
         let known = self.constant.unwrap_or(0.0);
-        let right = Col::from_fn(matrix.nrows(), |i| {
-            let unknown = |sample: &Sample| 1.0 - known * sample.function.constant() / sample.value;
-            samples.get(i).map_or(0.0, |sample| sample.weight.sqrt() * unknown(sample))
-        });
-        let strengths = nnls::non_negative_least_squares(&matrix, &right);
+        let unknown = |sample: &Sample| 1.0 - known * sample.function.constant() / sample.value;
+        let right = samples.iter().map(|sample| sample.weight.sqrt() * unknown(sample));
+        let right: Vec<f64> = right.chain(std::iter::repeat(0.0)).take(rows + differences).collect();
+        let strengths = non_negative_least_squares(&right, ends + times.len(), entry);
         let (at_ends, of_terms) = strengths.split_at(ends);
         let terms = of_terms.iter().zip(levels).map(|(part, level)| part * level).zip(times);
         FittedSeries {

@@ -2,8 +2,8 @@
 
 use faer::{Col, Mat};
 
-use super::nnls::solve;
 use super::{FittedSeries, MaterialFunction, Sample, Search};
+use crate::numeric::solve;
 
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;

@@ -8,6 +8,7 @@
 use super::data::Row;
 use super::isotherm::Isotherm;
 use crate::error::{Result, TableError};
+use crate::numeric;
 
 /// Shifts tried before the best is refined.
 const TRIED: usize = 400;
@@ -78,7 +79,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     // by the column that determines it best: another may be disturbed
     let by_column = all.iter().map(|&column| {
         let cost = |shift: f64| pair.cost(shift, &[column], &scatter) + PER_DECADE * decades(shift);
-        let shift = least_of(low, high, TRIED, &cost);
+        let shift = numeric::least(low, high, TRIED, cost);
         (shift, pair.error(shift, [low, high], &[column], &scatter))
     });
     let mut shift = by_column.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
@@ -169,7 +170,9 @@ impl Pair<'_> {
     /// The shift of least cost in a part of the range around another.
     fn refined(&self, near: f64, [low, high]: [f64; 2], part: f64, (columns, scatter): (&[usize], &[f64])) -> f64 {
         let around = part * (high - low);
-        least_of((near - around).max(low), (near + around).min(high), 48, &|shift| self.cost(shift, columns, scatter))
+        numeric::least((near - around).max(low), (near + around).min(high), 48, |shift| {
+            self.cost(shift, columns, scatter)
+        })
     }
 
     /// The standard error of a shift: by the slopes, or as far as shifts are as good.
@@ -220,17 +223,4 @@ fn slope(isotherm: &Isotherm, k: usize, column: usize) -> f64 {
 fn deviation(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).map_or(0.0, |median| median / 0.6745)
-}
-
-/// Where `cost` is least between two values: the best of `tried`, refined by the golden section.
-fn least_of(low: f64, high: f64, tried: usize, cost: &dyn Fn(f64) -> f64) -> f64 {
-    let step = (high - low) / tried as f64;
-    let all = (0..=tried).map(|k| low + step * k as f64);
-    let best = all.map(|at| (cost(at), at)).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(low, |best| best.1);
-    let (mut a, mut b) = ((best - step).max(low), (best + step).min(high));
-    for _ in 0..50 {
-        let (x, y) = (b - 0.618_033_988_749_895 * (b - a), a + 0.618_033_988_749_895 * (b - a));
-        if cost(x) <= cost(y) { b = y } else { a = x }
-    }
-    0.5 * (a + b)
 }

@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::Grid;
     use crate::kernel::InfluenceKernel;
-    use crate::solver::outcome::Stop;
+    use crate::solver::Stop;
     use crate::solver::rigid_motion::Freedom;
 
     /// The fall-back alone, from a bad guess, converges to the solution of the active set, on soft and on nearly rigid surfaces.

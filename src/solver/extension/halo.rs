@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::parallel::Rows;
-use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
+use crate::solver::extension::weights::{NOTHING_KNOWN, weight};
 
 /// Halo rows of a level: the row before the local rows and the row after them, where another rank holds these.
 #[derive(Debug, Clone, Default)]

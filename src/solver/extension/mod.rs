@@ -2,6 +2,7 @@
 
 mod halo;
 mod passes;
+mod weights;
 
 #[cfg(test)]
 mod tests;
@@ -10,7 +11,8 @@ use std::ops::Range;
 
 use crate::parallel::{Rows, for_each_share, lanes};
 pub(crate) use crate::solver::extension::halo::{HaloExchange, HaloRows};
-use crate::solver::extension::passes::{Blocks, Known, Operation, Pass, RowBuffers, SharedRows, TRUST};
+use crate::solver::extension::passes::{Blocks, Known, Operation, Pass, RowBuffers, SharedRows};
+use crate::solver::extension::weights::TRUST;
 
 /// E: from the cells of a set A to all cells, by means over blocks of 2 × 2 cells, over blocks of such blocks and so on, and
 /// bilinear interpolation back (a push–pull pyramid),

@@ -4,9 +4,7 @@ use std::ops::Range;
 
 use crate::parallel::Task;
 use crate::solver::extension::halo::HaloRows;
-
-/// κ: trust in the mean of a block of which only the share s is known, w = κ s/(1 + (κ − 1) s).
-pub(super) const TRUST: f64 = 1.5;
+use crate::solver::extension::weights::weight;
 
 /// Row buffers of one thread: blocks with one neighbour at either end, cells of the finer level with two.
 #[derive(Debug, Clone)]
@@ -127,9 +125,6 @@ impl<'a> Blocks<'a> {
         (start < self.values.len()).then_some(start..start + self.columns)
     }
 }
-
-/// φ of blocks of which nothing is known: w is 0, and the whole value counts.
-pub(super) const NOTHING_KNOWN: f64 = 0.25 * TRUST;
 
 impl Pass<'_> {
     /// The sums of w f over the blocks of row `i`.
@@ -254,12 +249,6 @@ impl Pass<'_> {
             }
         }
     }
-}
-
-/// w of a block with this φ.
-#[inline(always)]
-pub(super) fn weight(factor: f64) -> f64 {
-    (TRUST - 4.0 * factor) / (TRUST - 1.0)
 }
 
 /// out = Σ part · open(known, value) over four rows, of which `of` gives the weights and the values.

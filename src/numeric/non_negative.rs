@@ -4,9 +4,20 @@ use faer::linalg::solvers::SolveLstsqCore;
 use faer::{Col, Conj, Mat, Scale};
 
 /// Solves min |A x − b| over x ≥ 0 by the active set method of Lawson & Hanson (*Solving Least Squares
-/// Problems*, 1974, chapter 23). The solution is sparse: few of many similar columns are used.
-pub(crate) fn non_negative_least_squares(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64> {
-    let columns = a.ncols();
+/// Problems*, 1974, chapter 23), with A of one row for each of `right` and so many columns. The solution is sparse: few of many
+/// similar columns are used.
+///
+/// ```
+/// use viscocontact::numeric::non_negative_least_squares;
+///
+/// // the second unknown would be −1
+/// let rows = [[1.0, 1.0], [1.0, -1.0]];
+/// let found = non_negative_least_squares(&[1.0, 3.0], 2, |row, column| rows[row][column]);
+/// assert!((found[0] - 2.0).abs() < 1e-12 && found[1] == 0.0);
+/// ```
+pub fn non_negative_least_squares(right: &[f64], columns: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    let a = &Mat::from_fn(right.len(), columns, entry);
+    let b = &Col::from_fn(right.len(), |row| right[row]);
     // columns are normalised, so that gradients are comparable
     let norms: Vec<f64> = (0..columns).map(|j| a.col(j).norm_l2()).collect();
     let mut x = vec![0.0; columns];
@@ -71,4 +82,32 @@ pub(crate) fn solve(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64> {
     let mut right = Mat::from_fn(b.nrows(), 1, |i, _| b[i]);
     a.col_piv_qr().solve_lstsq_in_place_with_conj(Conj::No, right.as_mut());
     (0..a.ncols()).map(|j| right[(j, 0)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Minima satisfy the conditions of Karush, Kuhn and Tucker.
+    #[test]
+    fn minima_are_minima() {
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let mut zeros = 0;
+        for _ in 0..200 {
+            let a = Mat::from_fn(12, 8, |_, _| random());
+            let b: Vec<f64> = (0..12).map(|_| random()).collect();
+            let x = non_negative_least_squares(&b, 8, |i, j| a[(i, j)]);
+            let left = |i: usize| b[i] - (0..8).map(|j| a[(i, j)] * x[j]).sum::<f64>();
+            for j in 0..8 {
+                let slope: f64 = (0..12).map(|i| a[(i, j)] * left(i)).sum();
+                assert!(x[j] >= 0.0 && slope < 1e-10 && (x[j] == 0.0 || slope.abs() < 1e-10), "{x:?} {slope}");
+                zeros += usize::from(x[j] == 0.0);
+            }
+        }
+        assert!((200..1400).contains(&zeros), "{zeros}");
+    }
 }

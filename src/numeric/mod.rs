@@ -1,0 +1,8 @@
+//! Numerical methods that this crate and `viscocontact-identify` share.
+
+mod least;
+mod non_negative;
+
+pub use least::{golden_section, least};
+pub use non_negative::non_negative_least_squares;
+pub(crate) use non_negative::solve;
