@@ -1,6 +1,8 @@
 //! What sort of failure an error is.
 
-use crate::error::{AdhesionError, Error, KernelError, MapError, MaterialError, RanksError, StatesError, StepError};
+use crate::error::{
+    AdhesionError, Error, KernelError, MapError, MaterialError, RanksError, SlidingError, StatesError, StepError,
+};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value and cure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -74,6 +76,10 @@ impl Error {
                 AdhesionError::NotCovered { .. } => ErrorKind::Unsupported,
                 AdhesionError::NotConverged { .. } => ErrorKind::Convergence,
                 _ => ErrorKind::Value,
+            },
+            Error::Sliding(error) => match error {
+                SlidingError::NotCovered { .. } => ErrorKind::Unsupported,
+                SlidingError::NotConverged { .. } => ErrorKind::Convergence,
             },
             Error::States(error) => match error {
                 StatesError::Beyond { .. } | StatesError::Below { .. } => ErrorKind::Value,

@@ -97,7 +97,7 @@ fn random_motions_are_those_of_a_dense_problem() {
     let (scenes, seed) = (from_environment("SLIDING_SCENES", 60), from_environment("SLIDING_SEED", 1));
     let (mut compared, mut worst) = (0, [0.0_f64; 4]);
     for number in 0..scenes {
-        let mut draws = Draws::new(1000 * seed as u64 + number as u64);
+        let mut draws = Draws::new(1000 * seed + number);
         let mut scene = Scene::draw(&mut draws, false);
         scene.fluidity = 0.0;
         let mut sliding = scene.builder().settings(Settings::default().with_tolerance(1e-9)).build_sliding().unwrap();
@@ -117,7 +117,7 @@ fn random_motions_are_those_of_a_dense_problem() {
             if place < 0.0 || place >= count as f64 {
                 0.0
             } else {
-                exact.pressure[place as usize * scene.across + aside as usize]
+                exact.pressure[place as usize * scene.across + aside]
             }
         };
         let cells = (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j)));
