@@ -176,7 +176,7 @@ fn cells_beyond_numbers_are_refused() {
         assert_eq!(field(make(&sides(1.0e-60, 1.0e60))), "aspect ratio of the cells");
         for (d1, d2) in [(1.0e-99, 1.0), (1.0, 1.0e-99), (1.0e-40, 1.0e40), (1.0e99, 1.0e99), (1.0e-99, 1.0e-99)] {
             let grid = sides(d1, d2);
-            let Ok(kernel) = make(&grid) else { continue };
+            let kernel = make(&grid).unwrap();
             let found = convolve(&kernel, &noise(12));
             assert!(found.iter().all(|value| value.is_finite()), "{d1:e} {d2:e} {kernel}: {found:?}");
         }
