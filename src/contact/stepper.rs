@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use crate::contact::moving::along_path::IndenterBuffer;
-use crate::contact::read::accessors::View;
+use crate::contact::moving::indenter_buffer::IndenterBuffer;
+use crate::contact::read::view::View;
 use crate::contact::{Computation, Scene, StepReport};
 use crate::error::Result;
 use crate::geometry::{Gap, Missed};

@@ -37,6 +37,8 @@ pub(crate) struct ErrorMeasure<'a> {
     /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
     /// moment, to which bodies respond as glass. 0 where no such switch is to come.
     pub(crate) on_switch: f64,
+    /// The compliance in series with the bodies as they meet again ([`Meeting::give`]), 0 where a motion is given.
+    pub(crate) give: f64,
     /// The run that the step belongs to.
     pub(crate) context: &'a StepContext,
 }
@@ -145,7 +147,7 @@ impl History {
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
         // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives way by their approach
-        let Meeting { stiffness, give, .. } = context.meeting;
+        let (Meeting { stiffness, .. }, give) = (context.meeting, measure.give);
         let [of_force, of_approach] = if give.is_finite() {
             // without an elastic response the force is unbounded at short times
             let glassy = if rule.has_dashpot() { stiffness.min(1.0 / rule.compliance()) } else { stiffness };

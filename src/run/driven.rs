@@ -1,7 +1,8 @@
 //! What a run asks of its contact.
 
 use std::fmt::Debug;
-use std::sync::Arc;
+#[cfg(feature = "checkpoint")]
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::{Contact, StepReport};
@@ -9,14 +10,13 @@ use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::progress::{Progress, Stepping};
-#[cfg(feature = "checkpoint")]
-use crate::run::{Run, RunContact};
 
 /// What a run prescribes of its next step.
 #[derive(Debug, Clone, Copy)]
 pub struct Course<'a> {
     pub history: &'a dyn LoadHistory,
-    pub next: Next,
+    /// End and load of a given step, a jump if it takes no time; none of a step as long as its error allows.
+    pub given: Option<(f64, Load)>,
     /// End of the run.
     pub until: f64,
     /// The next time at which a step has to end.
@@ -29,27 +29,13 @@ pub struct Course<'a> {
     pub cancelled: Option<&'a AtomicBool>,
 }
 
-/// The next step of a run.
-#[derive(Debug, Clone, Copy)]
-pub enum Next {
-    /// A step of given end and load; a jump if it takes no time.
-    Given { time: f64, load: Load },
-    /// A step as long as its error allows.
-    Adaptive { tolerance: f64 },
-}
-
 /// A contact that runs drive. It is public for bounds only: this module is private.
 pub trait Driven: Contact + Debug {
     /// The control of the steps, and what the run has found so far.
     type Control: Debug + Clone;
 
-    /// The control of a run to the time `until`.
-    fn control(&self, stepping: Stepping, until: f64) -> Self::Control;
-
-    /// The progress of the run that saved this contact.
-    fn saved_progress(&mut self) -> Option<Arc<Progress<Self::Control>>> {
-        None
-    }
+    /// Progress and control of a run that begins here, or that goes on where it saved this contact.
+    fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, Self::Control);
 
     /// The load that acts; `None` if it is not known.
     fn load(&self, control: &Self::Control) -> Option<Load>;
@@ -68,12 +54,13 @@ pub trait Driven: Contact + Debug {
     /// Number of adaptive steps rejected for their error.
     fn rejected(control: &Self::Control) -> u64;
 
-    /// Saves a run if that is due, or the run is `over`.
+    /// Saves the contact with a run that goes on from it.
     #[cfg(feature = "checkpoint")]
-    fn autosave(_run: &mut Run<'_, Self>, _over: bool) -> Result<()>
-    where
-        Self: RunContact,
-    {
-        Ok(())
+    fn save_run(&self, path: &Path, run: (&Progress, &Self::Control)) -> Result<()>;
+
+    /// Whether a save is due on any rank: clocks differ.
+    #[cfg(feature = "checkpoint")]
+    fn is_due(&self, due: bool) -> Result<bool> {
+        Ok(due)
     }
 }

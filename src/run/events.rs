@@ -1,131 +1,35 @@
 //! Events: steps that end where a quantity of the contact crosses a value.
 
-use std::fmt;
-
-use crate::contact::{Contact, StepReport};
-use crate::error::{Result, finite};
+use crate::contact::StepReport;
+use crate::error::Result;
+use crate::load::{Load, LoadHistory};
 use crate::run::RunContact;
-use crate::run::follow::{Run, SAME_TIME};
+use crate::run::event::{Crossing, Event};
+use crate::run::follow::{Run, history_of};
+use crate::run::progress::SAME_TIME;
 
-/// Differences to the value below this part of the greatest one so far count as none, just after an event.
-const NOISE: f64 = 1e-6;
 /// Looks within a step for the time of an event: bisection alone needs 20 to 1e-6 of the step.
 const MOST_LOOKS: u32 = 60;
 /// Attempts to end a step at the first event in it.
 const MOST_ATTEMPTS: u32 = 8;
+/// Equal parts of a step at whose ends its load is looked at.
+const PARTS: u32 = 64;
+/// Halvings of a part of a step between two turns of its load.
+const HALVINGS: u32 = 6;
+/// A load turns where it changes by more than this part of its greatest value.
+const ROUNDING: f64 = 1e-9;
 
-/// The value that a quantity crosses, and the direction, in [`Run::stop_when`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Crossing {
-    /// From below the value to the value, or from the value to above it.
-    Up(f64),
-    /// From above the value to the value, or from the value to below it.
-    Down(f64),
-}
-
-impl Crossing {
-    fn value(self) -> f64 {
-        let (Crossing::Up(value) | Crossing::Down(value)) = self;
-        value
-    }
-
-    /// How far a quantity is beyond the value.
-    fn beyond(self, quantity: f64) -> f64 {
-        match self {
-            Crossing::Up(value) => quantity - value,
-            Crossing::Down(value) => value - quantity,
-        }
-    }
-}
-
-/// Where the quantity of an event is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Side {
-    /// Before the value, or at it: the event is met once it goes on.
-    Before,
-    /// At the value, just after the event.
-    Met,
-    Beyond,
-}
-
-/// What a run watches: whether and when a quantity has crossed a value ([`Run::events`]).
-pub struct Event<C> {
-    quantity: Box<dyn Fn(&C) -> f64 + Send + Sync>,
-    crossing: Crossing,
-    /// At the start of the step to be taken, unknown before the first.
-    side: Option<Side>,
-    /// At the end of the step tried; `None` if it has crossed.
-    next: Option<Side>,
-    /// Greatest distance of the quantity from the value.
-    greatest: f64,
-    times: Vec<f64>,
-    is_met: bool,
-}
-
-impl<C> Event<C> {
-    /// The value, and the direction in which it is crossed.
-    pub fn crossing(&self) -> Crossing {
-        self.crossing
-    }
-
-    /// Whether the last step ended at this event.
-    pub fn is_met(&self) -> bool {
-        self.is_met
-    }
-
-    /// The times of all crossings so far \[s\]: none if the event was not met.
-    pub fn times(&self) -> &[f64] {
-        &self.times
-    }
-
-    /// Whether the quantity lies beyond the value, perhaps since the start of the run, in which case the event is not met before the
-    /// quantity has come back.
-    pub fn is_beyond(&self) -> bool {
-        matches!(self.side, Some(Side::Met | Side::Beyond))
-    }
-
-    fn look(&self, contact: &C) -> Look
-    where
-        C: Contact,
-    {
-        Look { time: contact.time(), beyond: self.crossing.beyond((self.quantity)(contact)) }
-    }
-
-    /// Accepts the step tried, which ends at `time`.
-    fn settle(&mut self, time: f64) {
-        self.is_met = self.next.is_none();
-        self.side = self.next.or(Some(Side::Met));
-        self.times.extend(self.is_met.then_some(time));
-    }
-
-    /// The side of a quantity that is `now` so far beyond the value, after it was at `side`; `None` if it has crossed.
-    fn side_after(&self, side: Option<Side>, start: f64, now: f64) -> Option<Side> {
-        let noise = NOISE * self.greatest;
-        let crosses = if start == 0.0 { now > 0.0 } else { now >= 0.0 };
-        match side {
-            None if now > 0.0 => Some(Side::Beyond),
-            None => Some(Side::Before),
-            Some(Side::Before) if crosses => None,
-            Some(Side::Met | Side::Beyond) if now < -noise => Some(Side::Before),
-            Some(Side::Met) if now > noise => Some(Side::Beyond),
-            Some(Side::Beyond) if now == 0.0 => Some(Side::Before),
-            side => side,
-        }
-    }
-}
-
-impl<C> fmt::Debug for Event<C> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Event").field("crossing", &self.crossing).field("times", &self.times).finish_non_exhaustive()
-    }
-}
-
-/// The quantity of an event at a time within a step.
-#[derive(Clone, Copy)]
+/// How far the quantities of all events are beyond their values, at a time within a step.
+#[derive(Clone)]
 struct Look {
     time: f64,
-    beyond: f64,
+    beyond: Vec<f64>,
+}
+
+impl Look {
+    fn of<C: RunContact>(events: &[Event<C>], contact: &C) -> Look {
+        Look { time: contact.time(), beyond: events.iter().map(|event| event.beyond(contact)).collect() }
+    }
 }
 
 impl<'a, C: RunContact> Run<'a, C> {
@@ -153,8 +57,10 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// ```
     ///
     /// A quantity that lies beyond the value when the run begins has to come back first. The time of a crossing is found to a
-    /// millionth of a step. Each step is looked at in its middle, and at the top of the parabola through start, middle and end, if
-    /// this is beyond the value: so two crossings within a step are found unless both lie between two looks. In space each look costs a
+    /// millionth of a step. Each step is looked at where its load turns, as 64 equal parts of it show, and in the middle between. Where a
+    /// quantity comes as near to its value as it bends, or a quarter of its change, the part is halved again, six times at most. So two
+    /// crossings are missed where both lie within a 64th of a part between two turns, or where the load turns twice within a 64th of the
+    /// step. In space each look costs a
     /// contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact the
     /// quantity must be the same on all of them.
     ///
@@ -165,9 +71,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         quantity: impl Fn(&C) -> f64 + Send + Sync + 'static,
         crossing: Crossing,
     ) -> Result<Run<'a, C>> {
-        finite("value of an event", crossing.value())?;
-        let (quantity, times) = (Box::new(quantity), Vec::new());
-        self.events.push(Event { quantity, crossing, side: None, next: None, greatest: 0.0, times, is_met: false });
+        self.events.push(Event::new(quantity, crossing)?);
         Ok(self)
     }
 
@@ -178,103 +82,126 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Takes a step that ends at the first event in it.
     pub(super) fn take_until_event(&mut self) -> Result<Option<StepReport>> {
-        let (start, saved) = (C::clone(&self.contact), self.progress.clone());
+        let saved = (C::clone(&self.contact), self.progress.clone(), self.control.clone());
         let mut target: Option<(usize, f64)> = None;
         for attempt in 0.. {
-            self.events.iter_mut().for_each(|event| event.is_met = false);
+            self.events.iter_mut().for_each(Event::begin);
             let Some(report) = self.take_step()? else { break };
             let arrived = target.filter(|(_, time)| *time == report.time);
             let searches = arrived.is_none() && attempt < MOST_ATTEMPTS;
             let mut events = std::mem::take(&mut self.events);
-            let first = self.first_event(&mut events, &start, searches);
+            let first = self.first_event(&mut events, &saved.0, searches);
             self.events = events;
-            match first {
-                Ok(Some((first, time))) if time < report.time => {
-                    self.stops.add([time].into(), self.progress.start)?;
-                    target = Some((first, time));
-                }
-                Ok(_) => {
-                    arrived.iter().for_each(|(event, _)| self.events[*event].next = None);
-                    self.events.iter_mut().for_each(|event| event.settle(report.time));
-                    return Ok(Some(report));
-                }
-                Err(error) => {
-                    (*self.contact, self.progress) = (start, saved);
-                    return Err(error);
-                }
+            if let Ok(None) = first {
+                arrived.iter().for_each(|(event, _)| self.events[*event].meet());
+                self.events.iter_mut().for_each(|event| event.settle(report.time));
+                return Ok(Some(report));
             }
-            (*self.contact, self.progress) = (start.clone(), saved.clone());
+            (*self.contact, self.progress, self.control) = saved.clone();
+            target = first?;
+            self.stops.add(target.iter().map(|(_, time)| *time).collect::<Vec<_>>().into(), self.progress.start)?;
         }
         Ok(None)
     }
 
-    /// Follows all events through the last step. Returns the first of them and its time, the end of the step if it is as near as that or
-    /// not to be searched for.
+    /// Follows all events through the last step. Returns the first of them and its time, if it is before the end of the step and to be
+    /// searched for.
     fn first_event(&self, events: &mut [Event<C>], start: &C, searches: bool) -> Result<Option<(usize, f64)>> {
         let (from, to) = (start.time(), self.contact.time());
         let same = SAME_TIME * (to - from);
-        let middle = if to > from { Some(self.within_step(0.5 * (from + to))?) } else { None };
+        let looks = self.looks(events, start)?;
         let mut first: Option<(usize, f64)> = None;
-        for (k, event) in events.iter_mut().enumerate() {
-            let mut looks: Vec<Look> = [Some(start), middle.as_ref(), Some(self.contact())]
-                .into_iter()
-                .flatten()
-                .map(|c| event.look(c))
-                .collect();
-            if let Some(top) = top(&looks) {
-                looks.insert(if top < looks[1].time { 1 } else { 2 }, event.look(&self.within_step(top)?));
-            }
-            event.greatest = looks.iter().fold(event.greatest, |most, look| most.max(look.beyond.abs()));
-            event.next = event.side.or_else(|| event.side_after(None, 0.0, looks[0].beyond));
-            for pair in looks.windows(2) {
-                event.next = event.side_after(event.next, pair[0].beyond, pair[1].beyond);
-                if event.next.is_some() {
-                    continue;
-                }
-                let at = |time: f64| Ok(event.look(&self.within_step(time)?));
-                let found = if searches { crossing_within([pair[0], pair[1]], same, at)? } else { to };
-                let time = if found > to - same { to } else { found };
-                if first.is_none_or(|(_, earlier)| time < earlier) {
-                    first = Some((k, time));
-                }
-                break;
+        for k in 0..events.len() {
+            let beyond: Vec<f64> = looks.iter().map(|look| look.beyond[k]).collect();
+            let Some(after) = events[k].follow(&beyond).filter(|_| searches) else { continue };
+            let ends = [after - 1, after].map(|look| (looks[look].time, beyond[look]));
+            let time = crossing_within(ends, same, |time| Ok(events[k].beyond(&self.within_step(time)?)))?;
+            if time <= to - same && first.is_none_or(|(_, earlier)| time < earlier) {
+                first = Some((k, time));
             }
         }
         Ok(first)
     }
+
+    /// Looks within the last step, from its start to its end.
+    fn looks(&self, events: &[Event<C>], start: &C) -> Result<Vec<Look>> {
+        let (mut looks, end) = (vec![Look::of(events, start)], Look::of(events, self.contact()));
+        for turn in turns(history_of(&self.history), start.time(), end.time) {
+            let turn = Look::of(events, &self.within_step(turn)?);
+            self.look_until(events, &mut looks, turn, 0)?;
+        }
+        self.look_until(events, &mut looks, end, 0)?;
+        Ok(looks)
+    }
+
+    /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice, and `end`.
+    fn look_until(&self, events: &[Event<C>], looks: &mut Vec<Look>, end: Look, halved: u32) -> Result<()> {
+        let Some(start) = looks.last().filter(|_| halved < HALVINGS) else { return Ok(looks.push(end)) };
+        let time = 0.5 * (start.time + end.time);
+        if time <= start.time || time >= end.time {
+            return Ok(looks.push(end));
+        }
+        let middle = Look::of(events, &self.within_step(time)?);
+        let hides = (0..events.len()).any(|k| hides_crossings([start, &middle, &end].map(|look| look.beyond[k])));
+        let halved = if hides { halved + 1 } else { HALVINGS };
+        self.look_until(events, looks, middle, halved)?;
+        self.look_until(events, looks, end, halved)
+    }
 }
 
-/// The time of the extremum of the parabola through start, middle and end of a step, if it is inside the step and on the other side of the
-/// value than the middle.
-fn top(looks: &[Look]) -> Option<f64> {
-    let [start, middle, end] = looks[..] else { return None };
-    let (slope, bend) = (end.beyond - start.beyond, start.beyond - 2.0 * middle.beyond + end.beyond);
-    let share = -0.25 * slope / bend;
-    let value = middle.beyond + slope * share + 2.0 * bend * share * share;
-    let is_inside = (1e-3..0.499).contains(&share.abs());
-    (is_inside && (value >= 0.0) != (middle.beyond >= 0.0)).then_some(middle.time + share * (end.time - start.time))
+/// Whether a quantity with these distances to the value, at both ends of a part of a step and in its middle, may cross the value more often
+/// than they show: where it stays on one side, if it is nearer than it bends, or than a quarter of its change; else if the parabola through
+/// the three turns.
+fn hides_crossings([start, middle, end]: [f64; 3]) -> bool {
+    let (bend, change) = ((start - 2.0 * middle + end).abs(), (end - start).abs());
+    let nearest = start.abs().min(middle.abs()).min(end.abs());
+    if (start >= 0.0) == (end >= 0.0) { nearest < bend.max(0.25 * change) } else { 2.0 * bend > change }
+}
+
+/// Times within a step at which its load turns, as equal parts of the step show.
+fn turns(history: &dyn LoadHistory, from: f64, to: f64) -> Vec<f64> {
+    let time = |k: u32| from + (to - from) * f64::from(k) / f64::from(PARTS);
+    let loads: Vec<f64> = (0..=PARTS)
+        .map(|k| match if k < PARTS { history.at(time(k)) } else { history.before(to) } {
+            Load::Force { normal: size, .. }
+            | Load::Approach { approach: size, .. }
+            | Load::Spring { drive: size, .. } => size,
+        })
+        .collect();
+    let least = ROUNDING * loads.iter().fold(0.0, |most: f64, load| most.max(load.abs()));
+    let (mut turns, mut before) = (Vec::new(), 0.0);
+    for k in 1..=PARTS as usize {
+        let change = loads[k] - loads[k - 1];
+        if change.abs() > least {
+            if change * before < 0.0 {
+                turns.push(time(k as u32 - 1));
+            }
+            before = change;
+        }
+    }
+    turns
 }
 
 /// The first time found at which the quantity is beyond the value, at most `same` after one at which it is not: by secants, and by
-/// halves where these are slow.
-fn crossing_within([mut low, mut high]: [Look; 2], same: f64, at: impl Fn(f64) -> Result<Look>) -> Result<f64> {
-    let strict = low.beyond == 0.0;
+/// halves where these are slow. From times and distances to the value of two looks.
+fn crossing_within([mut low, mut high]: [(f64, f64); 2], same: f64, at: impl Fn(f64) -> Result<f64>) -> Result<f64> {
+    let strict = low.1 == 0.0;
     let mut weights = [1.0; 2];
     for k in 0..MOST_LOOKS {
-        let width = high.time - low.time;
+        let width = high.0 - low.0;
         if width <= same {
             break;
         }
-        let [a, b] = [weights[0] * low.beyond, weights[1] * high.beyond];
+        let [a, b] = [weights[0] * low.1, weights[1] * high.1];
         let share = if k % 3 == 2 || a == 0.0 || b == 0.0 { 0.5 } else { a / (a - b) };
         let least = (0.5 * same / width).min(0.5);
-        let time = low.time + share.clamp(least, 1.0 - least) * width;
-        let found = at(time)?;
-        if if strict { found.beyond > 0.0 } else { found.beyond >= 0.0 } {
-            (high, weights) = (found, [0.5 * weights[0], 1.0]);
+        let time = low.0 + share.clamp(least, 1.0 - least) * width;
+        let beyond = at(time)?;
+        if if strict { beyond > 0.0 } else { beyond >= 0.0 } {
+            (high, weights) = ((time, beyond), [0.5 * weights[0], 1.0]);
         } else {
-            (low, weights) = (found, [1.0, 0.5 * weights[1]]);
+            (low, weights) = ((time, beyond), [1.0, 0.5 * weights[1]]);
         }
     }
-    Ok(high.time)
+    Ok(high.0)
 }

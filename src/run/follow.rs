@@ -7,15 +7,12 @@ use crate::ascending::{Schedule, Times};
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::{LoadError, Result};
 use crate::load::LoadHistory;
-use crate::run::driven::{Course, Next};
-use crate::run::events::Event;
-use crate::run::progress::{Progress, RunProgress, Stepping};
 #[cfg(feature = "checkpoint")]
-use crate::run::saving::Autosave;
+use crate::run::autosave::Autosave;
+use crate::run::driven::Course;
+use crate::run::event::Event;
+use crate::run::progress::{Progress, RunProgress, Stepping};
 use crate::run::{OwnedOrBorrowed, RunContact};
-
-/// Two times closer than this fraction of a step are the same time.
-pub(crate) const SAME_TIME: f64 = 1e-6;
 
 /// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
 /// the run is dropped.
@@ -77,7 +74,8 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) history: RunHistory<'a>,
     stepping: Stepping,
     until: f64,
-    pub(super) progress: Progress<C::Control>,
+    pub(super) progress: Progress,
+    pub(super) control: C::Control,
     /// Times at which steps end, and at which states within steps are sampled.
     pub(super) stops: Schedule,
     pub(super) sampled: Schedule,
@@ -89,9 +87,6 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) last: Option<(f64, StepReport)>,
     #[cfg(feature = "checkpoint")]
     pub(super) autosave: Option<Autosave>,
-    /// Report of a step after which the file could not be written.
-    #[cfg(feature = "checkpoint")]
-    unreported: Option<Option<StepReport>>,
 }
 
 impl ViscoelasticContact {
@@ -133,18 +128,14 @@ impl<'a, C: RunContact> Run<'a, C> {
         stepping: Stepping,
         until: f64,
     ) -> Run<'a, C> {
-        let (now, saved) = (contact.time(), contact.saved_progress());
-        let saved = saved.filter(|saved| until >= now && saved.continues(now, stepping));
-        let progress = match saved {
-            Some(saved) => Progress::clone(&saved),
-            None => Progress::begin(now, stepping, contact.control(stepping, until)),
-        };
+        let (progress, control) = contact.begin(stepping, until);
         Run {
             contact,
             history,
             stepping,
             until,
             progress,
+            control,
             stops: Schedule::default(),
             sampled: Schedule::default(),
             events: Vec::new(),
@@ -152,8 +143,6 @@ impl<'a, C: RunContact> Run<'a, C> {
             last: None,
             #[cfg(feature = "checkpoint")]
             autosave: None,
-            #[cfg(feature = "checkpoint")]
-            unreported: None,
         }
     }
 
@@ -222,23 +211,13 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// writes the file and returns the report of the step.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         #[cfg(feature = "checkpoint")]
-        {
-            let report = match self.unreported.take() {
-                Some(report) => report,
-                None => self.take_next()?,
-            };
-            if let Err(error) = C::autosave(self, report.is_none()) {
-                self.unreported = Some(report);
-                return Err(error);
-            }
-            Ok(report)
-        }
+        return self.take_and_save();
         #[cfg(not(feature = "checkpoint"))]
         self.take_next()
     }
 
     /// Takes the next step and keeps its report for [`Run::samples`].
-    fn take_next(&mut self) -> Result<Option<StepReport>> {
+    pub(super) fn take_next(&mut self) -> Result<Option<StepReport>> {
         self.last = None;
         let start = self.contact.time();
         let mut report = if self.events.is_empty() { self.take_step()? } else { self.take_until_event()? };
@@ -252,11 +231,11 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     pub(super) fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
-        let Run { contact, history, until, progress, cancelled, .. } = self;
+        let Run { contact, history, until, progress, control, cancelled, .. } = self;
         let (now, until, history) = (contact.time(), *until, history_of(history));
         let attracts = contact.in_space().is_some_and(|contact| contact.scene.attraction.is_some());
         let load = history.checked_at(now, attracts)?;
-        let jumps = contact.load(&progress.control) != Some(load);
+        let jumps = contact.load(control) != Some(load);
         if !jumps && now >= until {
             return Ok(None);
         }
@@ -270,16 +249,16 @@ impl<'a, C: RunContact> Run<'a, C> {
             if temperature.is_some_and(|(history, turn)| history.jumps_at(turn)) { corner.min(turn) } else { corner };
         let corner = corner.min(turn);
         let stop = corner.min(until).min(self.stops.after(now).unwrap_or(f64::INFINITY));
-        let next = match self.stepping {
-            _ if jumps => Next::Given { time: now, load },
+        let given = match self.stepping {
+            _ if jumps => Some((now, load)),
             Stepping::Fixed { dt } => {
                 let time = progress.next_time(now, dt, stop)?;
-                Next::Given { time, load: history.checked_before(time, attracts)? }
+                Some((time, history.checked_before(time, attracts)?))
             }
-            Stepping::Adaptive { tolerance } => Next::Adaptive { tolerance },
+            Stepping::Adaptive { .. } => None,
         };
-        let course = Course { history, next, until, stop, corner, kink, cancelled: cancelled.as_deref() };
-        contact.advance(&mut progress.control, &course).map(Some)
+        let course = Course { history, given, until, stop, corner, kink, cancelled: cancelled.as_deref() };
+        contact.advance(control, &course).map(Some)
     }
 
     /// How far the run has come.
@@ -289,7 +268,7 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Number of steps rejected for their error, with [`Stepping::adaptive`].
     pub fn rejected_steps(&self) -> u64 {
-        C::rejected(&self.progress.control)
+        C::rejected(&self.control)
     }
 
     /// The contact after the last step.

@@ -3,17 +3,24 @@
 //! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)) or on elastic states
 //! ([`StatesContact`](crate::states::StatesContact)); [`SteadyRun`] moves one in space to its steady state.
 
-// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space (`in_space`) an
-// adaptive step is proposed, tried, judged by its error, and accepted or tried again shorter (`adaptive_step`); `step_control` holds the
-// error, the past steps and the length of the next one, `run_scale` the greatest loads and displacements of the run.
+// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space (`in_space`)
+// `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it judged by its error, and accepts it or
+// tries again. The error depends on the load within the step (`load_within`) and on what lies ahead and behind (`outlook`): the greatest
+// loads and displacements of the run (`run_scale`), and what the steps so far leave (`past_steps`).
 
 mod adaptive_step;
+#[cfg(feature = "checkpoint")]
+mod autosave;
 pub(crate) mod driven;
 mod error_budget;
+mod event;
 mod events;
 mod follow;
 mod in_space;
-mod progress;
+mod load_within;
+mod outlook;
+mod past_steps;
+pub(crate) mod progress;
 mod run_scale;
 mod samples;
 #[cfg(feature = "checkpoint")]
@@ -23,9 +30,9 @@ mod step_control;
 
 pub use crate::ascending::Times;
 pub use error_budget::ErrorBudget;
-pub use events::{Crossing, Event};
+pub use event::{Crossing, Event};
 pub use follow::Run;
-pub(crate) use follow::SAME_TIME;
+pub(crate) use progress::SAME_TIME;
 pub use progress::{RunProgress, Stepping};
 pub use samples::Sample;
 pub use steady::{SteadyMotion, SteadyRun};

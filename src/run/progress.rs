@@ -5,7 +5,9 @@ use std::fmt;
 use crate::contact::StepReport;
 use crate::error::{Error, Result, finite, positive, within};
 use crate::rounded::rounded;
-use crate::run::follow::SAME_TIME;
+
+/// Two times closer than this fraction of a step are the same time.
+pub(crate) const SAME_TIME: f64 = 1e-6;
 
 /// The rule for the length of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +43,7 @@ impl Stepping {
     }
 
     /// Length of equal steps, and tolerance of adaptive ones; 0 where it is not that kind.
-    fn lengths(self) -> (f64, f64) {
+    pub(crate) fn lengths(self) -> (f64, f64) {
         match self {
             Stepping::Fixed { dt } => (dt, 0.0),
             Stepping::Adaptive { tolerance } => (0.0, tolerance),
@@ -63,10 +65,10 @@ impl Stepping {
     }
 }
 
-/// How far a run has come, and the control of its steps.
+/// How far a run has come.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub struct Progress<K> {
+pub struct Progress {
     pub(super) start: f64,
     /// Time of the contact that belongs to this progress.
     pub(super) now: f64,
@@ -78,18 +80,23 @@ pub struct Progress<K> {
     /// Number of steps taken, and the length of the first one that took time.
     steps: u64,
     first_step: f64,
-    pub(super) control: K,
 }
 
-impl<K> Progress<K> {
-    pub(super) fn begin(now: f64, stepping: Stepping, control: K) -> Progress<K> {
+impl Progress {
+    pub(crate) fn begin(now: f64, stepping: Stepping) -> Progress {
         let (dt, tolerance) = stepping.lengths();
-        Progress { start: now, now, equal_steps: 0, dt, tolerance, steps: 0, first_step: 0.0, control }
+        Progress { start: now, now, equal_steps: 0, dt, tolerance, steps: 0, first_step: 0.0 }
     }
 
     /// Whether a run that begins `now` continues this one.
-    pub(super) fn continues(&self, now: f64, stepping: Stepping) -> bool {
-        self.now == now && (self.dt, self.tolerance) == stepping.lengths()
+    pub(crate) fn continues(&self, now: f64, stepping: Stepping, until: f64) -> bool {
+        self.now == now && (self.dt, self.tolerance) == stepping.lengths() && until >= now
+    }
+
+    /// Whether a run can continue with these values; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self) -> bool {
+        self.dt == 0.0 || (self.now - self.start - self.equal_steps as f64 * self.dt).abs() <= 2.0 * self.dt
     }
 
     /// Counts a step.

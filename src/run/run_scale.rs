@@ -27,6 +27,8 @@ const SECANT: f64 = 2.0 / 3.0;
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RunScale {
+    /// Whether the history of the run has been looked at.
+    pub(super) is_known: bool,
     /// Approach at first touch.
     touch: f64,
     /// Whether bodies pull at each other, so that heights above first touch are loads, too.
@@ -41,14 +43,22 @@ pub(super) struct RunScale {
     width: f64,
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
-    rises: Rises,
+    /// Rises of the history, ascending in time.
+    rises: Vec<Rise>,
     /// Times at which a given approach or a spring follows a given force, ascending.
     switches: Vec<f64>,
 }
 
 impl RunScale {
     /// The scale of a run from `state` along a history to the time `until`. Rejects invalid loads of the history.
-    pub(super) fn new(scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<RunScale> {
+    /// Finds how the bodies respond where they meet, for adaptive steps of such a tolerance.
+    pub(super) fn new(
+        scene: &Scene,
+        state: &State,
+        history: &dyn LoadHistory,
+        until: f64,
+        tolerance: Option<f64>,
+    ) -> Result<RunScale> {
         let touch = state.indenter.first_touch()[0].approach;
         let now = state.clock.time;
         let span = until - now;
@@ -57,7 +67,7 @@ impl RunScale {
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
-        let mut scale = RunScale { touch, attracts: state.attracts, ..RunScale::default() };
+        let mut scale = RunScale { is_known: true, touch, attracts: state.attracts, ..RunScale::default() };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
@@ -68,7 +78,7 @@ impl RunScale {
         });
         let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
         times.sort_by(f64::total_cmp);
-        scale.rises = Rises::new(scene, history, touch, &times)?;
+        scale.rises = rises(scene, history, touch, &times)?;
         let mut times: Vec<f64> = times.into_iter().chain(decades).collect();
         times.sort_by(f64::total_cmp);
         let mut loads: Vec<(f64, Load)> = Vec::new();
@@ -95,6 +105,10 @@ impl RunScale {
         if scale.force > 0.0 && compliance > 0.0 {
             scale.depth_over_compliance = resting_depth(scene, state, scale.force * compliance) / compliance;
         }
+        if let Some(tolerance) = tolerance {
+            let most = tolerance * scale.stress;
+            scale.rises.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
+        }
         Ok(scale)
     }
 
@@ -102,7 +116,7 @@ impl RunScale {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         let sizes = [self.force, self.depth, self.stress, self.width, self.depth_over_compliance];
-        !self.touch.is_nan() && self.rises.fits() && sizes.iter().all(|&size| size >= 0.0)
+        !self.touch.is_nan() && self.rises.iter().all(Rise::fits) && sizes.iter().all(|&size| size >= 0.0)
     }
 
     /// Includes a load that acts.
@@ -189,26 +203,31 @@ impl RunScale {
         self.switches.iter().copied().find(|&time| time >= now).unwrap_or(f64::INFINITY)
     }
 
-    /// Finds how the bodies respond where they meet, for steps of such a tolerance.
-    pub(super) fn find_stiffness(&mut self, scene: &Scene, tolerance: f64) {
-        let most = tolerance * self.stress;
-        self.rises.0.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
-    }
-
     /// How bodies that have been loaded for the time `age` may meet again after `now`; to the depth 0 if they do not.
-    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> Meeting {
+    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, age: f64, now: f64) -> Meeting {
         let own = self.give(load);
         if let Load::Force { .. } = load {
             return Meeting { depth: self.expected(scene, load, age)[0], stiffness: 0.0, give: own };
         }
-        let Meeting { depth, stiffness, give } = self.rises.after(now, self.width, |rise| rise.again);
+        let Meeting { depth, stiffness, give } = self.meeting_after(now, |rise| rise.again);
         Meeting { depth: depth * self.share(scene, load, age), stiffness, give: give.min(own) }
     }
 
     /// The response of v to an error of u when the bodies meet more cells after `now`; 0 if no approach is given then.
     pub(super) fn stiffness_after(&self, now: f64) -> f64 {
-        let Meeting { stiffness, give, .. } = self.rises.after(now, self.width, |_| true);
+        let Meeting { stiffness, give, .. } = self.meeting_after(now, |_| true);
         if stiffness > 0.0 { stiffness / (1.0 + give * stiffness) } else { 0.0 }
+    }
+
+    /// Greatest depth and stiffness, and least give, of such rises that end at `now` or later; the depth and the stiffness are 0 if there
+    /// are none.
+    fn meeting_after(&self, now: f64, is_meant: impl Fn(&Rise) -> bool) -> Meeting {
+        let rises = self.rises.iter().filter(|rise| rise.end >= now && is_meant(rise));
+        rises.fold(Meeting { depth: 0.0, stiffness: 0.0, give: f64::INFINITY }, |most, rise| Meeting {
+            depth: most.depth.max(rise.depth),
+            stiffness: most.stiffness.max(rise.stiffness),
+            give: most.give.min(self.width * rise.spring),
+        })
     }
 
     /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies into contact.
@@ -255,6 +274,12 @@ struct Rise {
 const ITERATIONS: u32 = 16;
 
 impl Rise {
+    /// Whether a run can continue with these values; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    fn fits(&self) -> bool {
+        self.depth >= 0.0 && self.rate > 0.0 && self.stiffness >= 0.0 && self.spring >= 0.0
+    }
+
     /// A surface that is off by δ is met too early or too late by δ/rate, in which time bodies respond by 1/C(δ/rate). Finds this
     /// response for the δ that changes v by `most`.
     fn find_stiffness(&mut self, scene: &Scene, most: f64) {
@@ -264,53 +289,28 @@ impl Rise {
     }
 }
 
-/// The rises of a history, ascending in time.
-#[derive(Debug, Clone, Default)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-struct Rises(Vec<Rise>);
-
-impl Rises {
-    /// From the loads of a history at these ascending times; first touch is at the approach `touch`.
-    fn new(scene: &Scene, history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Rises> {
-        let (mut rises, mut again, mut last) = (Rises::default(), false, None);
-        for &time in times {
-            for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
-                let (approach, spring) = match load(history, time, scene.attraction.is_some())? {
-                    Load::Approach { approach: depth, .. } => (depth, 0.0),
-                    Load::Spring { stiffness, drive: depth, .. } => (depth, 1.0 / stiffness),
-                    Load::Force { .. } => {
-                        // a force may have receded, too
-                        (again, last) = (true, None);
-                        continue;
-                    }
-                };
-                if let Some((start, before)) = last.replace((time, approach)) {
-                    again |= approach < before;
-                    if approach > before.max(touch) {
-                        let rate = (approach - before) / scene.reduced_length([start, time], time - start)?;
-                        let depth = approach - touch;
-                        rises.0.push(Rise { end: time, depth, rate, again, stiffness: 0.0, spring });
-                    }
+/// The rises of a history at these ascending times; first touch is at the approach `touch`.
+fn rises(scene: &Scene, history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Vec<Rise>> {
+    let (mut rises, mut again, mut last) = (Vec::new(), false, None);
+    for &time in times {
+        for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
+            let (approach, spring) = match load(history, time, scene.attraction.is_some())? {
+                Load::Approach { approach: depth, .. } => (depth, 0.0),
+                Load::Spring { stiffness, drive: depth, .. } => (depth, 1.0 / stiffness),
+                Load::Force { .. } => {
+                    // a force may have receded, too
+                    (again, last) = (true, None);
+                    continue;
+                }
+            };
+            if let Some((start, before)) = last.replace((time, approach)) {
+                again |= approach < before;
+                if approach > before.max(touch) {
+                    let rate = (approach - before) / scene.reduced_length([start, time], time - start)?;
+                    rises.push(Rise { end: time, depth: approach - touch, rate, again, stiffness: 0.0, spring });
                 }
             }
         }
-        Ok(rises)
     }
-
-    /// Whether a run can continue with these values; a damaged file may hold any.
-    #[cfg(feature = "checkpoint")]
-    fn fits(&self) -> bool {
-        self.0.iter().all(|rise| rise.depth >= 0.0 && rise.rate > 0.0 && rise.stiffness >= 0.0 && rise.spring >= 0.0)
-    }
-
-    /// Greatest depth and stiffness, and least give, of such rises that end at `now` or later, of contacts of this `width`; the depth and the
-    /// stiffness are 0 if there are none.
-    fn after(&self, now: f64, width: f64, is_meant: impl Fn(&Rise) -> bool) -> Meeting {
-        let rises = self.0.iter().filter(|rise| rise.end >= now && is_meant(rise));
-        rises.fold(Meeting { depth: 0.0, stiffness: 0.0, give: f64::INFINITY }, |most, rise| Meeting {
-            depth: most.depth.max(rise.depth),
-            stiffness: most.stiffness.max(rise.stiffness),
-            give: most.give.min(width * rise.spring),
-        })
-    }
+    Ok(rises)
 }

@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
 use crate::run::RunContact;
-use crate::run::follow::{Run, SAME_TIME, history_of};
+use crate::run::follow::{Run, history_of};
+use crate::run::progress::SAME_TIME;
 
 /// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
 #[derive(Debug)]
@@ -123,6 +124,6 @@ impl<C: RunContact> Run<'_, C> {
     }
 
     fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
-        self.contact.within(&self.progress.control, history_of(&self.history), time)
+        self.contact.within(&self.control, history_of(&self.history), time)
     }
 }

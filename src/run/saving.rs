@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::contact::ViscoelasticContact;
 use crate::contact::checkpoint::SavedRun;
+use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::run::RunContact;
+use crate::run::autosave::Autosave;
 use crate::run::follow::Run;
-use crate::run::in_space::SpaceControl;
 use crate::run::progress::Progress;
-use crate::run::run_scale::RunScale;
+use crate::run::step_control::StepControl;
 
 impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it
@@ -55,7 +56,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        self.save_with::<Progress<SpaceControl>>(path.as_ref(), None)
+        self.save_with::<(Progress, StepControl)>(path.as_ref(), None)
     }
 
     /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
@@ -79,13 +80,13 @@ impl ViscoelasticContact {
     /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved
     /// ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
-        let progress = self.resume_with::<Progress<SpaceControl>>(path.as_ref())?;
-        self.saved_run = progress.map(|progress| Arc::new(progress) as _);
+        let run = self.resume_with::<(Progress, StepControl)>(path.as_ref())?;
+        self.saved_run = run.map(|run| Arc::new(run) as _);
         Ok(())
     }
 }
 
-impl Run<'_> {
+impl<C: RunContact> Run<'_, C> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end. An interruption loses
     /// no more than that. A contact that is built alike resumes from the file ([`ViscoelasticContact::resume`]): the next run of
     /// the same stepping takes the same steps, bitwise. Where [ranks](crate::parallel) share out the
@@ -114,7 +115,7 @@ impl Run<'_> {
     ///
     /// [`ViscoelasticContact::resume`]: crate::ViscoelasticContact::resume
     pub fn autosave_to(mut self, path: impl Into<PathBuf>, every: Duration) -> Self {
-        self.autosave = Some(Autosave::new(path.into(), every));
+        self.autosave = Some(Autosave { path: path.into(), every, last: Instant::now(), unreported: None });
         self
     }
 
@@ -126,53 +127,32 @@ impl Run<'_> {
     /// If the file cannot be written.
     pub fn save(&mut self, path: impl AsRef<Path>) -> Result<()> {
         self.progress.now = self.contact.time();
-        self.contact.save_with(path.as_ref(), Some(&self.progress))
+        self.contact.save_run(path.as_ref(), (&self.progress, &self.control))
     }
 
-    /// Saves the run if that is due, or the run is `over`.
-    pub(super) fn save_if_due(&mut self, over: bool) -> Result<()> {
-        let Some(autosave) = &self.autosave else { return Ok(()) };
-        let (due, rows) = (over || autosave.is_due(), self.contact.computation.state.region.rows());
-        // clocks differ: where it is due on one rank, it is on all
-        if !rows.together(|| Ok(rows.any(due)))? {
-            return Ok(());
-        }
-        let path = autosave.path.clone();
-        self.save(path)?;
-        self.autosave.iter_mut().for_each(Autosave::done);
-        Ok(())
-    }
-}
-
-impl SavedRun for Progress<SpaceControl> {
-    fn fits(&self) -> bool {
-        let SpaceControl { adaptive, scale, .. } = &self.control;
-        scale.as_ref().is_none_or(RunScale::fits)
-            && match adaptive {
-                Some(control) => control.fits(),
-                None => (self.now - self.start - self.equal_steps as f64 * self.dt).abs() <= 2.0 * self.dt,
+    /// Takes the next step, and saves the run if that is due or the run is over.
+    pub(super) fn take_and_save(&mut self) -> Result<Option<StepReport>> {
+        let report = match self.autosave.as_mut().and_then(|autosave| autosave.unreported.take()) {
+            Some(report) => report,
+            None => self.take_next()?,
+        };
+        let Some(autosave) = &self.autosave else { return Ok(report) };
+        let (due, path) = (report.is_none() || autosave.last.elapsed() >= autosave.every, autosave.path.clone());
+        let saved =
+            self.contact.is_due(due).and_then(|due| if due { self.save(path).map(|()| true) } else { Ok(false) });
+        if let Some(autosave) = &mut self.autosave {
+            match saved {
+                Ok(true) => autosave.last = Instant::now(),
+                Ok(false) => {}
+                Err(_) => autosave.unreported = Some(report),
             }
+        }
+        saved.map(|_| report)
     }
 }
 
-/// Where and how often a run is saved, and the time of the last save.
-#[derive(Debug)]
-pub(super) struct Autosave {
-    path: PathBuf,
-    every: Duration,
-    last: Instant,
-}
-
-impl Autosave {
-    fn new(path: PathBuf, every: Duration) -> Autosave {
-        Autosave { path, every, last: Instant::now() }
-    }
-
-    fn is_due(&self) -> bool {
-        self.last.elapsed() >= self.every
-    }
-
-    fn done(&mut self) {
-        self.last = Instant::now();
+impl SavedRun for (Progress, StepControl) {
+    fn fits(&self) -> bool {
+        self.0.fits() && self.1.fits()
     }
 }

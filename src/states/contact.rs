@@ -26,6 +26,9 @@ pub struct StatesContact {
     pub(super) levels: Levels,
     pub(super) time: f64,
     pub(super) reduced_time: f64,
+    /// The run that saved this state, for the next run to go on with.
+    #[cfg(feature = "checkpoint")]
+    pub(super) saved_run: Option<Arc<dyn std::any::Any + Send + Sync>>,
 }
 
 /// What steps do not change.
@@ -61,7 +64,15 @@ impl StatesContact {
         let (swept, merge_error) = (Arc::clone(&states), MERGE_ERROR);
         let scene = Scene { swept, elastic: None, temperature: None, limits, interpolant, merge_error };
         let levels = Levels::new(ExponentialRule::new(&creep));
-        Ok(StatesContact { scene: Arc::new(scene), states, levels, time: 0.0, reduced_time: 0.0 })
+        Ok(StatesContact {
+            scene: Arc::new(scene),
+            states,
+            levels,
+            time: 0.0,
+            reduced_time: 0.0,
+            #[cfg(feature = "checkpoint")]
+            saved_run: None,
+        })
     }
 
     /// With a temperature that changes: the material creeps in reduced time.

@@ -363,3 +363,41 @@ fn value(contact: &StatesContact, load: Load) -> Result<f64> {
 fn part([now, end]: [f64; 2], k: f64) -> f64 {
     if k == PARTS as f64 { end } else { now + (end - now) * k / PARTS as f64 }
 }
+
+/// A control in a file.
+#[cfg(feature = "checkpoint")]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(super) struct SavedControl {
+    until: f64,
+    next: f64,
+    corner: f64,
+    by_force: bool,
+    greatest: [f64; 2],
+    loads: Vec<(f64, f64)>,
+    greatest_load: f64,
+    pressed: f64,
+    rejected: u64,
+}
+
+#[cfg(feature = "checkpoint")]
+impl SavedControl {
+    pub(super) fn of(control: &StepControl) -> SavedControl {
+        let StepControl { until, next, corner, by_force, greatest, greatest_load, pressed, rejected, .. } = *control;
+        let loads = control.loads.clone();
+        SavedControl { until, next, corner, by_force, greatest, loads, greatest_load, pressed, rejected }
+    }
+
+    /// Whether a run can continue with these values; a damaged file may hold any.
+    pub(super) fn fits(&self) -> bool {
+        let sizes = [self.until, self.next, self.greatest[0], self.greatest[1], self.greatest_load, self.pressed];
+        let times = self.loads.iter().flat_map(|(time, load)| [*time, *load]);
+        sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
+    }
+
+    /// The control of a run that goes on from this `contact`.
+    pub(super) fn resumed(self, contact: &StatesContact) -> StepControl {
+        let SavedControl { until, next, corner, by_force, greatest, loads, greatest_load, pressed, rejected } = self;
+        let new = StepControl::new(contact, until);
+        StepControl { next, corner, by_force, greatest, loads, greatest_load, pressed, rejected, ..new }
+    }
+}

@@ -1,15 +1,20 @@
 //! Runs of contacts on elastic states.
 
+#[cfg(feature = "checkpoint")]
+use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use crate::contact::StepReport;
 use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
-use crate::run::driven::{Course, Driven, Next};
+use crate::run::driven::{Course, Driven};
+use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::control::{StepControl, load_at};
+#[cfg(feature = "checkpoint")]
+use crate::states::saved::SavedRun;
 
 /// A [`Run`] of a [`StatesContact`], made by [`StatesContact::follow`]. Adaptive steps are taken whole and in two halves, and the halves
 /// are kept. The error of the step is the difference of both, in depth and force and in what the surfaces can ever add to them.
@@ -51,9 +56,10 @@ impl StatesContact {
 #[derive(Debug, Clone)]
 pub struct StatesControl {
     /// The load that acts; unknown before the first step.
-    load: Option<Load>,
+    pub(super) load: Option<Load>,
+    tolerance: f64,
     before: StatesContact,
-    steps: StepControl,
+    pub(super) steps: StepControl,
     /// Whether the last step was taken in two halves.
     halved: bool,
 }
@@ -61,8 +67,18 @@ pub struct StatesControl {
 impl Driven for StatesContact {
     type Control = StatesControl;
 
-    fn control(&self, _: Stepping, until: f64) -> StatesControl {
-        StatesControl { load: None, before: self.clone(), steps: StepControl::new(self, until), halved: false }
+    fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StatesControl) {
+        let (_, tolerance) = stepping.lengths();
+        let (before, steps) = (self.clone(), StepControl::new(self, until));
+        let control = StatesControl { load: None, tolerance, before, steps, halved: false };
+        #[cfg(feature = "checkpoint")]
+        if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedRun>())
+            && saved.progress.continues(self.time, stepping, until)
+        {
+            let SavedRun { progress, load, control: steps } = (*saved).clone();
+            return (progress, StatesControl { load, steps: steps.resumed(self), ..control });
+        }
+        (Progress::begin(self.time, stepping), control)
     }
 
     fn load(&self, control: &StatesControl) -> Option<Load> {
@@ -81,15 +97,16 @@ impl Driven for StatesContact {
         if course.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Error::Cancelled { what: "a step" });
         }
-        let StatesControl { load, before, steps, halved } = control;
+        let StatesControl { load, tolerance, before, steps, halved } = control;
         before.copy_from(self);
-        let report = match course.next {
-            Next::Given { time, load } => self.step_to(time, time - self.time(), load)?,
-            Next::Adaptive { tolerance } => steps.step(self, course.history, tolerance, course.stop)?,
+        let report = match course.given {
+            Some((time, load)) => self.step_to(time, time - self.time(), load)?,
+            None => steps.step(self, course.history, *tolerance, course.stop)?,
         };
-        (*load, *halved) = match course.next {
-            Next::Given { load, .. } => (Some(load), false),
-            Next::Adaptive { .. } => (Some(load_at(course.history, report.time)?), true),
+        *halved = course.given.is_none();
+        *load = match course.given {
+            Some((_, load)) => Some(load),
+            None => Some(load_at(course.history, report.time)?),
         };
         if report.time >= course.corner {
             self.reset_differences();
@@ -119,5 +136,10 @@ impl Driven for StatesContact {
 
     fn rejected(control: &StatesControl) -> u64 {
         control.steps.rejected
+    }
+
+    #[cfg(feature = "checkpoint")]
+    fn save_run(&self, path: &Path, (progress, control): (&Progress, &StatesControl)) -> Result<()> {
+        self.save_with(path, Some(SavedRun::of(progress, control)))
     }
 }

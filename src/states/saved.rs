@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -11,10 +12,14 @@ use crate::contact::checkpoint::format::{Input, Output};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::hereditary::Interpolant;
+use crate::load::Load;
 use crate::parallel::Rows;
+use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
+use crate::states::control::SavedControl;
 use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
+use crate::states::run::StatesControl;
 
 /// The contents of a file.
 #[derive(Serialize, Deserialize)]
@@ -26,6 +31,22 @@ struct Saved<'a> {
     interpolant: Interpolant,
     times: [f64; 2],
     levels: Cow<'a, Levels>,
+    run: Option<SavedRun>,
+}
+
+/// A run that goes on from the state.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct SavedRun {
+    pub(super) progress: Progress,
+    /// The load that acts.
+    pub(super) load: Option<Load>,
+    pub(super) control: SavedControl,
+}
+
+impl SavedRun {
+    pub(super) fn of(progress: &Progress, control: &StatesControl) -> SavedRun {
+        SavedRun { progress: progress.clone(), load: control.load, control: SavedControl::of(&control.steps) }
+    }
 }
 
 const KIND: &str = "elastic states";
@@ -40,10 +61,15 @@ impl StatesContact {
     /// # Errors
     /// If the file cannot be written, or there is something other than a file at `path`.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        self.save_with(path.as_ref(), None)
+    }
+
+    /// [`StatesContact::save`] with a run that goes on from it.
+    pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun>) -> Result<()> {
         let (kind, states, interpolant) = (Cow::Borrowed(KIND), self.fingerprint(), self.scene.interpolant);
         let times = [self.time, self.reduced_time];
-        let saved = Saved { kind, states, interpolant, times, levels: Cow::Borrowed(&self.levels) };
-        replace(path.as_ref(), |out| {
+        let saved = Saved { kind, states, interpolant, times, levels: Cow::Borrowed(&self.levels), run };
+        replace(path, |out| {
             let mut out = Output::begin(out)?;
             postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
             out.finish()
@@ -51,7 +77,8 @@ impl StatesContact {
     }
 
     /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with the same time rule
-    /// and temperature.
+    /// and temperature. A run that saved it ([`Run::autosave_to`](crate::run::Run::autosave_to)) goes on with the next
+    /// [`StatesContact::follow`] of the same stepping, by the same steps.
     ///
     /// Needs the feature `checkpoint`.
     ///
@@ -63,6 +90,7 @@ impl StatesContact {
         let saved = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source })?;
         [self.time, self.reduced_time] = saved.times;
         self.levels = saved.levels.into_owned();
+        self.saved_run = saved.run.map(|run| Arc::new(run) as _);
         Ok(())
     }
 
@@ -90,6 +118,9 @@ impl StatesContact {
         }
         if !saved.levels.fits(&self.levels) || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0) {
             return malformed("levels that no contact has");
+        }
+        if saved.run.as_ref().is_some_and(|run| !run.progress.fits() || !run.control.fits()) {
+            return malformed("a run that no contact can continue");
         }
         let [time, reduced] = saved.times;
         check_clocks(time, reduced, self.scene.temperature.as_ref())?;

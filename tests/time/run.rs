@@ -11,7 +11,7 @@ use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::run::RunContact;
 
-use crate::common::{Draws, Temporary};
+use crate::common::{Draws, Temporary, from_environment};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -32,6 +32,7 @@ fn on_states() -> StatesContact {
 struct Kind<C: RunContact + 'static> {
     new: fn() -> C,
     follow: fn(C, Box<dyn LoadHistory>, Stepping, f64) -> Run<'static, C>,
+    resume: fn(&mut C, &std::path::Path) -> viscocontact::Result<()>,
     /// The approach at which the body touches.
     touch: f64,
 }
@@ -65,10 +66,16 @@ macro_rules! behaviours {
             fn check<$generic: RunContact + Send>($kind: &Kind<$generic>) $check
             let grid = Grid::square(24, 4.0e-3).unwrap();
             let touch = Sphere::new(RADIUS).unwrap().initial_gap(0.5 * grid.spacing()[0], 0.5 * grid.spacing()[1]);
-            check(&Kind { new: in_space, follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until), touch });
+            check(&Kind {
+                new: in_space,
+                follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until),
+                resume: |contact, path| contact.resume(path),
+                touch,
+            });
             check(&Kind {
                 new: on_states,
                 follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until),
+                resume: |contact, path| contact.resume(path),
                 touch: 0.0,
             });
         }
@@ -181,6 +188,66 @@ behaviours! {
             assert!(count > 3 && run.progress().share_of_decades() == 1.0);
             assert_eq!(run.into_contact().time(), 4.0);
         }
+    }
+
+    runs_that_were_saved_go_on_by_the_same_steps: kind, C => {
+        let folder = Temporary::folder("saved-run");
+        let load = || Sinusoid::about(Load::force(0.4), 0.3, 0.6).unwrap();
+        for stepping in STEPPINGS {
+            let whole = steps(kind.run(load(), stepping, 2.0));
+            for taken in 1..whole.len() {
+                let path = folder.join("run");
+                let mut run = kind.run(load(), stepping, 2.0).autosave_to(&path, std::time::Duration::ZERO);
+                for _ in 0..taken {
+                    run.next_step().unwrap();
+                }
+                drop(run);
+                let mut contact = (kind.new)();
+                (kind.resume)(&mut contact, &path).unwrap();
+                let run = (kind.follow)(contact, Box::new(load()), stepping, 2.0);
+                assert_eq!(run.progress().steps as usize, taken);
+                assert_eq!(steps(run), whole[taken..], "{stepping:?} after {taken} steps");
+            }
+            assert!(whole.len() > 8);
+        }
+    }
+
+    crossings_within_a_step_are_not_missed: kind, C => {
+        // all crossings of a dense look at the steps are at their ends, but for pairs within a 64th of a step
+        let (mut found, mut missed, mut close) = (0, 0, 0);
+        for number in 0..from_environment("EVENT_SCENES", 12) {
+            let mut draws = Draws::new(number + 57_000_001);
+            let (mean, period) = (draws.between(0.2, 0.4), draws.power_of_ten(-0.7, 0.5));
+            let amplitude = mean * draws.between(0.1, 0.9);
+            let load = Sinusoid::about(Load::force(mean), amplitude, 1.0 / period).unwrap();
+            let stepping = if draws.chance(0.5) { Stepping::fixed(draws.between(0.1, 1.5)) } else { Stepping::adaptive(1e-3) };
+            let level = mean + amplitude * draws.between(-1.02, 1.02);
+            let by_force = draws.chance(0.5);
+            let quantity = move |contact: &C| if by_force { contact.force() } else { contact.contact_area() * 1e6 };
+            let value = if by_force { level } else { draws.between(0.2, 1.5) };
+            let up = draws.chance(0.5);
+            let crossing = if up { Crossing::Up(value) } else { Crossing::Down(value) };
+            let beyond = |contact: &C| if up { quantity(contact) - value } else { value - quantity(contact) };
+            let mut run = kind.run(load, stepping, 3.0).stop_when(quantity, crossing).unwrap();
+            let mut start = 0.0;
+            while let Some(report) = run.next_step().unwrap() {
+                found += usize::from(run.events()[0].is_met());
+                let looks: Vec<f64> = (1..400)
+                    .map(|k| start + (report.time - start) * f64::from(k) / 400.0)
+                    .filter(|time| start < *time && *time < report.time)
+                    .map(|time| beyond(&run.within_step(time).unwrap()))
+                    .collect();
+                let is_beyond = |k: &usize| looks[*k] > 1e-5 && looks[*k - 1] < 0.0;
+                for k in (1..looks.len()).filter(is_beyond) {
+                    let width = looks[k..].iter().take_while(|beyond| **beyond > 0.0).count();
+                    missed += 1;
+                    close += usize::from(width <= 400 / 64);
+                }
+                start = report.time;
+            }
+        }
+        println!("{found} crossings found, {missed} missed, {close} of them within a 64th of a step");
+        assert!(found > 5 && missed == close, "{found} {missed} {close}");
     }
 
     touch_and_separation_are_events: kind, C => {

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::contact::{Frame, Indenter, State, Step, StepReport, ViscoelasticContact};
+use crate::contact::{Frame, State, Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, Result, exact_length};
-use crate::geometry::Gap;
 use crate::load::Load;
+use crate::memory;
 use crate::motion::Travel;
-use crate::{Grid, memory};
 
 /// A step along a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,32 +79,5 @@ impl ViscoelasticContact {
         let [load_now, motion_now] = self.load_and_motion();
         let pressed = (0..3).map(|k| 0.5 * (load[k] + load_now[k]) * (motion_now[k] - motion[k]));
         work * self.grid().cell_area() * region.images() as f64 - pressed.sum::<f64>()
-    }
-}
-
-/// The indenter of the step before the last, and the fields in which the next one is made. A step along a path
-/// allocates nothing, unless a snapshot still holds this indenter, or the load leaves it free to tilt.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct IndenterBuffer {
-    indenter: Option<Arc<Indenter>>,
-    heights: Vec<f64>,
-    track: Vec<f64>,
-}
-
-impl IndenterBuffer {
-    /// Returns the indenter at time `t` of its path.
-    ///
-    /// # Errors
-    /// If the gap is not a valid gap.
-    fn fill(&mut self, grid: &Grid, travel: &Travel, t: f64) -> Result<Arc<Indenter>> {
-        self.heights.resize(grid.len(), f64::INFINITY);
-        travel.fill_gap(t, grid, &mut self.heights, &mut self.track)?;
-        if let Some(mut unused) = self.indenter.take()
-            && let Some(indenter) = Arc::get_mut(&mut unused)
-        {
-            indenter.refill(&mut self.heights, grid)?;
-            return Ok(unused);
-        }
-        Ok(Arc::new(Indenter::new(Gap::new(vec![self.heights.clone()], grid)?, 1)))
     }
 }

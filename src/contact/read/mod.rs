@@ -6,4 +6,5 @@ pub(crate) mod limits;
 pub(in crate::contact) mod observations;
 pub(in crate::contact) mod report;
 pub(in crate::contact) mod stress;
+pub(in crate::contact) mod view;
 pub(in crate::contact) mod warnings;

@@ -72,8 +72,8 @@ const SMALL: [f64; 2] = [0.05, 0.2];
 /// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in contact, under a
 /// given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is relative to the parts [`SMALL`] of the
 /// greatest of the run, expected ones included.
-pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: StepContext) -> TimeError {
-    let StepContext { expected, mut meeting, on_switch: [one, all], agreement, steps, length_is_given, .. } = outlook;
+pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: &StepContext) -> TimeError {
+    let StepContext { expected, on_switch: [one, all], agreement, steps, length_is_given, .. } = *outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -107,7 +107,6 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let is_given = forces < trial.free.len() || attracted;
     let of_force = if is_given { 1.0 } else { share_of_force(scene, state, step) };
     let matters = [if forces > 0 || attracted { 1.0 } else { 0.0 }, of_force];
-    meeting.give = if is_given { 0.0 } else { meeting.give };
     let gap = &tried.window.gap(&step.indenter).above;
     let was_at_rest = trial.free.len() == 1 && tried.was_at_rest(0);
     let rests_at = was_at_rest.then(|| first_touch(tried, gap));
@@ -125,7 +124,8 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
         advance: &advance,
         amplification: amplified(young, old),
         on_switch: one * (1.0 + agreement * (amplified(one, all) - 1.0)),
-        context: &StepContext { meeting, ..outlook },
+        give: if is_given { 0.0 } else { outlook.meeting.give },
+        context: outlook,
     };
     let error = state.history.time_error(measure);
     if !length_is_given || forces == 0 {

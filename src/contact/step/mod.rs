@@ -122,11 +122,11 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
-        Ok(self.take_expecting(step, StepContext::default())?.0)
+        Ok(self.take_expecting(step, &StepContext::default())?.0)
     }
 
     /// Computes a step and accepts it; the `outlook` enters the estimate of its error.
-    pub(crate) fn take_expecting(&mut self, step: Step<'_>, outlook: StepContext) -> Result<(StepReport, TimeError)> {
+    pub(crate) fn take_expecting(&mut self, step: Step<'_>, outlook: &StepContext) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
         Ok((self.accept(attempt, step, error)?, error))

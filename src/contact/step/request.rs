@@ -5,10 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::Indenter;
 use crate::contact::step::attraction::Passes;
-use crate::contact::step::spring::TriedSpring;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
-use crate::solver::{Freedom, RigidMotion, Solution};
+use crate::solver::{Freedom, ModeCoefficients, RigidMotion, Solution};
 
 /// A step to be tried.
 #[derive(Debug, Clone)]
@@ -35,6 +34,16 @@ impl Step<'_> {
     }
 }
 
+/// The last force tried of a body that a spring drives.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct TriedSpring {
+    pub(super) force: f64,
+    /// By how much the body lies deeper than the spring under this force lets it \[m\].
+    pub(super) excess: f64,
+    /// The motion in which a body that tilts freely hangs on its spring without contact.
+    pub(super) hanging: Option<ModeCoefficients>,
+}
+
 /// Everything that a step computes before it is accepted, except the displacement: the history holds the displacement at
 /// both ends of a step. Dropped when the step fails.
 #[derive(Debug, Clone)]
@@ -45,7 +54,6 @@ pub(crate) struct Trial {
     pub(crate) gap: Vec<f64>,
     /// Free motions of each body.
     pub(crate) free: Vec<Freedom>,
-    /// The last force tried of each body that a spring drives.
     pub(crate) springs: Vec<TriedSpring>,
     /// What the passes of a step work in, from the first step of surfaces that attract each other.
     pub(crate) passes: Option<Box<Passes>>,

@@ -7,11 +7,12 @@
 
 use std::f64::consts::PI;
 
+use crate::contact::step::request::TriedSpring;
 use crate::contact::{Scene, State, Step, Trial};
 use crate::geometry::Gap;
 use crate::load::Load;
 use crate::quadrature::bisect;
-use crate::solver::{ModeCoefficients, Outcome};
+use crate::solver::Outcome;
 
 /// Greatest number of forces that are tried.
 const MAX_FORCES: usize = 60;
@@ -21,16 +22,6 @@ const SHARE_OF_TOLERANCE: f64 = 0.3;
 const SMALLER: f64 = 0.1;
 /// Halvings of the depth of a first contact.
 const HALVINGS: usize = 40;
-
-/// What the last trial told of a spring.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct TriedSpring {
-    force: f64,
-    /// g(F) \[m\].
-    excess: f64,
-    /// The motion in which a body that tilts freely hangs on its spring without contact.
-    hanging: Option<ModeCoefficients>,
-}
 
 /// The springs of a step, each with the body that it drives, its compliance \[m/N\] and its drive from the datum of the gap.
 fn springs<'a>(step: &'a Step<'_>) -> impl Iterator<Item = (usize, f64, f64)> + Clone + 'a {

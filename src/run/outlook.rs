@@ -1,0 +1,128 @@
+//! What the error of a step depends on, besides the step, and the tolerance of its solver.
+
+use crate::contact::step::error_in_time::SHORTEST_TOUCH;
+use crate::contact::{Computation, Scene, State, Step};
+use crate::error::Result;
+use crate::extent::Extent;
+use crate::hereditary::{Interval, Meeting, StepContext};
+use crate::load::Load;
+use crate::run::driven::Course;
+use crate::run::load_within::is_held;
+use crate::run::step_control::StepControl;
+use crate::solver::Freedom;
+
+/// Error of the solver relative to that in time.
+const SOLVER_SHARE: f64 = 0.03;
+/// Surfaces that attract each other end their passes at a hundred tolerances of the solver.
+const SHARE_OF_PASSES: f64 = 0.03;
+/// An error of the solver counts so many times as much as its response to the surface that the body meets later: the errors of many
+/// steps add up.
+const SOLVER_ON_MEETING: f64 = 3.0;
+/// The solver attains this tolerance in all scenes.
+const LEAST_TOLERANCE: f64 = 1e-10;
+/// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate of the first step
+/// after it, which the next step does not put right, is too low by this factor times the ratio of the step before to this one.
+const AT_TURN: f64 = 5.0;
+/// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass answers is over
+/// before the first step ends.
+const MOST_ON_SWITCH: f64 = 3e3;
+/// Events shorter than this fraction of the time between corners, times the tolerance, are not resolved.
+const SHORTEST: f64 = 0.03;
+
+impl StepControl {
+    /// Tolerance of the solver that suits the tolerance in time, at least the tolerance of the settings, where no given approach is to come.
+    pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
+        let share = if scene.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
+        scene.settings.tolerance.max(share * self.tolerance)
+    }
+
+    /// Tolerance of the solver in a step, at most its own: where a given approach is to come, the bodies respond to an error of u by more
+    /// than in the steps that leave it.
+    pub(super) fn solver_tolerance_before_meeting(&self, scene: &Scene, step: &Step<'_>, outlook: &StepContext) -> f64 {
+        let Step { interval: Interval { time, dt, .. }, tolerance, .. } = *step;
+        let answer = SOLVER_ON_MEETING * self.scale.stiffness_after(time) * scene.material.contact_compliance(dt);
+        tolerance.min((tolerance / answer.max(outlook.on_switch[1])).max(LEAST_TOLERANCE))
+    }
+
+    /// Context of a step from a state, with a kink of the displacement to come at `kink`.
+    pub(super) fn outlook(
+        &self,
+        scene: &Scene,
+        State { clock, .. }: &State,
+        step: &Step<'_>,
+        Course { history, until, .. }: &Course<'_>,
+        kink: f64,
+    ) -> Result<StepContext> {
+        let (Interval { time, reduced, .. }, load) = (step.interval, &step.loads[0]);
+        let age = reduced - clock.undisturbed_until;
+        let end = scene.reduced_time(clock, kink.min(*until))?;
+        let span = end - self.since;
+        let resolution = SHORTEST * self.tolerance * span;
+        let on_switch = self.on_switch(scene, step.interval, age, SHORTEST_TOUCH * resolution)?;
+        let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
+        let meeting = self.scale.coming_back(scene, load, age, time);
+        Ok(StepContext {
+            expected: self.scale.expected(scene, load, age),
+            meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
+            lasting: self.past.lasting(),
+            on_switch,
+            greatest_on_switch: if on_switch[1] > 0.0 { self.scale.greatest_potential() } else { 0.0 },
+            on_jump: stiffness_on_jump(scene, load, &history.at(time)),
+            is_last: time == kink && !is_held(*history, clock.time, time),
+            tolerance: self.tolerance,
+            agreement: self.past.agreement(),
+            steps: self.past.count() + 1.0,
+            resolution,
+            beginning: SHORTEST * self.tolerance * span.min(self.past.shortest_time()),
+            length_is_given: false,
+        })
+    }
+
+    /// Errors of u where the next given approach follows a given force, each over the glassy compliance, that a unit of a defect of
+    /// v leaves: in this step, and in all steps of bodies that have been loaded for `age`. Bodies without elastic response have the
+    /// compliance of a `touch`.
+    fn on_switch(&self, scene: &Scene, Interval { time, dt, .. }: Interval, age: f64, touch: f64) -> Result<[f64; 2]> {
+        let switch = self.scale.next_switch(time);
+        if switch.is_infinite() {
+            return Ok([0.0; 2]);
+        }
+        let left = scene.reduced_length([time, switch], switch - time)?;
+        let compliance = |t: f64| scene.material.contact_compliance(t);
+        let glassy = if compliance(0.0) > 0.0 { compliance(0.0) } else { compliance(touch) };
+        let responses = [dt, age].map(|length| (compliance(left + length) - compliance(left)) / glassy);
+        Ok(responses.map(|response| response * (MOST_ON_SWITCH / responses[1]).min(1.0)))
+    }
+}
+
+/// The response of v to an error of u of the cells that are met where the load jumps, if a force does so upwards: glassy.
+fn stiffness_on_jump(scene: &Scene, before: &Load, after: &Load) -> f64 {
+    let compliance = scene.material.contact_compliance(0.0);
+    match (before, after) {
+        (Load::Force { normal: before, .. }, Load::Force { normal: after, .. })
+            if after > before && compliance > 0.0 =>
+        {
+            1.0 / compliance
+        }
+        _ => 0.0,
+    }
+}
+
+/// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where a body is
+/// free to tilt on a small contact, whose errors are greater by its lever at the end of the grid. Where cells leave on one side,
+/// errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at the ends of a grid of length L.
+pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
+    let clock = &tried.state.clock;
+    let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
+    let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
+    let tilts = tried.trial.free.iter().any(Freedom::tilts);
+    let (cells, reach) = if tilts { tried.pressed() } else { (0, None) };
+    let leave = cells < tried.state.current.contact_cells;
+    let lever = |Extent { low, high }: Extent| {
+        let lever = |axis: usize| {
+            let (length, width) = (scene.grid.cells()[axis] as f64, (high[axis] - low[axis]) as f64);
+            if leave { length / width.max(1.0) } else { 0.5 * length / (width + 1.0) }
+        };
+        lever(0).max(lever(1)).max(1.0)
+    };
+    of_turn * reach.map_or(1.0, lever)
+}
