@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use libm::tgamma;
 use viscocontact::rheology::{GeneralizedMaxwell, Material};
+use viscocontact::states::ElasticStates;
 
 use crate::error::{Error, Result, within};
 
@@ -131,6 +132,11 @@ impl Prony {
         let shear = 0.5 * (1.0 - poisson);
         let terms: Vec<(f64, f64)> = relaxing.map(|(e, rate)| (shear * e, 1.0 / rate)).collect();
         Ok(Material::constant_poisson(GeneralizedMaxwell::new(shear * equilibrium, &terms)?, poisson)?)
+    }
+
+    /// The material on elastic states: with the Poisson's ratio that they state, else incompressible.
+    pub(crate) fn material_on(&self, states: &ElasticStates) -> Result<Material> {
+        self.material(states.poisson_ratio().unwrap_or(0.5))
     }
 }
 

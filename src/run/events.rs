@@ -111,11 +111,11 @@ impl<'a, C: RunContact> Run<'a, C> {
         let same = SAME_TIME * (to - from);
         let looks = self.looks(events, start)?;
         let mut first: Option<(usize, f64)> = None;
-        for k in 0..events.len() {
+        for (k, event) in events.iter_mut().enumerate() {
             let beyond: Vec<f64> = looks.iter().map(|look| look.beyond[k]).collect();
-            let Some(after) = events[k].follow(&beyond).filter(|_| searches) else { continue };
+            let Some(after) = event.follow(&beyond).filter(|_| searches) else { continue };
             let ends = [after - 1, after].map(|look| (looks[look].time, beyond[look]));
-            let time = crossing_within(ends, same, |time| Ok(events[k].beyond(&self.within_step(time)?)))?;
+            let time = crossing_within(ends, same, |time| Ok(event.beyond(&self.within_step(time)?)))?;
             if time <= to - same && first.is_none_or(|(_, earlier)| time < earlier) {
                 first = Some((k, time));
             }
@@ -136,11 +136,11 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice, and `end`.
     fn look_until(&self, events: &[Event<C>], looks: &mut Vec<Look>, end: Look, halved: u32) -> Result<()> {
-        let Some(start) = looks.last().filter(|_| halved < HALVINGS) else { return Ok(looks.push(end)) };
+        let Some(start) = looks.last().filter(|start| halved < HALVINGS && has_middle(start.time, end.time)) else {
+            looks.push(end);
+            return Ok(());
+        };
         let time = 0.5 * (start.time + end.time);
-        if time <= start.time || time >= end.time {
-            return Ok(looks.push(end));
-        }
         let middle = Look::of(events, &self.within_step(time)?);
         let hides = (0..events.len()).any(|k| hides_crossings([start, &middle, &end].map(|look| look.beyond[k])));
         let halved = if hides { halved + 1 } else { HALVINGS };
@@ -204,4 +204,10 @@ fn crossing_within([mut low, mut high]: [(f64, f64); 2], same: f64, at: impl Fn(
         }
     }
     Ok(high.0)
+}
+
+/// Whether there is a number between two times.
+fn has_middle(start: f64, end: f64) -> bool {
+    let time = 0.5 * (start + end);
+    time > start && time < end
 }

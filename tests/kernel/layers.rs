@@ -7,7 +7,6 @@ use std::sync::Arc;
 use super::convolve;
 use crate::common::refused::field;
 use approx::assert_abs_diff_eq;
-use viscocontact::ErrorKind;
 use viscocontact::prelude::*;
 use viscocontact::{Error, KernelError};
 

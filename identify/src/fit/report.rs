@@ -103,7 +103,7 @@ impl Fit {
         let tip = self.curves()[curve].experiment().tip();
         let depth = self.samples(curve).iter().map(|sample| sample.contact_depth).fold(0.0, f64::max);
         let step = |mut contact: StatesContact| contact.step(0.0, Load::approach(tip.approach(0.0) + depth));
-        let material = self.prony.material(tip.poisson_ratio().unwrap_or(0.5));
+        let material = self.prony.material_on(tip);
         let report = material.and_then(|material| Ok(StatesContact::new(tip, &material).and_then(step)?));
         let messages = report.iter().flat_map(StepReport::messages);
         messages.map(|text| FitWarning::Contact { curve, text }).collect()

@@ -88,8 +88,7 @@ impl Forward {
         give: f64,
         mut record: impl FnMut(Sample, Option<&[f64]>),
     ) -> Result<()> {
-        let mut contact =
-            StatesContact::new(&self.states, &prony.material(self.states.poisson_ratio().unwrap_or(0.5))?)?;
+        let mut contact = StatesContact::new(&self.states, &prony.material_on(&self.states)?)?;
         let rest = self.tip.rest();
         let mut before = drive.times.first().copied().unwrap_or_default();
         for (&time, &z) in drive.times.iter().zip(drive.drive) {
