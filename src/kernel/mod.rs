@@ -120,6 +120,23 @@ pub(crate) struct LocalKernel {
     operator: Arc<SpectralOperator>,
 }
 
+/// M = K⁻¹ of bodies that are periodic along both axes, wave by wave. The mean has a stiffness of its own.
+#[derive(Debug, Clone)]
+pub(crate) struct PeriodInverse {
+    operator: SpectralOperator,
+    own: TransformWorkspace,
+    /// The stiffness that M has for the mean \[1/m\], and the compliance of K \[m\].
+    pub(crate) mean: [f64; 2],
+}
+
+impl PeriodInverse {
+    /// out ← M field.
+    pub(crate) fn apply(&mut self, field: &[f64], out: &mut [f64], lender: &mut Workspace) {
+        out.copy_from_slice(field);
+        self.operator.apply_beside(out, &mut self.own, &mut lender.0);
+    }
+}
+
 impl InfluenceKernel {
     /// The grid the kernel was made for.
     pub fn grid(&self) -> &Grid {
@@ -313,6 +330,19 @@ impl LocalKernel {
         let inverse = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
         let work = inverse.workspace_beside(&self.operator);
         (inverse, work)
+    }
+
+    /// The inverse of a kernel that is periodic along both axes.
+    pub(crate) fn period_inverse(&self) -> Option<PeriodInverse> {
+        if self.whole.periodic != [true; 2] || self.rows.are_shared() {
+            return None;
+        }
+        let (operator, own) = self.inverse();
+        let mut inverse = PeriodInverse { operator, own, mean: [0.0; 2] };
+        let (ones, mut image, mut work) = (vec![1.0; self.rows.len()], vec![0.0; self.rows.len()], self.workspace());
+        inverse.apply(&ones, &mut image, &mut work);
+        inverse.mean = [image[0], (self.whole.response)([0, 0])];
+        Some(inverse)
     }
 
     /// The near field, [`InfluenceKernel::near`], and its work space without tiles: those of [`LocalKernel::workspace`]
