@@ -49,8 +49,17 @@ impl Window {
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let near = scene.attraction.as_ref().and_then(|_| kernel.near());
         let inverse = scene.attraction.as_ref().and_then(|_| kernel.period_inverse());
-        let mut window =
-            Window { beside, near, inverse, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+        let mut window = Window {
+            beside,
+            near,
+            inverse,
+            work,
+            kernel,
+            solver,
+            gap: None,
+            lowest_outside: f64::INFINITY,
+            indenter: None,
+        };
         window.follow(region, indenter);
         window
     }

@@ -144,6 +144,7 @@ impl AttractedStep<'_> {
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
         let (mut steepest, mut has_last, mut softness) = (0.0, false, [1.0_f64; REMEMBERED]);
+        let mut plain = false;
         for iteration in 0..=MAX_ITERATIONS {
             let gradient = self.gradient(balance, window, trial);
             if iteration == 0 {
@@ -166,18 +167,28 @@ impl AttractedStep<'_> {
                 return Err(Error::Cancelled { what: "a step" });
             }
             let pull = -self.wanted.total;
-            if matches!(step.loads[0], Load::Force { .. }) && pull > 0.0 && gradient.at_wall == 0.0 && gradient.attraction <= CARRIED * pull {
+            if matches!(step.loads[0], Load::Force { .. })
+                && pull > 0.0
+                && gradient.at_wall == 0.0
+                && gradient.attraction <= CARRIED * pull
+            {
                 return Err(AdhesionError::PulledOff { time, force: -pull * self.area() }.into());
             }
             own.report.passes += 1;
             counts.iterations += 1;
-            steepest = self.turn(balance, own, window, trial, steepest, has_last);
+            if plain {
+                let gradient = own.last[0].iter_mut().zip(&trial.solution.pressure);
+                gradient.for_each(|(direction, r)| *direction = -r);
+                steepest = 0.0;
+            } else {
+                steepest = self.turn(balance, own, window, trial, steepest, has_last);
+            }
             balance.tractions(inverse, window, &own.last[0], &mut own.image, true);
             counts.convolutions += 2;
             let (mut length, curvature) = self.length(gradient, own, window, trial);
             softness[iteration % REMEMBERED] = curvature;
             let mut kept = false;
-            for _ in 0..SHORTENINGS {
+            for _ in 0..if length > 0.0 { SHORTENINGS } else { 0 } {
                 let clipped = self.try_lift(balance, length, own, window, trial);
                 if clipped || iteration % FRESH == FRESH - 1 {
                     balance.tractions(inverse, window, &own.far, &mut own.last[1], false);
@@ -200,9 +211,11 @@ impl AttractedStep<'_> {
                 std::mem::swap(&mut own.last[1], &mut trial.solution.attraction);
                 length *= SHORTER;
             }
-            if !kept && !has_last {
+            if !kept && plain {
                 break;
             }
+            // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
+            plain = !kept && !has_last;
             has_last = kept;
             own.last[1].copy_from_slice(&trial.solution.pressure);
         }
@@ -263,7 +276,10 @@ impl AttractedStep<'_> {
         let [along, attracted] = rows.sum_terms(|k| {
             let x = balance.compliance * trial.solution.potential[k] - motion;
             let e = x - guess[k];
-            Some([e * f64::from(first[k]) * law.traction(0.0), e * (traction(gap[k] + x) - traction(gap[k] + guess[k]))])
+            Some([
+                e * f64::from(first[k]) * law.traction(0.0),
+                e * (traction(gap[k] + x) - traction(gap[k] + guess[k])),
+            ])
         });
         if along < 0.0 { (1.0 + attracted / along).max(1.0) } else { 1.0 }
     }
@@ -319,13 +335,16 @@ impl AttractedStep<'_> {
         let mut multiplier = 0.0;
         if balance.held {
             // cells at the wall that open join the mean
-            for _ in 0..2 {
-                let [sum, count] = rows.sum_terms(|k| (is_open(k) || multiplier != 0.0 && r[k] < multiplier).then_some([r[k], 1.0]));
+            let mut joins = f64::NEG_INFINITY;
+            for _ in 0..TRIES {
+                let [sum, count] = rows.sum_terms(|k| (is_open(k) || r[k] < joins).then_some([r[k], 1.0]));
                 multiplier = sum / count.max(1.0);
+                if std::mem::replace(&mut joins, multiplier) == multiplier {
+                    break;
+                }
             }
         }
-        let [attraction, at_wall] =
-            rows.sum_terms(|k| Some([r[k] - q[k], if is_open(k) { 0.0 } else { 1.0 }]));
+        let [attraction, at_wall] = rows.sum_terms(|k| Some([r[k] - q[k], if is_open(k) { 0.0 } else { 1.0 }]));
         let r = &mut solution.pressure;
         let mut most = 0.0_f64;
         for (k, r) in r.iter_mut().enumerate() {
@@ -339,7 +358,15 @@ impl AttractedStep<'_> {
     }
 
     /// Writes the next direction; returns y·r of the steepest one, y = K r.
-    fn turn(&self, balance: Balance, own: &mut Passes, window: &mut Window, trial: &Trial, before: f64, has_last: bool) -> f64 {
+    fn turn(
+        &self,
+        balance: Balance,
+        own: &mut Passes,
+        window: &mut Window,
+        trial: &Trial,
+        before: f64,
+        has_last: bool,
+    ) -> f64 {
         let Window { kernel, work, .. } = window;
         let (rows, gap, x, r) = (kernel.rows(), &trial.gap, &trial.solution.potential, &trial.solution.pressure);
         let Passes { last: [direction, last_r], far: steepest_y, .. } = own;
@@ -351,7 +378,8 @@ impl AttractedStep<'_> {
         let y = &*steepest_y;
         let [sum, free] = rows.sum_terms(|k| is_free(k).then_some([y[k], 1.0]));
         let level = if balance.held { sum / f64::max(free, 1.0) } else { 0.0 };
-        let [steepest, overlap] = rows.sum_terms(|k| is_free(k).then(|| [(y[k] - level) * r[k], (y[k] - level) * last_r[k]]));
+        let [steepest, overlap] =
+            rows.sum_terms(|k| is_free(k).then(|| [(y[k] - level) * r[k], (y[k] - level) * last_r[k]]));
         let beta = if has_last && before > 0.0 { f64::max((steepest - overlap) / before, 0.0) } else { 0.0 };
         let old = &*direction;
         let [along] = rows.sum_terms(|k| is_free(k).then(|| [r[k] * (beta * old[k] - (y[k] - level))]));
@@ -362,6 +390,17 @@ impl AttractedStep<'_> {
                 *d = if is_free(k) && (gap[k] + x[k] > 0.0 || turned > 0.0) { turned } else { 0.0 };
             }
         });
+        if balance.held {
+            // cells of the wall that open do so at the cost of the open ones: a shift of all would lift those that are pressed
+            let turned = &*direction;
+            let [sum, open] = rows.sum_terms(|k| Some([turned[k], if gap[k] + x[k] > 0.0 { 1.0 } else { 0.0 }]));
+            let level = sum / f64::max(open, 1.0);
+            direction
+                .iter_mut()
+                .zip(gap.iter().zip(x))
+                .filter(|(_, (z, x))| *z + *x > 0.0)
+                .for_each(|(d, _)| *d -= level);
+        }
         steepest
     }
 
@@ -407,7 +446,7 @@ impl AttractedStep<'_> {
                 length = 0.5 * (low + length);
             }
         }
-        (length, curvature)
+        (if start < 0.0 { length } else { 0.0 }, curvature)
     }
 
     /// Writes x + `length` d, kept to h ≥ 0, to the lift that is tried; returns whether the wall or the mean changed it.
@@ -430,8 +469,7 @@ impl AttractedStep<'_> {
         let (x, q) = (&mut solution.potential, &mut solution.attraction);
         q.iter_mut().for_each(|q| *q -= multiplier);
         let mean = |field: &[f64]| rows.sum(field) / cells;
-        let motion =
-            if self.wanted.translation { c * balance.inverse[1] * mean(q) - mean(x) } else { 0.0 };
+        let motion = if self.wanted.translation { c * balance.inverse[1] * mean(q) - mean(x) } else { 0.0 };
         let greatest = self.law.traction(0.0);
         for (((x, q), z), gap) in x.iter_mut().zip(q).zip(&mut solution.pressure).zip(gap) {
             *z = if *gap + *x <= 0.0 { (*q + greatest).max(0.0) } else { 0.0 };
