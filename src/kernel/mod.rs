@@ -235,7 +235,8 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field. An operator that
+    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field, or of the inverse of
+    /// periodic bodies. An operator that
     /// exists already counts zero.
     pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 3] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
@@ -249,7 +250,7 @@ impl InfluenceKernel {
         let of_wrapped = of_wrapped.as_ref();
         let beside = wrapped.workspace_bytes(of_wrapped) - wrapped.lent_bytes(of_wrapped, (&layout, shares));
         let wrapped = wrapped.operator_bytes(of_wrapped) + beside;
-        let has_near_field = self.has_near_field(rows.cells());
+        let has_near_field = self.has_near_field(rows.cells()) || self.periodic == [true; 2];
         [operator + layout.workspace_bytes(shares), wrapped, if has_near_field { wrapped } else { 0 }]
     }
 
