@@ -184,7 +184,7 @@ fn springs_on_periodic_bodies_are_in_balance() {
     let (mut full, mut partial) = (0, 0);
     for scene in 0..12 {
         let mut draws = Draws::new(900 + scene);
-        let range = draws.between(0.5, 1.5);
+        let range = draws.between(1.2, 2.0);
         let law: std::sync::Arc<dyn Attraction> = match scene % 3 {
             0 => std::sync::Arc::new(ExponentialAttraction::new(1.0, range).unwrap()),
             1 => std::sync::Arc::new(VanDerWaals::new(1.0, range).unwrap()),
