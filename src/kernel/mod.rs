@@ -120,6 +120,23 @@ pub(crate) struct LocalKernel {
     operator: Arc<SpectralOperator>,
 }
 
+/// M = K⁻¹ of bodies that are periodic along both axes, wave by wave. The mean has a stiffness of its own.
+#[derive(Debug, Clone)]
+pub(crate) struct PeriodInverse {
+    operator: SpectralOperator,
+    own: TransformWorkspace,
+    /// The stiffness that M has for the mean \[1/m\], and the compliance of K \[m\].
+    pub(crate) mean: [f64; 2],
+}
+
+impl PeriodInverse {
+    /// out ← M field.
+    pub(crate) fn apply(&mut self, field: &[f64], out: &mut [f64], lender: &mut Workspace) {
+        out.copy_from_slice(field);
+        self.operator.apply_beside(out, &mut self.own, &mut lender.0);
+    }
+}
+
 impl InfluenceKernel {
     /// The grid the kernel was made for.
     pub fn grid(&self) -> &Grid {
@@ -218,7 +235,8 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field. An operator that
+    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field, or of the inverse of
+    /// periodic bodies. An operator that
     /// exists already counts zero.
     pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 3] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
@@ -232,7 +250,7 @@ impl InfluenceKernel {
         let of_wrapped = of_wrapped.as_ref();
         let beside = wrapped.workspace_bytes(of_wrapped) - wrapped.lent_bytes(of_wrapped, (&layout, shares));
         let wrapped = wrapped.operator_bytes(of_wrapped) + beside;
-        let has_near_field = self.has_near_field(rows.cells());
+        let has_near_field = self.has_near_field(rows.cells()) || self.periodic == [true; 2];
         [operator + layout.workspace_bytes(shares), wrapped, if has_near_field { wrapped } else { 0 }]
     }
 
@@ -313,6 +331,19 @@ impl LocalKernel {
         let inverse = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
         let work = inverse.workspace_beside(&self.operator);
         (inverse, work)
+    }
+
+    /// The inverse of a kernel that is periodic along both axes.
+    pub(crate) fn period_inverse(&self) -> Option<PeriodInverse> {
+        if self.whole.periodic != [true; 2] || self.rows.are_shared() {
+            return None;
+        }
+        let (operator, own) = self.inverse();
+        let mut inverse = PeriodInverse { operator, own, mean: [0.0; 2] };
+        let (ones, mut image, mut work) = (vec![1.0; self.rows.len()], vec![0.0; self.rows.len()], self.workspace());
+        inverse.apply(&ones, &mut image, &mut work);
+        inverse.mean = [image[0], (self.whole.response)([0, 0])];
+        Some(inverse)
     }
 
     /// The near field, [`InfluenceKernel::near`], and its work space without tiles: those of [`LocalKernel::workspace`]

@@ -177,3 +177,60 @@ fn elastic_rough_adhesion_is_the_least_energy_of_a_dense_matrix() {
     );
     assert!(worst < 1e-4 && 20 * jumps <= states, "{worst} {jumps} {states}");
 }
+
+/// On periodic bodies a spring carries k (drive − ω), in full contact too, whose ω is the highest: and a state is in balance with the attraction.
+#[test]
+fn springs_on_periodic_bodies_are_in_balance() {
+    let (mut full, mut partial) = (0, 0);
+    for scene in 0..12 {
+        let mut draws = Draws::new(900 + scene);
+        let range = draws.between(1.2, 2.0);
+        let law: std::sync::Arc<dyn Attraction> = match scene % 3 {
+            0 => std::sync::Arc::new(ExponentialAttraction::new(1.0, range).unwrap()),
+            1 => std::sync::Arc::new(VanDerWaals::new(1.0, range).unwrap()),
+            _ => std::sync::Arc::new(Dugdale::new(1.0, range).unwrap()),
+        };
+        let waves: Vec<f64> = (0..3).map(|_| draws.between(0.02, 0.2)).collect();
+        let turn = std::f64::consts::TAU / 4.0;
+        let rough = move |x: f64, y: f64| {
+            waves[0] * (turn * x).cos() + waves[1] * (2.0 * turn * y).cos() + waves[2] * (turn * (x + y)).sin()
+        };
+        let grid = Grid::square(24, 4.0).unwrap();
+        let creeping = GeneralizedMaxwell::new(0.25, &[(0.5, 1.0)]).unwrap();
+        let material: Box<dyn Rheology> =
+            if draws.chance(0.5) { Box::new(creeping) } else { Box::new(Elastic::new(0.25).unwrap()) };
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&FnGeometry::new(rough))
+            .material(Material::incompressible(material))
+            .kernel(InfluenceKernel::periodic(&grid).unwrap())
+            .attraction(std::sync::Arc::clone(&law))
+            .settings(Settings::default().with_edge(Edge::Allow))
+            .build()
+            .unwrap();
+        let stiffness = draws.scale(10.0, 1e5);
+        for drive in [0.3, 1.0, 0.2, 0.5, -0.2, 0.1, -0.6] {
+            let report = contact.step(0.3, Load::spring(stiffness, drive)).unwrap();
+            let carried = stiffness * (drive - report.approach);
+            let mut traction = vec![0.0; contact.grid().len()];
+            contact.traction_into(&mut traction).unwrap();
+            let scale = traction.iter().map(|q| q.abs()).sum::<f64>() * grid.cell_area();
+            let rounding = 1e-12 * stiffness;
+            assert!(
+                (report.force - carried).abs() < 1e-9 * scale + rounding,
+                "scene {scene}, drive {drive}: {} {carried}",
+                report.force
+            );
+            let mut gap = traction.clone();
+            contact.gap_into(&mut gap).unwrap();
+            for (k, (q, h)) in traction.iter().zip(&gap).enumerate() {
+                let z = contact.pressure()[k];
+                let s = law.traction(h.max(0.0));
+                assert!(*h > -1e-9 && (z == 0.0 || *h < 1e-9), "scene {scene}, cell {k}: {z} {h}");
+                assert!((z - s - q).abs() < 3e-4 * law.traction(0.0), "scene {scene}, cell {k}: {z} {s} {q}");
+            }
+            if report.contact_cells == grid.len() { full += 1 } else { partial += 1 }
+        }
+    }
+    println!("{full} states of full contact, {partial} others");
+    assert!(full > 10 && partial > 10, "{full} {partial}");
+}

@@ -6,7 +6,7 @@ pub(crate) mod region;
 
 use crate::contact::{Indenter, Region, Scene, Solver, Trial};
 use crate::geometry::Gap;
-use crate::kernel::{LocalKernel, Workspace};
+use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
 use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
@@ -17,6 +17,8 @@ pub(crate) struct Window {
     pub(in crate::contact) work: Workspace,
     /// The near field of the kernel, and its work space, where surfaces attract each other.
     near: Option<(LocalKernel, Workspace)>,
+    /// The inverse of the kernel of periodic bodies whose surfaces attract each other.
+    pub(in crate::contact) inverse: Option<PeriodInverse>,
     solver: ContactSolver,
     /// The gap of the indenter on the region, if that is not the whole grid.
     gap: Option<Gap>,
@@ -46,8 +48,18 @@ impl Window {
         let beside = HaloExchange::new(&rows, rows.cells()[1])
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let near = scene.attraction.as_ref().and_then(|_| kernel.near());
-        let mut window =
-            Window { beside, near, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+        let inverse = scene.attraction.as_ref().and_then(|_| kernel.period_inverse());
+        let mut window = Window {
+            beside,
+            near,
+            inverse,
+            work,
+            kernel,
+            solver,
+            gap: None,
+            lowest_outside: f64::INFINITY,
+            indenter: None,
+        };
         window.follow(region, indenter);
         window
     }

@@ -12,6 +12,7 @@
 //!
 //! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K.
 
+mod descent;
 mod energy;
 mod near_field;
 mod passes;
@@ -84,14 +85,20 @@ impl AttractedStep<'_> {
     fn iterate(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Result<()> {
         let (state, mut counts) = (self.state, Counts::default());
         own.report = PassReport::default();
-        self.guess(window, trial, &mut counts);
-        if !self.solve_near(own, window, trial, &mut counts)? {
-            self.solve_whole(own, window, trial, &mut counts)?;
+        if window.inverse.is_some() {
+            self.descend_in_gap(own, window, trial, &mut counts)?;
+        } else {
+            self.guess(window, trial, &mut counts);
+            if !self.solve_near(own, window, trial, &mut counts)? {
+                self.solve_whole(own, window, trial, &mut counts)?;
+            }
         }
         trial.solution.counts = counts;
         self.open_gap(window, trial);
         own.report.released = self.area() * (self.energy_at_start(trial) - self.energy_at_end(trial));
-        own.report.response = self.response(own, trial);
+        if window.inverse.is_none() {
+            own.report.response = self.response(own, trial);
+        }
         own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
         Ok(())
     }

@@ -1,0 +1,480 @@
+//! Steps of periodic bodies: conjugate gradients in the gap.
+//!
+//! On a period K has an inverse M, wave by wave. With the lift x = h − z of the surface over its gap z before any traction, the creep of the past
+//! included, the net traction of a state in balance is q = M x/c + p, and its energy E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and
+//! p differ between loads: a force fixes the mean of q, a spring sets its stiffness in series with that of the bodies, and a given approach of bodies
+//! whose mean is held fixes the mean of h, with a multiplier λ. So the loads are in balance in every iteration.
+//!
+//! E falls along conjugate directions (Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 16, 1969) of the gradient r = q + s(h) − λ on the cells that are
+//! open or open, with K as their preconditioner; the wall is a bound (two-metric projection, Bertsekas, SIAM J. Control Optim. 20, 1982). A step
+//! along them is exact without transforms. Where E bends down along a direction, surfaces jump: far from balance the step is that of the convex part
+//! of E, which stays in the valley of the state before, and near balance it leads to the first minimum.
+
+use std::sync::atomic::Ordering;
+
+use super::{AttractedStep, CHANGE, GREATEST_CHANGE, Passes};
+use crate::contact::state::State;
+use crate::contact::step::request::Trial;
+use crate::contact::window::Window;
+use crate::error::{AdhesionError, Error, Result, StepError};
+use crate::kernel::PeriodInverse;
+use crate::load::Load;
+use crate::parallel::{Rows, for_each_band};
+use crate::solver::{Counts, ModeCoefficients};
+
+/// Greatest number of iterations.
+const MAX_ITERATIONS: usize = 2000;
+/// Least curvature of E along a direction, over that of its convex part.
+const LEAST_CURVATURE: f64 = 1e-3;
+/// Where the greatest |r| is a smaller part of the greatest traction, a step of negative curvature leads to the first minimum; else it has the
+/// length of so many steps of the convex part.
+const NEAR: f64 = 0.1;
+const LONGEST: f64 = 4.0;
+/// What a line search leaves of the slope, and how often it tries.
+const SLOPE_LEFT: f64 = 0.1;
+const TRIES: usize = 10;
+/// A step that raises E is shortened by this factor, so many times.
+const SHORTER: f64 = 0.4;
+const SHORTENINGS: usize = 12;
+/// Rounding of E, over the sum of its parts.
+const ROUNDING: f64 = 1e-13;
+/// A direction descends by this part of the steepest one, or the search begins anew.
+const LEAST_DESCENT: f64 = 1e-3;
+/// Curvature is measured by a change of the gap by this part of the range.
+const DIFFERENCE: f64 = 1e-4;
+/// At this curvature, over that of the convex part, the tolerance of r is what was asked; below, r is to be smaller by the same factor, since the error
+/// is r over the curvature. The least of so many iterations counts.
+const SOFT: f64 = 0.1;
+const REMEMBERED: usize = 8;
+const SMALLEST: f64 = 1e-3;
+/// q is computed afresh after so many iterations.
+const FRESH: usize = 50;
+/// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
+const CARRIED: f64 = 0.5;
+
+/// The equations of a step: q = M x/c + p, where M gives the mean its stiffness.
+#[derive(Clone, Copy)]
+struct Balance {
+    compliance: f64,
+    /// The stiffness of the mean of x, which replaces that of M.
+    of_mean: f64,
+    /// p.
+    offset: f64,
+    /// Compliance of the mean, in the preconditioner.
+    soft: f64,
+    /// Whether the mean of x is given.
+    held: bool,
+    /// The stiffness of M, and the compliance of K, of the mean.
+    inverse: [f64; 2],
+}
+
+impl Balance {
+    /// q of the lift x.
+    fn tractions(&self, inverse: &mut PeriodInverse, window: &mut Window, x: &[f64], q: &mut [f64], linear: bool) {
+        inverse.apply(x, q, &mut window.work);
+        let mean = window.kernel.rows().sum(x) / x.len() as f64;
+        let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
+        q.iter_mut().for_each(|q| *q = *q / self.compliance + add);
+    }
+}
+
+/// The gradient of E on the cells that may move.
+#[derive(Clone, Copy, Default)]
+struct Gradient {
+    /// λ.
+    multiplier: f64,
+    /// The greatest |r|, over the greatest traction.
+    greatest: f64,
+    /// Σ s, and the number of cells at the wall.
+    attraction: f64,
+    at_wall: f64,
+}
+
+impl AttractedStep<'_> {
+    fn balance(&self, window: &Window, inverse: &PeriodInverse) -> Balance {
+        let (c, cells, wanted) = (self.given[0], window.kernel.rows().len() as f64, self.wanted);
+        let PeriodInverse { mean: [stiffness, compliance], .. } = *inverse;
+        let held = compliance == 0.0 && !wanted.translation;
+        let [of_mean, offset] = match self.step.loads[0] {
+            Load::Approach { .. } if held => [0.0, 0.0],
+            Load::Approach { .. } => [1.0 / (c * compliance), 0.0],
+            Load::Force { .. } => [0.0, wanted.total / cells],
+            Load::Spring { stiffness, drive, .. } => {
+                let of_mean = 1.0 / (c * compliance + cells * self.area() / stiffness);
+                [of_mean, of_mean * (drive - self.step.indenter.gap().datum)]
+            }
+        };
+        let soft = 1.0 / (of_mean + 0.5 * stiffness / c);
+        Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance] }
+    }
+
+    /// Finishes z, s and K (z − s) of the trial from their guess.
+    pub(super) fn descend_in_gap(
+        &self,
+        own: &mut Passes,
+        window: &mut Window,
+        trial: &mut Trial,
+        counts: &mut Counts,
+    ) -> Result<()> {
+        let Some(mut inverse) = window.inverse.take() else { return Ok(()) };
+        let solved = self.descend_with(&mut inverse, own, window, trial, counts);
+        window.inverse = Some(inverse);
+        solved
+    }
+
+    fn descend_with(
+        &self,
+        inverse: &mut PeriodInverse,
+        own: &mut Passes,
+        window: &mut Window,
+        trial: &mut Trial,
+        counts: &mut Counts,
+    ) -> Result<()> {
+        let AttractedStep { step, stop, law, .. } = *self;
+        let (limit, greatest, time) = (CHANGE * stop.tolerance, law.traction(0.0), step.interval.time);
+        let balance = self.balance(window, inverse);
+        self.open_gap(window, trial);
+        trial.free[0] = self.wanted;
+        trial.reach = if self.state.is_undisturbed() { 0.0 } else { self.reach() };
+        let Trial { gap, reach, solution, .. } = &mut *trial;
+        let moved = self.lift(balance, *reach, gap, [&mut solution.potential, &mut solution.attraction]);
+        if moved || self.state.extrapolation.refresh_is_due() {
+            balance.tractions(inverse, window, &trial.solution.potential, &mut trial.solution.attraction, false);
+            counts.convolutions += 1;
+        }
+        let mut energy = self.energy_in_gap(balance, window, trial);
+        let (mut steepest, mut has_last, mut softness) = (0.0, false, [1.0_f64; REMEMBERED]);
+        let mut plain = false;
+        for iteration in 0..=MAX_ITERATIONS {
+            let gradient = self.gradient(balance, window, trial);
+            if iteration == 0 {
+                let first = own.first.iter_mut().zip(&trial.solution.pressure);
+                first.for_each(|(first, r)| *first = (r / greatest) as f32);
+            }
+            if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
+                let what = "the residual of the contact problem";
+                return Err(Error::Step(StepError::Overflow { time, what }));
+            }
+            let soft = softness.iter().fold(1.0_f64, |least, &soft| least.min(soft));
+            if gradient.greatest <= limit * (soft / SOFT).clamp(SMALLEST, 1.0) {
+                trial.solution.residual = gradient.greatest / CHANGE;
+                self.finish(balance, gradient.multiplier, trial);
+                let still = iteration == 0 || self.state.is_undisturbed();
+                own.report.response = if still { 1.0 } else { self.response_in_gap(balance, own, trial) };
+                return Ok(());
+            }
+            if stop.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                return Err(Error::Cancelled { what: "a step" });
+            }
+            let pull = -self.wanted.total;
+            if matches!(step.loads[0], Load::Force { .. })
+                && pull > 0.0
+                && gradient.at_wall == 0.0
+                && gradient.attraction <= CARRIED * pull
+            {
+                return Err(AdhesionError::PulledOff { time, force: -pull * self.area() }.into());
+            }
+            own.report.passes += 1;
+            counts.iterations += 1;
+            if plain {
+                let gradient = own.last[0].iter_mut().zip(&trial.solution.pressure);
+                gradient.for_each(|(direction, r)| *direction = -r);
+                steepest = 0.0;
+            } else {
+                steepest = self.turn(balance, own, window, trial, steepest, has_last);
+            }
+            balance.tractions(inverse, window, &own.last[0], &mut own.image, true);
+            counts.convolutions += 2;
+            let (mut length, curvature) = self.length(gradient, own, window, trial);
+            softness[iteration % REMEMBERED] = curvature;
+            let mut kept = false;
+            for _ in 0..if length > 0.0 { SHORTENINGS } else { 0 } {
+                let clipped = self.try_lift(balance, length, own, window, trial);
+                if clipped || iteration % FRESH == FRESH - 1 {
+                    balance.tractions(inverse, window, &own.far, &mut own.last[1], false);
+                    counts.convolutions += 1;
+                } else {
+                    let tractions = trial.solution.attraction.iter().zip(&own.image);
+                    own.last[1].iter_mut().zip(tractions).for_each(|(next, (q, image))| *next = q + length * image);
+                }
+                std::mem::swap(&mut own.far, &mut trial.solution.potential);
+                std::mem::swap(&mut own.last[1], &mut trial.solution.attraction);
+                let tried = self.energy_in_gap(balance, window, trial);
+                let rise = (tried[0] - energy[0]) / energy[1];
+                if rise <= ROUNDING {
+                    own.report.rise = own.report.rise.max(rise - ROUNDING);
+                    (energy, kept) = (tried, true);
+                    break;
+                }
+                own.report.rejected += 1;
+                std::mem::swap(&mut own.far, &mut trial.solution.potential);
+                std::mem::swap(&mut own.last[1], &mut trial.solution.attraction);
+                length *= SHORTER;
+            }
+            if !kept && plain {
+                break;
+            }
+            // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
+            plain = !kept && !has_last;
+            has_last = kept;
+            own.last[1].copy_from_slice(&trial.solution.pressure);
+        }
+        let change = self.gradient(balance, window, trial).greatest;
+        Err(AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance: limit }.into())
+    }
+
+    /// Writes the lift x of the guess, and its q but for what the wall changes; returns whether that is so.
+    fn lift(&self, balance: Balance, reach: f64, gap: &[f64], [x, q]: [&mut [f64]; 2]) -> bool {
+        let (state, rows, datum) = (self.state, self.state.region.rows(), self.step.indenter.gap().datum);
+        if state.is_undisturbed() {
+            let lowest = rows.least(gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
+            let at = match self.step.loads[0] {
+                Load::Approach { .. } => 0.0,
+                Load::Force { .. } => lowest,
+                Load::Spring { drive, .. } => lowest.min(drive - datum),
+            };
+            x.fill(-at);
+            q.fill(balance.offset - balance.of_mean * at);
+        } else {
+            let (now, before, c) = (&state.current, &state.previous, balance.compliance);
+            let ahead = |now: f64, before: f64| now + reach * (now - before);
+            let at = ahead(now.motions[0].approach, before.motions[0].approach) - datum;
+            let at = if self.wanted.translation { at } else { 0.0 };
+            let [now, before] = [&now.solution, &before.solution];
+            for_each_band([&mut *x, &mut *q], |first, [x, q]| {
+                for ((x, q), k) in x.iter_mut().zip(q).zip(first..) {
+                    *x = c * ahead(now.potential[k], before.potential[k]) - at;
+                    *q = ahead(now.pressure[k] - now.attraction[k], before.pressure[k] - before.attraction[k]);
+                }
+            });
+            let [of_x, of_q] = [&*x, &*q].map(|field| rows.sum(field) / field.len() as f64);
+            let shift = balance.of_mean * of_x + balance.offset - of_q;
+            q.iter_mut().for_each(|q| *q += shift);
+        }
+        self.project(balance, &rows, gap, x)
+    }
+
+    /// How far the guess reaches ahead, in last steps.
+    fn reach(&self) -> f64 {
+        let State { current, previous, extrapolation, .. } = self.state;
+        let changes = current.solution.attraction.iter().zip(&previous.solution.attraction);
+        let change = changes.map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
+        if change > GREATEST_CHANGE * self.law.traction(0.0) {
+            return 0.0;
+        }
+        extrapolation.reach(self.step.interval.dt)
+    }
+
+    /// How the surfaces respond: with the change e of the lift from its guess, e·Me/(−e·r), which is 1/(1 − λ) for a mode that attraction
+    /// softens by the part λ.
+    fn response_in_gap(&self, balance: Balance, own: &mut Passes, trial: &Trial) -> f64 {
+        let (law, gap, rows) = (self.law, &trial.gap, self.state.region.rows());
+        let Passes { far: guess, last: [q, _], first, .. } = own;
+        self.lift(balance, trial.reach, gap, [guess, q]);
+        let motion = trial.solution.motions[0].0[0];
+        let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
+        let [along, attracted] = rows.sum_terms(|k| {
+            let x = balance.compliance * trial.solution.potential[k] - motion;
+            let e = x - guess[k];
+            Some([
+                e * f64::from(first[k]) * law.traction(0.0),
+                e * (traction(gap[k] + x) - traction(gap[k] + guess[k])),
+            ])
+        });
+        if along < 0.0 { (1.0 + attracted / along).max(1.0) } else { 1.0 }
+    }
+
+    /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.
+    fn project(&self, balance: Balance, rows: &Rows, gap: &[f64], x: &mut [f64]) -> bool {
+        let below = x.iter().zip(gap).any(|(x, z)| z + x < 0.0);
+        if !balance.held {
+            if below {
+                x.iter_mut().zip(gap).for_each(|(x, z)| *x = x.max(-z));
+            }
+            return below;
+        }
+        let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
+        let mut shift = 0.0;
+        for _ in 0..SHORTENINGS * 4 {
+            let [sum, free] = rows.sum_terms(|k| {
+                let moved = x[k] + shift;
+                Some(if gap[k] + moved > 0.0 { [moved, 1.0] } else { [-gap[k], 0.0] })
+            });
+            if sum.abs() <= scale || free == 0.0 {
+                break;
+            }
+            shift -= sum / free;
+        }
+        if below || shift != 0.0 {
+            x.iter_mut().zip(gap).for_each(|(x, z)| *x = (*x + shift).max(-z));
+        }
+        below || shift != 0.0
+    }
+
+    /// E over the area of a cell, and the sum of its parts.
+    fn energy_in_gap(&self, balance: Balance, window: &Window, trial: &Trial) -> [f64; 2] {
+        let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
+        window.kernel.rows().sum_terms(|k| {
+            let (h, stored) = (gap[k] + x[k], 0.5 * x[k] * (q[k] + balance.offset));
+            let attracted = if h.is_finite() { self.law.energy(h.max(0.0)) } else { 0.0 };
+            Some([stored - attracted, stored.abs() + attracted + f64::MIN_POSITIVE])
+        })
+    }
+
+    /// Writes r to the pressure.
+    fn gradient(&self, balance: Balance, window: &Window, trial: &mut Trial) -> Gradient {
+        let (law, gap, rows) = (self.law, &trial.gap, window.kernel.rows());
+        let Trial { solution, .. } = trial;
+        let (x, q, r) = (&solution.potential, &solution.attraction, &mut solution.pressure);
+        let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
+        for_each_band([&mut *r], |first, [r]| {
+            r.iter_mut().zip(first..).for_each(|(r, k)| *r = q[k] + traction(gap[k] + x[k]));
+        });
+        let is_open = |k: usize| gap[k] + x[k] > 0.0;
+        let r = &*r;
+        let mut multiplier = 0.0;
+        if balance.held {
+            // cells at the wall that open join the mean
+            let mut joins = f64::NEG_INFINITY;
+            for _ in 0..TRIES {
+                let [sum, count] = rows.sum_terms(|k| (is_open(k) || r[k] < joins).then_some([r[k], 1.0]));
+                multiplier = sum / count.max(1.0);
+                if std::mem::replace(&mut joins, multiplier) == multiplier {
+                    break;
+                }
+            }
+        }
+        let [attraction, at_wall] = rows.sum_terms(|k| Some([r[k] - q[k], if is_open(k) { 0.0 } else { 1.0 }]));
+        let r = &mut solution.pressure;
+        let mut most = 0.0_f64;
+        for (k, r) in r.iter_mut().enumerate() {
+            *r -= multiplier;
+            if !is_open(k) && *r >= 0.0 {
+                *r = 0.0;
+            }
+            most = if r.is_nan() { f64::NAN } else { most.max(r.abs()) };
+        }
+        Gradient { multiplier, greatest: most / law.traction(0.0), attraction, at_wall }
+    }
+
+    /// Writes the next direction; returns y·r of the steepest one, y = K r.
+    fn turn(
+        &self,
+        balance: Balance,
+        own: &mut Passes,
+        window: &mut Window,
+        trial: &Trial,
+        before: f64,
+        has_last: bool,
+    ) -> f64 {
+        let Window { kernel, work, .. } = window;
+        let (rows, gap, x, r) = (kernel.rows(), &trial.gap, &trial.solution.potential, &trial.solution.pressure);
+        let Passes { last: [direction, last_r], far: steepest_y, .. } = own;
+        kernel.apply(r, steepest_y, work);
+        let is_free = |k: usize| gap[k] + x[k] > 0.0 || r[k] < 0.0;
+        let c = balance.compliance;
+        let mean = (balance.soft - c * balance.inverse[1]) * rows.sum(r) / r.len() as f64;
+        steepest_y.iter_mut().for_each(|y| *y = c * *y + mean);
+        let y = &*steepest_y;
+        let [sum, free] = rows.sum_terms(|k| is_free(k).then_some([y[k], 1.0]));
+        let level = if balance.held { sum / f64::max(free, 1.0) } else { 0.0 };
+        let [steepest, overlap] =
+            rows.sum_terms(|k| is_free(k).then(|| [(y[k] - level) * r[k], (y[k] - level) * last_r[k]]));
+        let beta = if has_last && before > 0.0 { f64::max((steepest - overlap) / before, 0.0) } else { 0.0 };
+        let old = &*direction;
+        let [along] = rows.sum_terms(|k| is_free(k).then(|| [r[k] * (beta * old[k] - (y[k] - level))]));
+        let beta = if beta > 0.0 && along < -LEAST_DESCENT * steepest { beta } else { 0.0 };
+        for_each_band([&mut *direction], |first, [direction]| {
+            for (d, k) in direction.iter_mut().zip(first..) {
+                let turned = if beta > 0.0 { beta * *d } else { 0.0 } - (y[k] - level);
+                *d = if is_free(k) && (gap[k] + x[k] > 0.0 || turned > 0.0) { turned } else { 0.0 };
+            }
+        });
+        if balance.held {
+            // cells of the wall that open do so at the cost of the open ones: a shift of all would lift those that are pressed
+            let turned = &*direction;
+            let [sum, open] = rows.sum_terms(|k| Some([turned[k], if gap[k] + x[k] > 0.0 { 1.0 } else { 0.0 }]));
+            let level = sum / f64::max(open, 1.0);
+            direction
+                .iter_mut()
+                .zip(gap.iter().zip(x))
+                .filter(|(_, (z, x))| *z + *x > 0.0)
+                .for_each(|(d, _)| *d -= level);
+        }
+        steepest
+    }
+
+    /// The length of the step along the direction, and its curvature over that of the convex part.
+    fn length(&self, gradient: Gradient, own: &Passes, window: &Window, trial: &Trial) -> (f64, f64) {
+        let (law, rows, gap) = (self.law, window.kernel.rows(), &trial.gap);
+        let (x, q) = (&trial.solution.potential, &trial.solution.attraction);
+        let (d, image) = (&own.last[0], &own.image);
+        let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
+        let most = d.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
+        let small = DIFFERENCE * law.range() / most;
+        let [start, convex, softened] = rows.sum_terms(|k| {
+            (d[k] != 0.0).then(|| {
+                let h = gap[k] + x[k];
+                let s = traction(h);
+                let softened = if h > 0.0 { (s - traction(h + small * d[k])) * d[k] / small } else { 0.0 };
+                [(q[k] + s - gradient.multiplier) * d[k], d[k] * image[k], softened]
+            })
+        });
+        let slope = |length: f64| {
+            let [attracted] = rows.sum_terms(|k| {
+                (d[k] != 0.0).then(|| [(q[k] + traction(gap[k] + x[k] + length * d[k]) - gradient.multiplier) * d[k]])
+            });
+            attracted + length * convex
+        };
+        let curvature = (convex - softened) / convex;
+        let bends_down = curvature <= LEAST_CURVATURE;
+        let mut length = if bends_down { -LONGEST * start / convex } else { -start / (convex * curvature) };
+        let (mut low, mut high) = (0.0, None);
+        for _ in 0..TRIES {
+            let at = slope(length);
+            if at.abs() <= SLOPE_LEFT * start.abs() {
+                break;
+            }
+            if at < 0.0 {
+                low = length;
+                if bends_down && gradient.greatest > NEAR {
+                    break;
+                }
+                length = high.map_or(2.0 * length, |high| 0.5 * (low + high));
+            } else {
+                high = Some(length);
+                length = 0.5 * (low + length);
+            }
+        }
+        (if start < 0.0 { length } else { 0.0 }, curvature)
+    }
+
+    /// Writes x + `length` d, kept to h ≥ 0, to the lift that is tried; returns whether the wall or the mean changed it.
+    fn try_lift(&self, balance: Balance, length: f64, own: &mut Passes, window: &Window, trial: &Trial) -> bool {
+        let (x, gap) = (&trial.solution.potential, &trial.gap);
+        let Passes { far: tried, last: [direction, _], .. } = own;
+        for_each_band([&mut *tried], |first, [tried]| {
+            for (tried, k) in tried.iter_mut().zip(first..) {
+                *tried = x[k] + length * direction[k];
+            }
+        });
+        self.project(balance, window.kernel.rows(), gap, tried)
+    }
+
+    /// From x and q of the trial its z, s and K (z − s), and its motion.
+    fn finish(&self, balance: Balance, multiplier: f64, trial: &mut Trial) {
+        let (c, cells) = (balance.compliance, trial.gap.len() as f64);
+        let rows = self.state.region.rows();
+        let Trial { solution, gap, .. } = trial;
+        let (x, q) = (&mut solution.potential, &mut solution.attraction);
+        q.iter_mut().for_each(|q| *q -= multiplier);
+        let mean = |field: &[f64]| rows.sum(field) / cells;
+        let motion = if self.wanted.translation { c * balance.inverse[1] * mean(q) - mean(x) } else { 0.0 };
+        let greatest = self.law.traction(0.0);
+        for (((x, q), z), gap) in x.iter_mut().zip(q).zip(&mut solution.pressure).zip(gap) {
+            *z = if *gap + *x <= 0.0 { (*q + greatest).max(0.0) } else { 0.0 };
+            (*x, *q) = ((*x + motion) / c, *z - *q);
+        }
+        solution.motions[0] = ModeCoefficients([motion, 0.0, 0.0]);
+    }
+}
