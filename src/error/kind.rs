@@ -29,7 +29,7 @@ impl Error {
     /// use viscocontact::{ErrorKind, prelude::*};
     ///
     /// assert_eq!(Sphere::new(-1.0).unwrap_err().kind(), ErrorKind::Value);
-    /// assert_eq!(HeightMap::from_file("absent.sdf").unwrap_err().kind(), ErrorKind::File);
+    /// assert_eq!(HeightMap::from_sdf(&b"no map"[..]).unwrap_err().kind(), ErrorKind::File);
     /// ```
     pub fn kind(&self) -> ErrorKind {
         match self {

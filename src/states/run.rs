@@ -13,6 +13,7 @@ use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::control::{StepControl, load_at};
+use crate::states::run_control::StatesControl;
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
 
@@ -50,18 +51,6 @@ impl StatesContact {
     ) -> StatesRun<'static> {
         Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
-}
-
-/// The control of the steps of a run, and the state at the start of the last one.
-#[derive(Debug, Clone)]
-pub struct StatesControl {
-    /// The load that acts; unknown before the first step.
-    pub(super) load: Option<Load>,
-    tolerance: f64,
-    before: StatesContact,
-    pub(super) steps: StepControl,
-    /// Whether the last step was taken in two halves.
-    halved: bool,
 }
 
 impl Driven for StatesContact {

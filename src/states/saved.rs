@@ -19,7 +19,7 @@ use crate::states::contact::StatesContact;
 use crate::states::control::SavedControl;
 use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
-use crate::states::run::StatesControl;
+use crate::states::run_control::StatesControl;
 
 /// The contents of a file.
 #[derive(Serialize, Deserialize)]

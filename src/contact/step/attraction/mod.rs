@@ -14,6 +14,7 @@
 
 mod descent;
 mod energy;
+mod gap_direction;
 mod near_field;
 mod passes;
 
