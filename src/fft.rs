@@ -158,7 +158,7 @@ impl RealPlane {
     }
 }
 
-/// The Fourier coefficients of a real field on `cells` points, as those of a [`RealPlane`], normalised so that the sum of all waves is the
+/// The Fourier coefficients of a real field on `cells` points, in the order of a [`RealPlane`], normalised so that the sum of all waves is the
 /// field.
 pub(crate) fn fourier_coefficients(field: &[f64], cells: [usize; 2]) -> Vec<Complex64> {
     let mut plane = RealPlane::new(cells);

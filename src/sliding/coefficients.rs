@@ -141,9 +141,9 @@ impl Row<'_> {
 #[derive(Debug)]
 pub(super) struct Rules([GaussLegendre; POINTS.len()]);
 
-/// From this half length over the reach on, the moments are those of the end of the panel.
+/// From this half length over the reach on, the end of the panel alone has moments.
 const STEEP: f64 = 1e5;
-/// Below it they are those of a constant and a straight line.
+/// Below it a constant and a straight line alone have moments.
 const FLAT: f64 = 1e-9;
 
 impl Rules {

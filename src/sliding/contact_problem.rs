@@ -22,7 +22,7 @@ const FIRST_PART: f64 = 0.3;
 const SLACK: f64 = 10.0;
 /// A negative pressure of this part of the greatest is rounding.
 const ROUNDING: f64 = 1e-9;
-/// The least range of the gap in contact, over that of the whole gap.
+/// The least range of the gap in contact, over the range of the whole gap.
 const FLAT: f64 = 1e-4;
 
 /// Gap and load.

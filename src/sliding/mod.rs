@@ -5,7 +5,7 @@
 //! contact of a velocity and a load, however long the relaxation times are. To step there takes as many steps as the longest of them:
 //! [`ViscoelasticContact::toward_steady`] is for watching the approach.
 //!
-//! Friction is that of hysteresis: the surfaces have none of their own.
+//! All friction comes from hysteresis: the surfaces have none.
 
 mod coefficients;
 mod contact_problem;
@@ -102,7 +102,7 @@ impl fmt::Display for SlidingReport {
 }
 
 impl Builder {
-    /// A contact in steady motion, for [`SteadySliding::at`]: the parts are those of [`Builder::build`]. All fields take the whole grid.
+    /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of [`Builder::build`]. All fields take the whole grid.
     ///
     /// The bodies are periodic along both axes ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic),
     /// [`InfluenceKernel::from_spectrum`](crate::InfluenceKernel::from_spectrum), layers that are), and so must the shape be: a height map
@@ -151,7 +151,7 @@ impl Builder {
 fn prescribed(load: Load) -> RigidMotion {
     let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
     let approach = if let Load::Approach { approach, .. } = load { approach } else { 0.0 };
-    // the approach is that of the point about which the body tilts
+    // the approach belongs to the point about which the body tilts
     RigidMotion { approach, tilt }
 }
 

@@ -60,7 +60,7 @@ impl MovingBodies {
     /// A half-space loaded on the grid or in plane strain, with the influence K at a distance from a cell, under a pressure that moves along an axis
     /// with this `velocity` \[m/s\].
     ///
-    /// The approximate inverse is that of the nearest circulant matrix on the grid without padding (T. F. Chan, SIAM J. Sci. Stat. Comput.
+    /// The approximate inverse inverts the nearest circulant matrix on the grid without padding (T. F. Chan, SIAM J. Sci. Stat. Comput.
     /// 9, 1988).
     pub(super) fn half_space(
         grid: &Grid,
@@ -111,7 +111,7 @@ impl MovingBodies {
         }
     }
 
-    /// Bodies with the symmetric part of the response, that of a pressure that moves both ways.
+    /// Bodies with the symmetric part of the response: the pressure moves both ways at once.
     pub(super) fn symmetric(&self) -> MovingBodies {
         let Multiplier { cells, ref plane, ref factors, .. } = self.response;
         let real = factors.iter().map(|factor| Complex64::from(factor.re)).collect();

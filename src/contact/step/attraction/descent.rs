@@ -2,12 +2,12 @@
 //!
 //! On a period K has an inverse M, wave by wave. With the lift x = h − z of the surface over its gap z before any traction, the creep of the past
 //! included, the net traction of a state in balance is q = M x/c + p, and its energy E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and
-//! p differ between loads: a force fixes the mean of q, a spring sets its stiffness in series with that of the bodies, and a given approach of bodies
+//! p differ between loads: a force fixes the mean of q, a spring sets its stiffness in series with the bodies, and a given approach of bodies
 //! whose mean is held fixes the mean of h, with a multiplier λ. So the loads are in balance in every iteration.
 //!
 //! E falls along conjugate directions (Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 16, 1969) of the gradient r = q + s(h) − λ on the cells that are
 //! open or open, with K as their preconditioner; the wall is a bound (two-metric projection, Bertsekas, SIAM J. Control Optim. 20, 1982). A step
-//! along them is exact without transforms. Where E bends down along a direction, surfaces jump: far from balance the step is that of the convex part
+//! along them is exact without transforms. Where E bends down along a direction, surfaces jump: far from balance the step follows the convex part
 //! of E, which stays in the valley of the state before, and near balance it leads to the first minimum.
 
 use std::sync::atomic::Ordering;
@@ -29,7 +29,7 @@ const SHORTER: f64 = 0.4;
 const SHORTENINGS: usize = 12;
 /// Rounding of E, over the sum of its parts.
 const ROUNDING: f64 = 1e-13;
-/// At this curvature, over that of the convex part, the tolerance of r is what was asked; below, r is to be smaller by the same factor, since the error
+/// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be smaller by the same factor, since the error
 /// is r over the curvature. The least of so many iterations counts.
 const SOFT: f64 = 0.1;
 const REMEMBERED: usize = 8;
@@ -43,7 +43,7 @@ const CARRIED: f64 = 0.5;
 #[derive(Clone, Copy)]
 pub(super) struct Balance {
     pub(super) compliance: f64,
-    /// The stiffness of the mean of x, which replaces that of M.
+    /// The stiffness of the mean of x, which replaces the one in M.
     of_mean: f64,
     /// p.
     offset: f64,

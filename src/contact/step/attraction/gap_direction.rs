@@ -6,7 +6,7 @@ use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
 use crate::parallel::for_each_band;
 
-/// Least curvature of E along a direction, over that of its convex part.
+/// Least curvature of E along a direction, over the curvature of its convex part.
 const LEAST_CURVATURE: f64 = 1e-3;
 /// Where the greatest |r| is a smaller part of the greatest traction, a step of negative curvature leads to the first minimum; else it has the
 /// length of so many steps of the convex part.
@@ -103,7 +103,7 @@ impl AttractedStep<'_> {
             }
         });
         if balance.held {
-            // cells of the wall that open do so at the cost of the open ones: a shift of all would lift those that are pressed
+            // cells of the wall that open do so at the cost of the open ones: a shift of all cells would lift pressed ones
             let turned = &*direction;
             let [sum, open] = rows.sum_terms(|k| Some([turned[k], if gap[k] + x[k] > 0.0 { 1.0 } else { 0.0 }]));
             let level = sum / f64::max(open, 1.0);
@@ -116,7 +116,7 @@ impl AttractedStep<'_> {
         steepest
     }
 
-    /// The length of the step along the direction, and its curvature over that of the convex part.
+    /// The length of the step along the direction, and its curvature over the curvature of the convex part.
     pub(super) fn length(&self, gradient: Gradient, own: &Passes, window: &Window, trial: &Trial) -> (f64, f64) {
         let (law, rows, gap) = (self.law, window.kernel.rows(), &trial.gap);
         let (x, q) = (&trial.solution.potential, &trial.solution.attraction);
