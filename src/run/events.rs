@@ -60,8 +60,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// millionth of a step. Each step is looked at where its load turns, as 64 equal parts of it show, and in the middle between. Where a
     /// quantity comes as near to its value as it bends, or a quarter of its change, the part is halved again, six times at most. So two
     /// crossings are missed where both lie within a 64th of a part between two turns, or where the load turns twice within a 64th of the
-    /// step. In space each look costs a
-    /// contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact the
+    /// step. In space each look costs a contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact the
     /// quantity must be the same on all of them.
     ///
     /// # Errors
@@ -111,11 +110,11 @@ impl<'a, C: RunContact> Run<'a, C> {
         let same = SAME_TIME * (to - from);
         let looks = self.looks(events, start)?;
         let mut first: Option<(usize, f64)> = None;
-        for k in 0..events.len() {
+        for (k, event) in events.iter_mut().enumerate() {
             let beyond: Vec<f64> = looks.iter().map(|look| look.beyond[k]).collect();
-            let Some(after) = events[k].follow(&beyond).filter(|_| searches) else { continue };
+            let Some(after) = event.follow(&beyond).filter(|_| searches) else { continue };
             let ends = [after - 1, after].map(|look| (looks[look].time, beyond[look]));
-            let time = crossing_within(ends, same, |time| Ok(events[k].beyond(&self.within_step(time)?)))?;
+            let time = crossing_within(ends, same, |time| Ok(event.beyond(&self.within_step(time)?)))?;
             if time <= to - same && first.is_none_or(|(_, earlier)| time < earlier) {
                 first = Some((k, time));
             }
@@ -136,13 +135,14 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice, and `end`.
     fn look_until(&self, events: &[Event<C>], looks: &mut Vec<Look>, end: Look, halved: u32) -> Result<()> {
-        let Some(start) = looks.last().filter(|_| halved < HALVINGS) else { return Ok(looks.push(end)) };
-        let time = 0.5 * (start.time + end.time);
-        if time <= start.time || time >= end.time {
-            return Ok(looks.push(end));
+        let time = 0.5 * (looks[looks.len() - 1].time + end.time);
+        if halved == HALVINGS || time <= looks[looks.len() - 1].time || time >= end.time {
+            looks.push(end);
+            return Ok(());
         }
         let middle = Look::of(events, &self.within_step(time)?);
-        let hides = (0..events.len()).any(|k| hides_crossings([start, &middle, &end].map(|look| look.beyond[k])));
+        let ends = [&looks[looks.len() - 1], &middle, &end];
+        let hides = (0..events.len()).any(|k| hides_crossings(ends.map(|look| look.beyond[k])));
         let halved = if hides { halved + 1 } else { HALVINGS };
         self.look_until(events, looks, middle, halved)?;
         self.look_until(events, looks, end, halved)
