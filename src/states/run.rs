@@ -12,6 +12,8 @@ use crate::run::driven::{Course, Driven};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
+#[cfg(feature = "checkpoint")]
+use crate::states::control::SavedControl;
 use crate::states::control::{StepControl, load_at};
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
@@ -56,10 +58,10 @@ impl StatesContact {
 #[derive(Debug, Clone)]
 pub struct StatesControl {
     /// The load that acts; unknown before the first step.
-    pub(super) load: Option<Load>,
+    load: Option<Load>,
     tolerance: f64,
     before: StatesContact,
-    pub(super) steps: StepControl,
+    steps: StepControl,
     /// Whether the last step was taken in two halves.
     halved: bool,
 }
@@ -140,6 +142,7 @@ impl Driven for StatesContact {
 
     #[cfg(feature = "checkpoint")]
     fn save_run(&self, path: &Path, (progress, control): (&Progress, &StatesControl)) -> Result<()> {
-        self.save_with(path, Some(SavedRun::of(progress, control)))
+        let (progress, steps) = (progress.clone(), SavedControl::of(&control.steps));
+        self.save_with(path, Some(SavedRun { progress, load: control.load, control: steps }))
     }
 }
