@@ -6,7 +6,7 @@ use crate::error::{Result, finite};
 
 /// Differences to the value below this part of the greatest one so far count as none, just after an event.
 const NOISE: f64 = 1e-6;
-/// The value that a quantity crosses, and the direction, in [`Run::stop_when`].
+/// The value that a quantity crosses, and the direction, in [`Run::stop_when`](crate::run::Run::stop_when).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Crossing {
@@ -41,7 +41,7 @@ enum Side {
     Beyond,
 }
 
-/// What a run watches: whether and when a quantity has crossed a value ([`Run::events`]).
+/// What a run watches: whether and when a quantity has crossed a value ([`Run::events`](crate::run::Run::events)).
 pub struct Event<C> {
     quantity: Box<dyn Fn(&C) -> f64 + Send + Sync>,
     crossing: Crossing,

@@ -60,8 +60,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// millionth of a step. Each step is looked at where its load turns, as 64 equal parts of it show, and in the middle between. Where a
     /// quantity comes as near to its value as it bends, or a quarter of its change, the part is halved again, six times at most. So two
     /// crossings are missed where both lie within a 64th of a part between two turns, or where the load turns twice within a 64th of the
-    /// step. In space each look costs a
-    /// contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact the
+    /// step. In space each look costs a contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact the
     /// quantity must be the same on all of them.
     ///
     /// # Errors
@@ -136,13 +135,14 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice, and `end`.
     fn look_until(&self, events: &[Event<C>], looks: &mut Vec<Look>, end: Look, halved: u32) -> Result<()> {
-        let Some(start) = looks.last().filter(|start| halved < HALVINGS && has_middle(start.time, end.time)) else {
+        let time = 0.5 * (looks[looks.len() - 1].time + end.time);
+        if halved == HALVINGS || time <= looks[looks.len() - 1].time || time >= end.time {
             looks.push(end);
             return Ok(());
-        };
-        let time = 0.5 * (start.time + end.time);
+        }
         let middle = Look::of(events, &self.within_step(time)?);
-        let hides = (0..events.len()).any(|k| hides_crossings([start, &middle, &end].map(|look| look.beyond[k])));
+        let ends = [&looks[looks.len() - 1], &middle, &end];
+        let hides = (0..events.len()).any(|k| hides_crossings(ends.map(|look| look.beyond[k])));
         let halved = if hides { halved + 1 } else { HALVINGS };
         self.look_until(events, looks, middle, halved)?;
         self.look_until(events, looks, end, halved)
@@ -204,10 +204,4 @@ fn crossing_within([mut low, mut high]: [(f64, f64); 2], same: f64, at: impl Fn(
         }
     }
     Ok(high.0)
-}
-
-/// Whether there is a number between two times.
-fn has_middle(start: f64, end: f64) -> bool {
-    let time = 0.5 * (start + end);
-    time > start && time < end
 }

@@ -184,28 +184,13 @@ impl StatesContact {
     /// Advances by `dt` to `time`.
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let report = self.advance(time, dt, load)?;
-        self.merge(self.scene.merge_error);
+        self.levels.merge(&self.states, self.scene.merge_error);
         Ok(report)
-    }
-
-    /// Merges groups of levels, where there are many.
-    pub(super) fn merge(&mut self, error: f64) {
-        self.levels.merge(&self.states, error);
     }
 
     /// How far it is from another outcome of the same step ([`Levels::distance`]).
     pub(super) fn distance(&mut self, other: &StatesContact, start: f64, cuts: [f64; 2], steps: f64) -> [f64; 2] {
         self.levels.distance(&self.states, &other.levels, start, cuts, steps)
-    }
-
-    /// The most that a step may be longer than the one before ([`Levels::longest_growth`]).
-    pub(super) fn longest_growth(&self, otherwise: f64) -> f64 {
-        self.levels.longest_growth(otherwise)
-    }
-
-    /// Depth and force of undisturbed bodies after so many steps like the last one, about, under a load of this kind and size.
-    pub(super) fn expected(&self, demand: Demand, size: f64, steps: f64, pressed: f64) -> [f64; 2] {
-        self.levels.expected(&self.states, demand, size, steps, pressed)
     }
 
     /// [`StatesContact::step_to`] without merging.

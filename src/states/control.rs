@@ -4,6 +4,12 @@
 //! touches within the step, or a surface that recovers while nothing presses on it, does not show there. So the control looks at the load
 //! within the step, ends steps where bodies touch and forces begin or end, and compares the free surface and the strains of all levels.
 
+#[cfg(feature = "checkpoint")]
+mod saved;
+
+#[cfg(feature = "checkpoint")]
+pub(super) use saved::SavedControl;
+
 use crate::contact::StepReport;
 use crate::error::{Result, StepError};
 use crate::load::{Load, LoadHistory};
@@ -123,7 +129,7 @@ impl StepControl {
         }
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.next }.max(shortest);
         let aim = if self.by_force { AIM_OF_FORCE } else { AIM } * tolerance;
-        let resists_rates_alone = contact.longest_growth(MAX_GROWTH) < MAX_GROWTH;
+        let resists_rates_alone = contact.levels.longest_growth(MAX_GROWTH) < MAX_GROWTH;
         let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * aim;
         let mut last: Option<(f64, f64)> = None;
         loop {
@@ -152,7 +158,7 @@ impl StepControl {
                 Some(_) => 1.0,
                 None => ORDER,
             };
-            let most = if error > 0.0 { contact.longest_growth(MAX_GROWTH) } else { MAX_GROWTH };
+            let most = if error > 0.0 { contact.levels.longest_growth(MAX_GROWTH) } else { MAX_GROWTH };
             let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim {
                 self.next = match event {
@@ -161,7 +167,7 @@ impl StepControl {
                 };
                 self.greatest = self.greatest_with(report.force);
                 contact.copy_from(&self.halves);
-                contact.merge(MERGING * tolerance);
+                contact.levels.merge(&contact.states, MERGING * tolerance);
                 return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
             }
             self.rejected += 1;
@@ -299,7 +305,8 @@ impl StepControl {
         if self.by_force {
             of_surface[1] = 0.0;
         }
-        let expected = halves.expected(
+        let expected = halves.levels.expected(
+            &halves.states,
             contact.demand(load_at(history, end)?)?,
             self.greatest_load,
             self.until / half,
@@ -362,42 +369,4 @@ fn value(contact: &StatesContact, load: Load) -> Result<f64> {
 /// The end of one of the equal parts of a step.
 fn part([now, end]: [f64; 2], k: f64) -> f64 {
     if k == PARTS as f64 { end } else { now + (end - now) * k / PARTS as f64 }
-}
-
-/// A control in a file.
-#[cfg(feature = "checkpoint")]
-#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-pub(super) struct SavedControl {
-    until: f64,
-    next: f64,
-    corner: f64,
-    by_force: bool,
-    greatest: [f64; 2],
-    loads: Vec<(f64, f64)>,
-    greatest_load: f64,
-    pressed: f64,
-    rejected: u64,
-}
-
-#[cfg(feature = "checkpoint")]
-impl SavedControl {
-    pub(super) fn of(control: &StepControl) -> SavedControl {
-        let StepControl { until, next, corner, by_force, greatest, greatest_load, pressed, rejected, .. } = *control;
-        let loads = control.loads.clone();
-        SavedControl { until, next, corner, by_force, greatest, loads, greatest_load, pressed, rejected }
-    }
-
-    /// Whether a run can continue with these values; a damaged file may hold any.
-    pub(super) fn fits(&self) -> bool {
-        let sizes = [self.until, self.next, self.greatest[0], self.greatest[1], self.greatest_load, self.pressed];
-        let times = self.loads.iter().flat_map(|(time, load)| [*time, *load]);
-        sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
-    }
-
-    /// The control of a run that goes on from this `contact`.
-    pub(super) fn resumed(self, contact: &StatesContact) -> StepControl {
-        let SavedControl { until, next, corner, by_force, greatest, loads, greatest_load, pressed, rejected } = self;
-        let new = StepControl::new(contact, until);
-        StepControl { next, corner, by_force, greatest, loads, greatest_load, pressed, rejected, ..new }
-    }
 }

@@ -50,7 +50,6 @@ mod outside;
 mod pressed;
 mod reach;
 mod run;
-mod run_control;
 #[cfg(feature = "checkpoint")]
 mod saved;
 mod sweep;

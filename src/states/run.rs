@@ -12,8 +12,9 @@ use crate::run::driven::{Course, Driven};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
+#[cfg(feature = "checkpoint")]
+use crate::states::control::SavedControl;
 use crate::states::control::{StepControl, load_at};
-use crate::states::run_control::StatesControl;
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
 
@@ -51,6 +52,18 @@ impl StatesContact {
     ) -> StatesRun<'static> {
         Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
+}
+
+/// The control of the steps of a run, and the state at the start of the last one.
+#[derive(Debug, Clone)]
+pub struct StatesControl {
+    /// The load that acts; unknown before the first step.
+    load: Option<Load>,
+    tolerance: f64,
+    before: StatesContact,
+    steps: StepControl,
+    /// Whether the last step was taken in two halves.
+    halved: bool,
 }
 
 impl Driven for StatesContact {
@@ -129,6 +142,7 @@ impl Driven for StatesContact {
 
     #[cfg(feature = "checkpoint")]
     fn save_run(&self, path: &Path, (progress, control): (&Progress, &StatesControl)) -> Result<()> {
-        self.save_with(path, Some(SavedRun::of(progress, control)))
+        let (progress, steps) = (progress.clone(), SavedControl::of(&control.steps));
+        self.save_with(path, Some(SavedRun { progress, load: control.load, control: steps }))
     }
 }

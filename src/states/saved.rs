@@ -19,7 +19,6 @@ use crate::states::contact::StatesContact;
 use crate::states::control::SavedControl;
 use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
-use crate::states::run_control::StatesControl;
 
 /// The contents of a file.
 #[derive(Serialize, Deserialize)]
@@ -41,12 +40,6 @@ pub(super) struct SavedRun {
     /// The load that acts.
     pub(super) load: Option<Load>,
     pub(super) control: SavedControl,
-}
-
-impl SavedRun {
-    pub(super) fn of(progress: &Progress, control: &StatesControl) -> SavedRun {
-        SavedRun { progress: progress.clone(), load: control.load, control: SavedControl::of(&control.steps) }
-    }
 }
 
 const KIND: &str = "elastic states";
