@@ -48,11 +48,14 @@ struct Difference {
     value: f64,
     /// Its variance over the variance of a value.
     variance: f64,
-    slope: f64,
+    /// Its slope over the shift, and the variance of the slope over the variance of a value.
+    slope: [f64; 2],
 }
 
 struct Pair<'a> {
     isotherms: [&'a Isotherm; 2],
+    /// Of each isotherm and column, at each row.
+    slopes: [Vec<Vec<[f64; 2]>>; 2],
     columns: usize,
     /// Whether values may differ by a factor, the same in all columns.
     is_vertical: bool,
@@ -60,7 +63,9 @@ struct Pair<'a> {
 
 /// The shift of `warmer` relative to `colder`.
 pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: bool) -> Result<Shift> {
-    let pair = Pair { isotherms: [colder, warmer], columns: colder.rows[0].values.len(), is_vertical };
+    let (isotherms, columns) = ([colder, warmer], colder.rows[0].values.len());
+    let slopes = isotherms.map(|isotherm| (0..columns).map(|column| slopes(isotherm, column)).collect());
+    let pair = Pair { isotherms, slopes, columns, is_vertical };
     let temperatures = [colder.temperature(), warmer.temperature()];
     let all: Vec<usize> = (0..pair.columns).collect();
     let scatter: Vec<f64> = all.iter().map(|&column| pair.scatter(column)).collect();
@@ -112,7 +117,8 @@ impl Pair<'_> {
     fn differences(&self, shift: f64, columns: &[usize], mut take: impl FnMut(Difference)) {
         let [colder, warmer] = self.isotherms;
         // warmer at ln t is at ln t − shift on the axis of colder
-        for (one, other, sign) in [(colder, warmer, 1.0), (warmer, colder, -1.0)] {
+        let [of_colder, of_warmer] = &self.slopes;
+        for (one, other, slopes, sign) in [(colder, warmer, of_warmer, 1.0), (warmer, colder, of_colder, -1.0)] {
             for row in &one.rows {
                 let Some((k, part)) = place(other, one.log_time(row) + sign * shift) else { continue };
                 for &column in columns {
@@ -121,7 +127,7 @@ impl Pair<'_> {
                         column,
                         value: sign * (row.values[column].ln() - (a + part * (b - a))),
                         variance: 1.0 + part * part + (1.0 - part) * (1.0 - part),
-                        slope: slope(other, k, column),
+                        slope: slopes[column][k],
                     });
                 }
             }
@@ -182,13 +188,14 @@ impl Pair<'_> {
             let scatter = scatter[found.column];
             let robust = 1.0 / (1.0 + (0.5 * (found.value - factor) / scatter).powi(2) / found.variance);
             let weight = robust / (found.variance * scatter * scatter);
-            for (power, sum) in sums.iter_mut().enumerate() {
-                *sum += weight * found.slope.powi(power as i32);
-            }
+            let [slope, variance] = found.slope;
+            // noise makes slopes where there are none
+            let square = slope * slope - variance * scatter * scatter;
+            sums.iter_mut().zip([1.0, slope, square]).for_each(|(sum, part)| *sum += weight * part);
         });
         // of slopes that are alike a factor takes the place of a shift
         let information = sums[2] - if self.is_vertical { sums[1] * sums[1] / sums[0] } else { 0.0 };
-        let by_slopes = (INFLATION / information).sqrt();
+        let by_slopes = if information > 0.0 { (INFLATION / information).sqrt() } else { high - low };
         let least = self.cost(shift, columns, scatter);
         let tried = (0..=TRIED).map(|k| low + (high - low) * k as f64 / TRIED as f64);
         let near = tried.filter(|other| (other - shift).abs() < 0.1 * (high - low));
@@ -210,13 +217,22 @@ fn place(isotherm: &Isotherm, log_time: f64) -> Option<(usize, f64)> {
     (k < isotherm.rows.len() && (0.0..=1.0).contains(&part)).then_some((k, part))
 }
 
-/// The slope of a column over ln t, by least squares through the rows around row `k`.
-fn slope(isotherm: &Isotherm, k: usize, column: usize) -> f64 {
-    let rows = &isotherm.rows[k.saturating_sub(AROUND)..isotherm.rows.len().min(k + AROUND)];
-    let mean = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
-    let (x, y) = (mean(&|row| isotherm.log_time(row)), mean(&|row| row.values[column].ln()));
-    let product = mean(&|row| (isotherm.log_time(row) - x) * (row.values[column].ln() - y));
-    product / mean(&|row| (isotherm.log_time(row) - x).powi(2))
+/// The slope of a column over ln t at each row, the median of the slopes between the rows around, which outliers move little (P. K. Sen, J. Am. Stat.
+/// Assoc. 63, 1968), and the variance of such a slope by least squares, over the variance of a value.
+fn slopes(isotherm: &Isotherm, column: usize) -> Vec<[f64; 2]> {
+    let points: Vec<[f64; 2]> =
+        isotherm.rows.iter().map(|row| [isotherm.log_time(row), row.values[column].ln()]).collect();
+    let around = |k: usize| {
+        let own = &points[k.saturating_sub(AROUND)..points.len().min(k + AROUND)];
+        let pairs =
+            own.iter().enumerate().flat_map(|(n, a)| own[n + 1..].iter().map(move |b| (b[1] - a[1]) / (b[0] - a[0])));
+        let mut slopes: Vec<f64> = pairs.collect();
+        slopes.sort_by(f64::total_cmp);
+        let mean = own.iter().map(|point| point[0]).sum::<f64>() / own.len() as f64;
+        let squares: f64 = own.iter().map(|point| (point[0] - mean).powi(2)).sum();
+        [slopes[slopes.len() / 2], 1.0 / squares]
+    };
+    (0..points.len()).map(around).collect()
 }
 
 /// The standard deviation of values around zero, from the median of their magnitudes.
