@@ -175,22 +175,11 @@ impl StatesContact {
         Ok(self.levels.surface_after(length, self.scene.interpolant))
     }
 
-    /// Depth and force that a step to `time` ends with; takes no step.
-    pub(super) fn outcome(&mut self, time: f64, load: Load) -> Result<[f64; 2]> {
-        let (demand, wanted, _) = self.predict(time, time - self.time, load)?;
-        Ok(self.levels.outcome(&self.states, demand, wanted.level))
-    }
-
     /// Advances by `dt` to `time`.
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let report = self.advance(time, dt, load)?;
         self.levels.merge(&self.states, self.scene.merge_error);
         Ok(report)
-    }
-
-    /// How far it is from another outcome of the same step ([`Levels::distance`]).
-    pub(super) fn distance(&mut self, other: &StatesContact, start: f64, cuts: [f64; 2], steps: f64) -> [f64; 2] {
-        self.levels.distance(&self.states, &other.levels, start, cuts, steps)
     }
 
     /// [`StatesContact::step_to`] without merging.

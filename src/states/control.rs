@@ -72,8 +72,6 @@ pub(super) struct StepControl {
     greatest_load: f64,
     /// The longest time for which at least half of the greatest load acts.
     pressed: f64,
-    /// Times and loads within the step being tried at which it may have to end.
-    points: Vec<(f64, f64)>,
     pub(super) rejected: u64,
     /// The step taken whole, in halves, and after the first half.
     whole: StatesContact,
@@ -84,24 +82,19 @@ pub(super) struct StepControl {
 impl StepControl {
     /// For a run to the time `until`.
     pub(super) fn new(contact: &StatesContact, until: f64) -> StepControl {
-        let (loads, points) = (Vec::with_capacity(PARTS_OF_RUN as usize + 1), Vec::with_capacity(2 * PARTS));
-        let [whole, halves, middle] = [(); 3].map(|()| contact.clone());
-        let (next, corner, by_force, greatest, rejected) = (0.0, 0.0, true, [0.0; 2], 0);
-        let (greatest_load, pressed) = (0.0, 0.0);
         StepControl {
             until,
-            next,
-            corner,
-            by_force,
-            greatest,
-            loads,
-            greatest_load,
-            pressed,
-            points,
-            rejected,
-            whole,
-            halves,
-            middle,
+            next: 0.0,
+            corner: 0.0,
+            by_force: true,
+            greatest: [0.0; 2],
+            loads: Vec::new(),
+            greatest_load: 0.0,
+            pressed: 0.0,
+            rejected: 0,
+            whole: contact.clone(),
+            halves: contact.clone(),
+            middle: contact.clone(),
         }
     }
 
@@ -123,22 +116,25 @@ impl StepControl {
         if stop - now <= 2.0 * shortest {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
         }
-        self.sample(contact, history);
+        if self.loads.is_empty() {
+            self.sample(contact, history);
+        }
         if is_first {
             self.corner = now;
         }
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.next }.max(shortest);
-        let aim = if self.by_force { AIM_OF_FORCE } else { AIM } * tolerance;
-        let resists_rates_alone = contact.levels.longest_growth(MAX_GROWTH) < MAX_GROWTH;
-        let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * aim;
+        let growth_of = |otherwise: f64| contact.levels.longest_growth(otherwise);
+        let (longest, resists_rates_alone) = (growth_of(MAX_GROWTH), growth_of(MAX_GROWTH) < MAX_GROWTH);
+        let of_load = if self.by_force { AIM_OF_FORCE } else { AIM };
+        let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * of_load * tolerance;
         let mut last: Option<(f64, f64)> = None;
         loop {
             if length < shortest {
                 return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
             }
             let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
-            let mut loads = [0.0; PARTS + 1];
-            for (k, load) in loads.iter_mut().enumerate() {
+            let mut loads = [value(contact, history.checked_at(now, false)?)?; PARTS + 1];
+            for (k, load) in loads.iter_mut().enumerate().skip(1) {
                 *load = value(contact, load_at(history, part([now, end], k as f64))?)?;
             }
             if self.bend([now, end], &loads) > BEND * self.greatest_load && end - now > 2.0 * shortest {
@@ -148,7 +144,7 @@ impl StepControl {
             let event = self.event(contact, history, [now, end], &loads, tolerance)?;
             end = event.unwrap_or(end);
             let (report, difference) = self.compare(contact, history, [now, end])?;
-            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(history, end);
+            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(load_at(history, end)?);
             let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
             let order = match last {
                 _ if is_first => 1.0,
@@ -158,7 +154,7 @@ impl StepControl {
                 Some(_) => 1.0,
                 None => ORDER,
             };
-            let most = if error > 0.0 { contact.levels.longest_growth(MAX_GROWTH) } else { MAX_GROWTH };
+            let most = if error > 0.0 { longest } else { MAX_GROWTH };
             let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim {
                 self.next = match event {
@@ -176,21 +172,20 @@ impl StepControl {
         }
     }
 
-    /// Looks at the load at equal parts of the run, once.
+    /// Looks at the load at equal parts of the run. A load that is refused fails the step to it.
     fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) {
-        let start = contact.time();
-        let time = |k: u32| start + (self.until - start) * f64::from(k) / f64::from(PARTS_OF_RUN);
-        if self.loads.is_empty() {
-            // a load that is refused fails the step to it
-            let load = |time: f64| value(contact, history.at(time)).ok().filter(|load| load.is_finite());
-            self.loads.extend((0..=PARTS_OF_RUN).filter_map(|k| Some((time(k), load(time(k))?))));
-            self.by_force = (0..=PARTS_OF_RUN).all(|k| is_force(history, time(k)));
-            self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
-            // a body without elastic response has no depth as soon as the load acts
-            let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
-            let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
-            self.pressed = lengths.fold((self.until - start) / f64::from(PARTS_OF_RUN), f64::max);
+        let (start, length) = (contact.time(), self.until - contact.time());
+        for k in 0..=PARTS_OF_RUN {
+            let time = start + length * f64::from(k) / f64::from(PARTS_OF_RUN);
+            let load = history.at(time);
+            self.by_force &= is_force(load);
+            self.loads.extend(value(contact, load).ok().filter(|load| load.is_finite()).map(|load| (time, load)));
         }
+        self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
+        // a body without elastic response has no depth as soon as the load acts
+        let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
+        let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
+        self.pressed = lengths.fold(length / f64::from(PARTS_OF_RUN), f64::max);
     }
 
     /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
@@ -222,41 +217,36 @@ impl StepControl {
         loads: &[f64; PARTS + 1],
         tolerance: f64,
     ) -> Result<Option<f64>> {
-        let by_force = is_force(history, end);
+        let by_force = is_force(load_at(history, end)?);
         if !by_force && contact.level() > 0.0 {
             return Ok(None);
         }
-        // the load at equal parts, and at its tops between
-        let slope = |k: usize| match k {
-            0 => 4.0 * loads[1] - 3.0 * loads[0] - loads[2],
-            PARTS => 3.0 * loads[k] - 4.0 * loads[k - 1] + loads[k - 2],
-            _ => loads[k + 1] - loads[k - 1],
-        };
-        self.points.clear();
-        for (k, &load) in loads.iter().enumerate().skip(1) {
-            let (rise, fall) = (slope(k - 1), -slope(k));
-            if rise > 0.0 && fall > 0.0 {
-                let top = part([now, end], (k - 1) as f64 + rise / (rise + fall));
-                self.points.push((top, value(contact, load_at(history, top)?)?));
+        // the load at equal parts, the greatest among its neighbours at its top
+        let mut points = [(now, loads[0]); PARTS + 1];
+        for k in 1..=PARTS {
+            points[k] = (part([now, end], k as f64), loads[k]);
+            if k < PARTS && loads[k] > loads[k - 1] && loads[k] > loads[k + 1] {
+                let (before, after) = (loads[k] - loads[k - 1], loads[k] - loads[k + 1]);
+                let top = part([now, end], k as f64 + 0.5 * (before - after) / (before + after));
+                points[k] = (top, value(contact, load_at(history, top)?)?);
             }
-            self.points.push((part([now, end], k as f64), load));
         }
         let scratch = &mut self.whole;
         scratch.copy_from(contact);
         let mut excess = |time: f64, load: f64| -> Result<f64> {
             Ok(if by_force { load } else { load - scratch.surface_at(time)? })
         };
-        let top = self.points.iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most));
+        let top = points[1..].iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most));
         if !by_force && excess(end, top)? <= 0.0 {
             return Ok(None);
         }
-        let overshoot =
-            if by_force { 0.0 } else { OVERSHOOT * tolerance * self.greatest[0].max(1e-3 * self.greatest_load) };
+        let scale = self.greatest[0].max(1e-3 * self.greatest_load);
+        let overshoot = if by_force { 0.0 } else { OVERSHOOT * tolerance * scale };
+        let near = now + if by_force { SAME_TIME } else { AT_START } * (end - now);
         let (mut low, mut presses) = (now, by_force && loads[0] > 0.0);
-        for &(time, load) in &self.points {
+        for (time, load) in points.into_iter().skip(1) {
             let (mut high, mut over) = (time, excess(time, load)?);
             if (over > 0.0) != presses {
-                let near = now + if by_force { SAME_TIME } else { AT_START } * (end - now);
                 while high > near && (by_force || over > overshoot) {
                     let middle = 0.5 * (low + high);
                     if middle <= low || middle >= high {
@@ -296,49 +286,45 @@ impl StepControl {
         middle.copy_from(halves);
         let report = to(halves, end)?;
 
-        let mut found = [[whole.depth(), halves.depth()], [whole.force(), halves.force()]];
-        if whole.level() == 0.0 && halves.level() == 0.0 {
-            found = [[0.0; 2]; 2];
-        }
         let cuts = [middle.level(), halves.level()];
-        let mut of_surface = whole.distance(halves, contact.level(), cuts, (end - self.corner) / half);
+        let mut of_surface =
+            whole.levels.distance(&whole.states, &halves.levels, contact.level(), cuts, (end - self.corner) / half);
         if self.by_force {
             of_surface[1] = 0.0;
         }
-        let expected = halves.levels.expected(
-            &halves.states,
-            contact.demand(load_at(history, end)?)?,
-            self.greatest_load,
-            self.until / half,
-            self.pressed / half,
-        );
+        let demand = contact.demand(load_at(history, end)?)?;
+        let steps = [self.until, self.pressed].map(|time| time / half);
+        let expected = halves.levels.expected(&halves.states, demand, self.greatest_load, steps);
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
         let StepControl { whole, halves, middle, .. } = self;
-        let scales = [halves.depth(), report.force];
-        let scales = [0, 1].map(|k| f64::abs(scales[k]).max(0.1 * greatest[k]));
+        let results = |contact: &StatesContact| [contact.depth(), contact.force()];
+        let ended = [&*whole, &*halves].map(results);
+        let scales = [0, 1].map(|k| f64::abs(ended[1][k]).max(0.1 * greatest[k]));
         let mut worst = 0.0f64;
-        let mut see = |difference: f64, scale: f64| {
-            if scale > 0.0 {
+        let mut see = |differences: [f64; 2], scales: [f64; 2]| {
+            for (difference, scale) in differences.into_iter().zip(scales).filter(|(_, scale)| *scale > 0.0) {
                 worst = worst.max(difference.abs() / scale);
             }
         };
-        for k in 0..2 {
-            see(found[k][0] - found[k][1], scales[k]);
-            see(of_surface[k], greatest[k]);
+        see(of_surface, greatest);
+        if whole.level() > 0.0 || halves.level() > 0.0 {
+            see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
         let levels = [contact.level(), cuts[0], cuts[1]];
         let deepest = levels.into_iter().fold(0.0, f64::max);
-        let presses = || -> Result<bool> { Ok(value(contact, load_at(history, now + half)?)? > 0.0) };
-        let is_shallow = levels.iter().any(|level| *level < SHALLOW * deepest);
-        if is_shallow || deepest == 0.0 && is_force(history, end) && presses()? {
+        let presses = is_force(load_at(history, end)?) && value(contact, load_at(history, now + half)?)? > 0.0;
+        if levels.iter().any(|level| *level < SHALLOW * deepest) || deepest == 0.0 && presses {
             for start in [contact, middle] {
-                whole.copy_from(start);
-                let [eighth, quarter] = [0.25, 0.5].map(|part| start.time() + part * half);
-                let one = whole.outcome(quarter, load_at(history, quarter)?)?;
-                to(whole, eighth)?;
-                let two = whole.outcome(quarter, load_at(history, quarter)?)?;
-                (0..2).for_each(|k| see(one[k] - two[k], scales[k]));
+                let mut quarter = |ends: &[f64]| -> Result<[f64; 2]> {
+                    whole.copy_from(start);
+                    for end in ends {
+                        to(whole, start.time() + end * half)?;
+                    }
+                    Ok(results(whole))
+                };
+                let (one, two) = (quarter(&[0.5])?, quarter(&[0.25, 0.5])?);
+                see([0, 1].map(|k| one[k] - two[k]), scales);
             }
         }
         Ok((report, worst))
@@ -356,8 +342,8 @@ pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
     history.checked_before(time, false)
 }
 
-fn is_force(history: &dyn LoadHistory, time: f64) -> bool {
-    matches!(history.before(time), Load::Force { .. })
+fn is_force(load: Load) -> bool {
+    matches!(load, Load::Force { .. })
 }
 
 /// Force, or depth of the load point or of the far end of its spring.

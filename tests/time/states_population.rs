@@ -212,13 +212,15 @@ impl Reference {
             let (start, end) = (pair[0], pair[1]);
             let longest = 1.0 / (steps * (end - start) / scene.until).max(steps / 50.0);
             let growth = 10f64.powf(1.0 / (steps / 300.0).max(8.0)) - 1.0;
+            let grow = |part: &f64| Some(part + longest.min(growth * part)).filter(|part| *part < 0.5);
+            let parts: Vec<f64> = std::iter::successors(Some(1e-13), grow).collect();
+            let rest = parts.iter().rev().map(|part| 1.0 - part);
             if now > 0.0 && history.before(start) != history.at(start) {
                 contact.step(0.0, history.at(start)).ok()?;
             }
-            let (mut piece, mut part) = (vec![(start, [contact.force(), contact.approach()])], 1e-13);
-            while now < end {
-                let next = if part < 1.0 - 2e-6 { start + (end - start) * part } else { end };
-                part += longest.min(growth * part).min(growth * (1.0 - part) + 3e-7);
+            let mut piece = vec![(start, [contact.force(), contact.approach()])];
+            for part in parts.iter().copied().chain(rest).chain([1.0]) {
+                let next = if part < 1.0 { start + (end - start) * part } else { end };
                 if next > now {
                     let load = if next == end { history.before(end) } else { history.at(next) };
                     contact.step(next - now, load).ok()?;

@@ -9,24 +9,24 @@ const SWEPT: f64 = 0.05;
 const LASTING: i32 = 8;
 
 impl Levels {
-    /// Depth and force of an undisturbed contact under a load of this kind and size: the depth under a force as soon as it acts, or, without elastic response, under half of it
-    /// when it has `pressed` for so many steps like the last one, the force after `steps` of them.
+    /// Depth and force of an undisturbed contact under a load of this kind and size, for the length of the run and of the longest spell of the
+    /// load, both in steps like the last one: the depth under a force as soon as it acts, or, without elastic response, under half of it
+    /// when it has pressed for its spell; the force of a given approach at the end of the run.
     pub(in crate::states) fn expected(
         &self,
         states: &ElasticStates,
         demand: Demand,
         size: f64,
-        steps: f64,
-        pressed: f64,
+        [run, spell]: [f64; 2],
     ) -> [f64; 2] {
+        let rule = self.history.rule();
         match demand {
             Demand::Force(_) => {
-                let has_dashpot = self.history.rule().has_dashpot();
-                let soon = if has_dashpot { 0.5 / self.history.stiffness_over(pressed) } else { 0.0 };
-                [states.depth(size * soon.max(self.history.rule().compliance())), size]
+                let soon = if rule.has_dashpot() { 0.5 / self.history.stiffness_over(spell) } else { 0.0 };
+                [states.depth(size * soon.max(rule.compliance())), size]
             }
             Demand::Depth { give, .. } => {
-                let stiffness = self.history.stiffness_over(steps);
+                let stiffness = self.history.stiffness_over(run);
                 let level = states.level_where(give * stiffness, size);
                 [states.depth(level), stiffness * level]
             }

@@ -192,20 +192,6 @@ impl Levels {
         }
     }
 
-    /// Depth and force at the end of the step of [`Levels::wanted`].
-    pub(super) fn outcome(&self, states: &ElasticStates, demand: Demand, level: f64) -> [f64; 2] {
-        if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
-            return [depth, 0.0];
-        }
-        let held = states.depth(level);
-        let (mut depth, mut carried) = (held, (level - self.bottom(self.groups.len()).0).max(0.0));
-        for (bottom, lower, group, free) in self.spans() {
-            carried += (1.0 - free) * (group.top.min(level) - bottom).max(0.0);
-            depth += free.min(1.0) * (group.motions.depth - lower.depth.max(held)).max(0.0);
-        }
-        [depth, carried / self.history.rule().compliance()]
-    }
-
     /// Accepts the step of [`Levels::wanted`].
     pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, level: f64) {
         if self.history.rule().compliance() > 0.0 {
