@@ -168,6 +168,9 @@ impl TextTable {
         };
         let columns: Vec<TakenColumn> = (0..self.headings.len()).map(taken).collect();
         let has_unit = |column: &TakenColumn| matches!(column.unit_of, UnitOf::Sizes(..));
+        // of E / MPa, which is a modulus, `/ MPa` is a unit of compliances too
+        let is_by_unit =
+            |column: &TakenColumn| matches!(&column.unit_of, UnitOf::Sizes(text, _) if !text.starts_with('/'));
         let is_named = |column: &TakenColumn| {
             let heading = column.heading.to_lowercase();
             // T is a temperature, unless its unit is one of time
@@ -182,7 +185,7 @@ impl TextTable {
         let candidates = [
             named(&has_unit),
             named(&|column| column.unit_of == UnitOf::Unnamed),
-            columns.iter().filter(|column| wanted.by_unit && has_unit(column)).cloned().collect(),
+            columns.iter().filter(|column| wanted.by_unit && is_by_unit(column)).cloned().collect(),
             named(&|_| true),
         ];
         let Some(candidates) = candidates.into_iter().find(|candidates| !candidates.is_empty()) else {

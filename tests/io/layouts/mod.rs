@@ -4,6 +4,8 @@ mod corpus;
 
 use corpus::{Encoding, Kind, Layout, corpus, read};
 
+use viscocontact::rheology::Experiment::{Creep, Dynamic, Relaxation, Storage};
+
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 
@@ -31,6 +33,23 @@ fn every_layout_is_read() {
     }
     println!("{} layouts", layouts.len());
     assert!(layouts.len() >= 60);
+}
+
+/// Moduli are no compliances, times no frequencies, tables no recordings: the units and names of the headings say so.
+#[test]
+fn no_table_is_read_as_another() {
+    let kinds = [Creep, Relaxation, Dynamic].map(Kind::Table).into_iter().chain([Kind::Recording]);
+    let (layouts, mut refused) = (corpus(), 0);
+    for layout in layouts.iter().filter(|layout| matches!(layout.kind, Kind::Table(_) | Kind::Recording)) {
+        let storage = layout.kind == Kind::Table(Storage);
+        for kind in kinds.clone().filter(|kind| *kind != layout.kind && !storage) {
+            let found = read(kind, &layout.encoding.bytes(&layout.text));
+            assert!(found.is_err(), "{} as {kind:?}: {found:?}\n{}", layout.name, layout.text);
+            refused += 1;
+        }
+    }
+    println!("{refused} refused");
+    assert!(refused >= 200, "{refused}");
 }
 
 /// A damage: the bytes, how many rows may be missing, and whether heights may.
