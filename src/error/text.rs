@@ -4,7 +4,7 @@
 pub enum TextError {
     /// A line has the wrong number of columns.
     #[error(
-        "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); TextFormat::delimiter states another delimiter"
+        "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); TextFormat::with_delimiter states another delimiter"
     )]
     Columns {
         /// The line, from 1.
@@ -21,7 +21,7 @@ pub enum TextError {
 
     /// An entry is not a number.
     #[error(
-        "line {line}, column {column}: {text:?} is not a number; lines of words are left out by TextFormat::skipped_lines, or by # at their beginning"
+        "line {line}, column {column}: {text:?} is not a number; lines of words are left out by TextFormat::with_skipped_lines, or by # at their beginning"
     )]
     NotNumeric {
         /// The line, from 1.
@@ -33,10 +33,10 @@ pub enum TextError {
     },
 
     /// An entry has a decimal comma in place of a decimal point, a decimal point in place of a decimal comma, or
-    /// separators of thousands: state [`TextFormat::decimal_comma`](crate::TextFormat::decimal_comma), or remove the
+    /// separators of thousands: state [`TextFormat::with_decimal_comma`](crate::TextFormat::with_decimal_comma), or remove the
     /// separators.
     #[error(
-        "line {line}, column {column}: {text:?} is not a number with TextFormat::decimal_comma = {decimal_comma}: state the other value, or remove separators of thousands"
+        "line {line}, column {column}: {text:?} is not a number with TextFormat::with_decimal_comma = {decimal_comma}: state the other value, or remove separators of thousands"
     )]
     DecimalMark {
         /// The line, from 1.
@@ -45,13 +45,13 @@ pub enum TextError {
         column: usize,
         /// The entry.
         text: String,
-        /// [`TextFormat::decimal_comma`](crate::TextFormat::decimal_comma) as it was stated.
+        /// [`TextFormat::with_decimal_comma`](crate::TextFormat::with_decimal_comma) as it was stated.
         decimal_comma: bool,
     },
 
     /// No heading names a column that is needed, or several may.
     #[error(
-        "line {line}: not exactly one heading names the {column}{several} (headings: {found}); begin one with {words}, choose by TextTable::only, name columns by TextTable::with_heading, skip lines above the table by TextFormat::skipped_lines, or state TextFormat::delimiter"
+        "line {line}: not exactly one heading names the {column}{several} (headings: {found}); begin one with {words}, choose by TextTable::only, name columns by TextTable::with_heading, skip lines above the table by TextFormat::with_skipped_lines, or state TextFormat::with_delimiter"
     )]
     Heading {
         /// The line of the headings, from 1; of the first row of numbers, if there are none.
@@ -85,7 +85,7 @@ pub enum TextError {
 
     /// Rows of numbers stand before the headings.
     #[error(
-        "line {line} has numbers, but the headings stand in line {headings}: skip the lines before it (TextFormat::skipped_lines), or split the file"
+        "line {line} has numbers, but the headings stand in line {headings}: skip the lines before it (TextFormat::with_skipped_lines), or split the file"
     )]
     Preamble {
         /// The first row of numbers, from 1.

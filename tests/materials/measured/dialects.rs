@@ -49,7 +49,7 @@ fn decimal_commas_and_fortran_exponents_are_read() {
         // decimal commas read as points are refused by the name of an option
         if format.decimal_comma() == Some(true) {
             let error = creep(text, Units::SI, format.with_decimal_comma(false)).unwrap_err().to_string();
-            let named = ["TextFormat::decimal_comma", "TextFormat::delimiter"];
+            let named = ["TextFormat::with_decimal_comma", "TextFormat::with_delimiter"];
             assert!(named.iter().any(|option| error.contains(option)), "{text:?}: {error}");
         }
     }
