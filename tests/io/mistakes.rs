@@ -226,7 +226,7 @@ const MISTAKES: &[Mistake] = &[
     "line 1, column 2: the heading \"G [MPa]\" says MPa, but Units::value = 1 means Pa; of MPa it is 1e6"),
 ("decimal commas",
     || csv("1,000;3,500\n2,000;2,500\n3,000;1,500\n").map(drop),
-    "line 1, column 1: \"1,000\" is not a number with TextFormat::decimal_comma = false: state the other value, or remove \
+    "line 1, column 1: \"1,000\" is not a number with TextFormat::with_decimal_comma = false: state the other value, or remove \
      separators of thousands"),
 ("a material that is not in the library",
     || viscocontact::rheology::library::find("nylon").map(drop),
