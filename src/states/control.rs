@@ -88,7 +88,7 @@ impl StepControl {
             corner: 0.0,
             by_force: true,
             greatest: [0.0; 2],
-            loads: Vec::new(),
+            loads: Vec::with_capacity(PARTS_OF_RUN as usize + 1),
             greatest_load: 0.0,
             pressed: 0.0,
             rejected: 0,
