@@ -141,18 +141,11 @@ impl RealPlane {
 
     /// The inverse of [`RealPlane::forward`], times the number of values; of the first rows, and of the first values of each.
     pub(crate) fn inverse<'a>(&mut self, coefficients: &mut [Complex64], rows: impl Iterator<Item = &'a mut [f64]>) {
-        let (n1, n2) = (self.along1.len(), self.row.len());
+        let n1 = self.along1.len();
         self.along1.inverse(coefficients);
         for (i, row) in rows.enumerate() {
-            for (k2, value) in self.half_row.iter_mut().enumerate() {
-                *value = coefficients[k2 * n1 + i];
-                if k2 == 0 || 2 * k2 == n2 {
-                    // real except for rounding, which the transform would reject
-                    value.im = 0.0;
-                }
-            }
-            let done = self.inverse2.process_with_scratch(&mut self.half_row, &mut self.row, &mut self.scratch);
-            debug_assert!(done.is_ok());
+            let of = |k2: usize| coefficients[k2 * n1 + i];
+            real_row(&*self.inverse2, &of, &mut self.half_row, &mut self.row, &mut self.scratch);
             row.copy_from_slice(&self.row[..row.len()]);
         }
     }
@@ -171,20 +164,31 @@ pub(crate) fn fourier_coefficients(field: &[f64], cells: [usize; 2]) -> Vec<Comp
 /// Real rows of n2 values: `coefficient` returns the coefficient k2 of the row i.
 pub(crate) fn real_rows(rows: usize, n2: usize, coefficient: impl Fn(usize, usize) -> Complex64) -> Vec<f64> {
     let along2 = RealFftPlanner::new().plan_fft_inverse(n2);
-    let mut input = along2.make_input_vec();
+    let (mut input, mut scratch) = (along2.make_input_vec(), along2.make_scratch_vec());
     let mut field = vec![0.0; rows * n2];
     for (i, row) in field.chunks_exact_mut(n2).enumerate() {
-        for (k2, value) in input.iter_mut().enumerate() {
-            *value = coefficient(i, k2);
-            if k2 == 0 || 2 * k2 == n2 {
-                // Real except for rounding, which the transform would reject.
-                value.im = 0.0;
-            }
-        }
-        let done = along2.process(&mut input, row);
-        debug_assert!(done.is_ok());
+        real_row(&*along2, &|k2| coefficient(i, k2), &mut input, row, &mut scratch);
     }
     field
+}
+
+/// A real row from its coefficients, which `input` takes.
+fn real_row(
+    plan: &dyn ComplexToReal<f64>,
+    coefficient: &dyn Fn(usize) -> Complex64,
+    input: &mut [Complex64],
+    row: &mut [f64],
+    scratch: &mut [Complex64],
+) {
+    for (k2, value) in input.iter_mut().enumerate() {
+        *value = coefficient(k2);
+        if k2 == 0 || 2 * k2 == row.len() {
+            // real except for rounding, which the transform would reject
+            value.im = 0.0;
+        }
+    }
+    let done = plan.process_with_scratch(input, row, scratch);
+    debug_assert!(done.is_ok());
 }
 
 /// Calls `job` with shares of the lines of `values` and the index of the first line of each share. There are as many shares

@@ -143,6 +143,13 @@ impl Problem<'_> {
         let (mut tried, mut stands) = (HashSet::new(), false);
         while found.sets < MOST_SETS {
             found.sets += 1;
+            if !pressed.contains(&true) {
+                if !self.free.translation {
+                    return Found { sets: found.sets, ..Found::apart(cells) };
+                }
+                let low = gap.iter().copied().fold(f64::INFINITY, f64::min);
+                pressed = gap.iter().map(|&h| h <= low).collect();
+            }
             let set: Vec<usize> = (0..cells).filter(|&k| pressed[k]).collect();
             let balance = Balance::new(self, &set);
             let mut p: Vec<f64> = set.iter().map(|&k| found.pressure[k]).collect();
@@ -187,13 +194,6 @@ impl Problem<'_> {
                 next = changed(&changes);
             }
             pressed = next;
-            if !pressed.contains(&true) {
-                if !self.free.translation {
-                    return Found { sets: found.sets, ..Found::apart(cells) };
-                }
-                let low = gap.iter().copied().fold(f64::INFINITY, f64::min);
-                pressed = gap.iter().map(|&h| h <= low).collect();
-            }
         }
         found
     }

@@ -104,13 +104,14 @@ impl fmt::Display for SlidingReport {
 impl Builder {
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of [`Builder::build`]. All fields take the whole grid.
     ///
-    /// The bodies are periodic along both axes ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic),
-    /// [`InfluenceKernel::from_spectrum`](crate::InfluenceKernel::from_spectrum), layers that are), and so must the shape be: a height map
-    /// that jumps at its ends slides over an edge there.
+    /// The body is a half-space, which is passed along x1 or x2, or periodic along both axes ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic),
+    /// [`InfluenceKernel::from_spectrum`](crate::InfluenceKernel::from_spectrum), layers that are), or in plane strain
+    /// ([`InfluenceKernel::line`](crate::InfluenceKernel::line)). On a periodic body the shape must be periodic too: a height map that jumps at its ends slides over
+    /// an edge there.
     ///
     /// # Errors
-    /// As [`Builder::build`], and if the bodies are not periodic, flow without end, attract each other, there are several rigid bodies, or a history
-    /// of the temperature was given: scale the velocity by the shift factor instead.
+    /// As [`Builder::build`], and if the body is another one, or flows without end, the surfaces attract each other, there are several rigid bodies, ranks, or a history
+    /// of the temperature: scale the velocity by the shift factor instead.
     pub fn build_sliding(mut self) -> Result<SteadySliding> {
         let refuse = |what, cure| Err(SlidingError::NotCovered { what, cure }.into());
         if self.attraction.is_some() {
@@ -139,8 +140,8 @@ impl Builder {
         let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series("a motion"))?;
         if creep.fluidity() > 0.0 {
             return refuse(
-                "a periodic body that flows",
-                "take a body with an equilibrium modulus: under a flowing one the mean sinks for ever",
+                "a body that flows",
+                "take one with an equilibrium modulus: on a flowing one approach or slope grow for ever",
             );
         }
         Ok(SteadySliding { contact, creep })
@@ -160,12 +161,13 @@ impl SteadySliding {
     /// along x1 and x2. At velocity 0 it is the relaxed contact, at a great one the one of the elastic response. The search begins at the state found
     /// last, so that sweeps over velocities or loads cost less.
     ///
-    /// Creep at another temperature is that at the velocity times the shift factor
+    /// Another temperature is the same as the velocity times its shift factor
     /// ([`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor)).
     ///
     /// # Errors
-    /// If the velocity is not finite, the load is neither a force nor an approach without tilt, or the approach is beyond full contact, or the
-    /// state is not found ([`SlidingError::NotConverged`]). The state found last is then kept.
+    /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a spring, cannot be balanced, tilts a periodic body, or is an approach
+    /// beyond full contact, or one in line contact whose datum is too near; if contact reaches the edge of the grid, or the state is not found
+    /// ([`SlidingError::NotConverged`]). The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;

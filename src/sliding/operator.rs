@@ -169,8 +169,6 @@ fn waves(grid: &Grid) -> Vec<[f64; 2]> {
 pub(super) struct Multiplier {
     cells: [usize; 2],
     plane: RealPlane,
-    /// Factors, over the number of values of the transform.
-    scaled: Vec<Complex64>,
     factors: Vec<Complex64>,
     coefficients: Vec<Complex64>,
     /// Pairs of a forward and an inverse transform so far.
@@ -181,16 +179,7 @@ impl Multiplier {
     /// Fields on `cells`, padded to `periods`.
     fn new(cells: [usize; 2], periods: [usize; 2], factors: Vec<Complex64>) -> Multiplier {
         let plane = RealPlane::new(periods);
-        let scale = 1.0 / (periods[0] * periods[1]) as f64;
-        let scaled = factors.iter().map(|factor| scale * factor).collect();
-        Multiplier {
-            cells,
-            coefficients: vec![Complex64::ZERO; plane.coefficients()],
-            plane,
-            factors,
-            scaled,
-            pairs: 0,
-        }
+        Multiplier { cells, coefficients: vec![Complex64::ZERO; plane.coefficients()], plane, factors, pairs: 0 }
     }
 
     /// The factors of a plane of values.
@@ -239,7 +228,8 @@ impl Multiplier {
     pub(super) fn apply(&mut self, field: &[f64], out: &mut [f64]) {
         let [_, n2] = self.cells;
         self.plane.forward(field.chunks_exact(n2), &mut self.coefficients);
-        self.coefficients.iter_mut().zip(&self.scaled).for_each(|(own, factor)| *own *= factor);
+        let scale = 1.0 / self.plane.periods().iter().product::<usize>() as f64;
+        self.coefficients.iter_mut().zip(&self.factors).for_each(|(own, factor)| *own *= scale * factor);
         self.plane.inverse(&mut self.coefficients, out.chunks_exact_mut(n2));
         self.pairs += 1;
     }

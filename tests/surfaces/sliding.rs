@@ -61,7 +61,7 @@ fn full_contact_resists_wave_by_wave() {
     }
 }
 
-/// At rest the contact is that of the relaxed body, and at a great speed that of the elastic response, which has no friction.
+/// At rest the contact is on the relaxed body, and at a great speed on the elastic one at once, without friction.
 #[test]
 fn slow_and_fast_motions_are_elastic() {
     let mut sliding = wavy(32);
@@ -219,6 +219,9 @@ fn what_is_not_steady_is_refused() {
     assert_eq!(sliding.contact().pressure(), pressure);
     let apart = sliding.at([1.0, 0.0], Load::force(0.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.friction() == 0.0 && before.friction() > 0.0);
+    // an approach that does not touch leaves nothing undetermined
+    let apart = periodic().build_sliding().unwrap().at([1.0, 0.0], Load::approach(-2.0)).unwrap();
+    assert!(apart.contact_cells == 0 && apart.force == 0.0 && apart.residual == 0.0, "{apart:?}");
     let mut stepped = sliding.contact().clone();
     assert!(matches!(stepped.step(1.0, Load::force(1.0)), Err(Error::Sliding(SlidingError::NotCovered { .. }))));
 }
