@@ -34,7 +34,7 @@ pub trait Driven: Contact + Debug {
     /// The control of the steps, and what the run has found so far.
     type Control: Debug + Clone;
 
-    /// Progress and control of a run that begins here, or that goes on where it saved this contact.
+    /// Progress and control of a run that begins here, or that continues from this saved contact.
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, Self::Control);
 
     /// The load that acts; `None` if it is not known.
@@ -54,7 +54,7 @@ pub trait Driven: Contact + Debug {
     /// Number of adaptive steps rejected for their error.
     fn rejected(control: &Self::Control) -> u64;
 
-    /// Saves the contact with a run that goes on from it.
+    /// Saves the contact with a run that continues from there.
     #[cfg(feature = "checkpoint")]
     fn save_run(&self, path: &Path, run: (&Progress, &Self::Control)) -> Result<()>;
 

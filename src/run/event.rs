@@ -34,7 +34,7 @@ impl Crossing {
 /// Where the quantity of an event is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Side {
-    /// Before the value, or at it: the event is met once it goes on.
+    /// Before the value, or at it: the event is met as soon as the value is left.
     Before,
     /// At the value, just after the event.
     Met,

@@ -33,7 +33,7 @@ struct Saved<'a> {
     run: Option<SavedRun>,
 }
 
-/// A run that goes on from the state.
+/// A run that continues from the state.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct SavedRun {
     pub(super) progress: Progress,
@@ -57,7 +57,7 @@ impl StatesContact {
         self.save_with(path.as_ref(), None)
     }
 
-    /// [`StatesContact::save`] with a run that goes on from it.
+    /// [`StatesContact::save`] with a run that continues from there.
     pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun>) -> Result<()> {
         let (kind, states, interpolant) = (Cow::Borrowed(KIND), self.fingerprint(), self.scene.interpolant);
         let times = [self.time, self.reduced_time];

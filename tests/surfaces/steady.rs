@@ -150,7 +150,7 @@ impl Scene {
         self.waves.iter().map(wave).sum()
     }
 
-    /// The middle of the contact, along the motion from that of the grid.
+    /// The middle of the contact, along the motion from the middle of the grid.
     pub(super) fn middle(&self) -> f64 {
         0.5 * (self.behind as f64 - self.ahead as f64)
     }

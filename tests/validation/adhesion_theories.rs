@@ -145,7 +145,7 @@ fn a_slow_and_a_fast_edge_are_limits() {
     let slow = edge.pull_off(1.0, 3.0, 1e-7).unwrap();
     close(slow.force, -1.5 * PI, 1e-3);
     close(slow.contact_radius, Jkr::new(1.0, 1.0, 1.0).unwrap().radius_at_pull_off(), 1e-2);
-    // at once a contact wider than that of 10 w at its pull-off holds as long as 10 w do
+    // at once a contact wider than JKR has at pull-off with 10 w holds as long as 10 w do
     let fast = edge.pull_off(1.0, 20.0, 1e9).unwrap();
     close(fast.force, -15.0 * PI, 1e-3);
     // other units

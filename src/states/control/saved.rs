@@ -31,7 +31,7 @@ impl SavedControl {
         sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
 
-    /// The control of a run that goes on from this `contact`.
+    /// The control of a run that continues from this `contact`.
     pub(in crate::states) fn resumed(self, contact: &StatesContact) -> StepControl {
         let SavedControl { until, next, corner, by_force, greatest, loads, greatest_load, pressed, rejected } = self;
         let new = StepControl::new(contact, until);
