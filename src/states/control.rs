@@ -4,12 +4,6 @@
 //! touches within the step, or a surface that recovers while nothing presses on it, does not show there. So the control looks at the load
 //! within the step, ends steps where bodies touch and forces begin or end, and compares the free surface and the strains of all levels.
 
-#[cfg(feature = "checkpoint")]
-mod saved;
-
-#[cfg(feature = "checkpoint")]
-pub(super) use saved::SavedControl;
-
 use crate::contact::StepReport;
 use crate::error::{Result, StepError};
 use crate::load::{Load, LoadHistory};
@@ -58,6 +52,17 @@ const MERGING: f64 = 0.01;
 /// Chooses the adaptive steps.
 #[derive(Debug, Clone)]
 pub(super) struct StepControl {
+    pub(super) record: Record,
+    /// The step taken whole, in halves, and after the first half.
+    whole: StatesContact,
+    halves: StatesContact,
+    middle: StatesContact,
+}
+
+/// What the control knows of the run: all that a run from a file needs.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Record {
     until: f64,
     /// Length of the next step; 0 after a jump or a corner.
     next: f64,
@@ -73,103 +78,32 @@ pub(super) struct StepControl {
     /// The longest time for which at least half of the greatest load acts.
     pressed: f64,
     pub(super) rejected: u64,
-    /// The step taken whole, in halves, and after the first half.
-    whole: StatesContact,
-    halves: StatesContact,
-    middle: StatesContact,
 }
 
-impl StepControl {
+impl Record {
     /// For a run to the time `until`.
-    pub(super) fn new(contact: &StatesContact, until: f64) -> StepControl {
-        StepControl {
+    pub(super) fn new(until: f64) -> Record {
+        let loads = Vec::with_capacity(PARTS_OF_RUN as usize + 1);
+        let (by_force, greatest) = (true, [0.0; 2]);
+        Record {
             until,
             next: 0.0,
             corner: 0.0,
-            by_force: true,
-            greatest: [0.0; 2],
-            loads: Vec::with_capacity(PARTS_OF_RUN as usize + 1),
+            by_force,
+            greatest,
+            loads,
             greatest_load: 0.0,
             pressed: 0.0,
             rejected: 0,
-            whole: contact.clone(),
-            halves: contact.clone(),
-            middle: contact.clone(),
         }
     }
 
-    /// The next step starts at a jump or a corner of the load.
-    pub(super) fn restart(&mut self) {
-        self.next = 0.0;
-    }
-
-    /// Takes the longest step that the tolerance allows, to the time `stop` at most. If it fails, the contact stays as it was.
-    pub(super) fn step(
-        &mut self,
-        contact: &mut StatesContact,
-        history: &dyn LoadHistory,
-        tolerance: f64,
-        stop: f64,
-    ) -> Result<StepReport> {
-        let (now, is_first) = (contact.time(), self.next == 0.0);
-        let shortest = SHORTEST * stop;
-        if stop - now <= 2.0 * shortest {
-            return contact.step_to(stop, stop - now, load_at(history, stop)?);
-        }
-        if self.loads.is_empty() {
-            self.sample(contact, history);
-        }
-        if is_first {
-            self.corner = now;
-        }
-        let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.next }.max(shortest);
-        let growth_of = |otherwise: f64| contact.levels.longest_growth(otherwise);
-        let (longest, resists_rates_alone) = (growth_of(MAX_GROWTH), growth_of(MAX_GROWTH) < MAX_GROWTH);
-        let of_load = if self.by_force { AIM_OF_FORCE } else { AIM };
-        let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * of_load * tolerance;
-        let mut last: Option<(f64, f64)> = None;
-        loop {
-            if length < shortest {
-                return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
-            }
-            let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
-            let mut loads = [value(contact, history.checked_at(now, false)?)?; PARTS + 1];
-            for (k, load) in loads.iter_mut().enumerate().skip(1) {
-                *load = value(contact, load_at(history, part([now, end], k as f64))?)?;
-            }
-            if self.bend([now, end], &loads) > BEND * self.greatest_load && end - now > 2.0 * shortest {
-                length = 0.5 * (end - now);
-                continue;
-            }
-            let event = self.event(contact, history, [now, end], &loads, tolerance)?;
-            end = event.unwrap_or(end);
-            let (report, difference) = self.compare(contact, history, [now, end])?;
-            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(load_at(history, end)?);
-            let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
-            let order = match last {
-                _ if is_first => 1.0,
-                Some((length, before)) if 0.0 < error && error < before => {
-                    ((before / error).ln() / (length / (end - now)).ln()).clamp(1.0, ORDER)
-                }
-                Some(_) => 1.0,
-                None => ORDER,
-            };
-            let most = if error > 0.0 { longest } else { MAX_GROWTH };
-            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
-            if error <= ALLOWED * aim {
-                self.next = match event {
-                    Some(_) => growth.clamp(0.5, 1.0) * length,
-                    None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
-                };
-                self.greatest = self.greatest_with(report.force);
-                contact.copy_from(&self.halves);
-                contact.levels.merge(&contact.states, MERGING * tolerance);
-                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
-            }
-            self.rejected += 1;
-            last = Some((end - now, error));
-            length = growth.min(0.5) * (end - now);
-        }
+    /// Whether a run can continue with these values; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self) -> bool {
+        let sizes = [self.until, self.next, self.greatest[0], self.greatest[1], self.greatest_load, self.pressed];
+        let times = self.loads.iter().flat_map(|(time, load)| [*time, *load]);
+        sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
 
     /// Looks at the load at equal parts of the run. A load that is refused fails the step to it.
@@ -206,6 +140,86 @@ impl StepControl {
         }
         own.chain(others.map(|(time, load)| off((time - now) / (end - now), *load))).fold(0.0, f64::max)
     }
+}
+
+impl StepControl {
+    pub(super) fn new(contact: &StatesContact, record: Record) -> StepControl {
+        StepControl { record, whole: contact.clone(), halves: contact.clone(), middle: contact.clone() }
+    }
+
+    /// The next step starts at a jump or a corner of the load.
+    pub(super) fn restart(&mut self) {
+        self.record.next = 0.0;
+    }
+
+    /// Takes the longest step that the tolerance allows, to the time `stop` at most. If it fails, the contact stays as it was.
+    pub(super) fn step(
+        &mut self,
+        contact: &mut StatesContact,
+        history: &dyn LoadHistory,
+        tolerance: f64,
+        stop: f64,
+    ) -> Result<StepReport> {
+        let (now, is_first) = (contact.time(), self.record.next == 0.0);
+        let shortest = SHORTEST * stop;
+        if stop - now <= 2.0 * shortest {
+            return contact.step_to(stop, stop - now, load_at(history, stop)?);
+        }
+        if self.record.loads.is_empty() {
+            self.record.sample(contact, history);
+        }
+        if is_first {
+            self.record.corner = now;
+        }
+        let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
+        let growth_of = |otherwise: f64| contact.levels.longest_growth(otherwise);
+        let (longest, resists_rates_alone) = (growth_of(MAX_GROWTH), growth_of(MAX_GROWTH) < MAX_GROWTH);
+        let of_load = if self.record.by_force { AIM_OF_FORCE } else { AIM };
+        let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * of_load * tolerance;
+        let mut last: Option<(f64, f64)> = None;
+        loop {
+            if length < shortest {
+                return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
+            }
+            let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
+            let mut loads = [value(contact, history.checked_at(now, false)?)?; PARTS + 1];
+            for (k, load) in loads.iter_mut().enumerate().skip(1) {
+                *load = value(contact, load_at(history, part([now, end], k as f64))?)?;
+            }
+            if self.record.bend([now, end], &loads) > BEND * self.record.greatest_load && end - now > 2.0 * shortest {
+                length = 0.5 * (end - now);
+                continue;
+            }
+            let event = self.event(contact, history, [now, end], &loads, tolerance)?;
+            end = event.unwrap_or(end);
+            let (report, difference) = self.compare(contact, history, [now, end])?;
+            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(load_at(history, end)?);
+            let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
+            let order = match last {
+                _ if is_first => 1.0,
+                Some((length, before)) if 0.0 < error && error < before => {
+                    ((before / error).ln() / (length / (end - now)).ln()).clamp(1.0, ORDER)
+                }
+                Some(_) => 1.0,
+                None => ORDER,
+            };
+            let most = if error > 0.0 { longest } else { MAX_GROWTH };
+            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
+            if error <= ALLOWED * aim {
+                self.record.next = match event {
+                    Some(_) => growth.clamp(0.5, 1.0) * length,
+                    None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
+                };
+                self.record.greatest = self.greatest_with(report.force);
+                contact.copy_from(&self.halves);
+                contact.levels.merge(&contact.states, MERGING * tolerance);
+                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
+            }
+            self.record.rejected += 1;
+            last = Some((end - now, error));
+            length = growth.min(0.5) * (end - now);
+        }
+    }
 
     /// The first time within a step at which bodies that are apart touch, or a force begins or ends. A surface that nothing presses on only
     /// sinks.
@@ -240,7 +254,7 @@ impl StepControl {
         if !by_force && excess(end, top)? <= 0.0 {
             return Ok(None);
         }
-        let scale = self.greatest[0].max(1e-3 * self.greatest_load);
+        let scale = self.record.greatest[0].max(1e-3 * self.record.greatest_load);
         let overshoot = if by_force { 0.0 } else { OVERSHOOT * tolerance * scale };
         let near = now + if by_force { SAME_TIME } else { AT_START } * (end - now);
         let (mut low, mut presses) = (now, by_force && loads[0] > 0.0);
@@ -287,14 +301,19 @@ impl StepControl {
         let report = to(halves, end)?;
 
         let cuts = [middle.level(), halves.level()];
-        let mut of_surface =
-            whole.levels.distance(&whole.states, &halves.levels, contact.level(), cuts, (end - self.corner) / half);
-        if self.by_force {
+        let mut of_surface = whole.levels.distance(
+            &whole.states,
+            &halves.levels,
+            contact.level(),
+            cuts,
+            (end - self.record.corner) / half,
+        );
+        if self.record.by_force {
             of_surface[1] = 0.0;
         }
         let demand = contact.demand(load_at(history, end)?)?;
-        let steps = [self.until, self.pressed].map(|time| time / half);
-        let expected = halves.levels.expected(&halves.states, demand, self.greatest_load, steps);
+        let steps = [self.record.until, self.record.pressed].map(|time| time / half);
+        let expected = halves.levels.expected(&halves.states, demand, self.record.greatest_load, steps);
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
         let StepControl { whole, halves, middle, .. } = self;
@@ -333,7 +352,7 @@ impl StepControl {
     /// The greatest depth and force of the run, the step being tried included. Depths without contact are no scale.
     fn greatest_with(&self, force: f64) -> [f64; 2] {
         let depth = if force == 0.0 { 0.0 } else { self.halves.depth().abs() };
-        [self.greatest[0].max(depth), self.greatest[1].max(force)]
+        [self.record.greatest[0].max(depth), self.record.greatest[1].max(force)]
     }
 }
 

@@ -12,9 +12,7 @@ use crate::run::driven::{Course, Driven};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
-#[cfg(feature = "checkpoint")]
-use crate::states::control::SavedControl;
-use crate::states::control::{StepControl, load_at};
+use crate::states::control::{Record, StepControl, load_at};
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
 
@@ -71,14 +69,14 @@ impl Driven for StatesContact {
 
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StatesControl) {
         let (_, tolerance) = stepping.lengths();
-        let (before, steps) = (self.clone(), StepControl::new(self, until));
+        let (before, steps) = (self.clone(), StepControl::new(self, Record::new(until)));
         let control = StatesControl { load: None, tolerance, before, steps, halved: false };
         #[cfg(feature = "checkpoint")]
         if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedRun>())
             && saved.progress.continues(self.time, stepping, until)
         {
-            let SavedRun { progress, load, control: steps } = (*saved).clone();
-            return (progress, StatesControl { load, steps: steps.resumed(self), ..control });
+            let SavedRun { progress, load, control: record } = (*saved).clone();
+            return (progress, StatesControl { load, steps: StepControl::new(self, record), ..control });
         }
         (Progress::begin(self.time, stepping), control)
     }
@@ -137,12 +135,12 @@ impl Driven for StatesContact {
     }
 
     fn rejected(control: &StatesControl) -> u64 {
-        control.steps.rejected
+        control.steps.record.rejected
     }
 
     #[cfg(feature = "checkpoint")]
     fn save_run(&self, path: &Path, (progress, control): (&Progress, &StatesControl)) -> Result<()> {
-        let (progress, steps) = (progress.clone(), SavedControl::of(&control.steps));
-        self.save_with(path, Some(SavedRun { progress, load: control.load, control: steps }))
+        let StatesControl { load, steps, .. } = control;
+        self.save_with(path, Some(SavedRun { progress: progress.clone(), load: *load, control: steps.record.clone() }))
     }
 }

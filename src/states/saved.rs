@@ -16,7 +16,7 @@ use crate::load::Load;
 use crate::parallel::Rows;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
-use crate::states::control::SavedControl;
+use crate::states::control::Record;
 use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
 
@@ -39,7 +39,7 @@ pub(super) struct SavedRun {
     pub(super) progress: Progress,
     /// The load that acts.
     pub(super) load: Option<Load>,
-    pub(super) control: SavedControl,
+    pub(super) control: Record,
 }
 
 const KIND: &str = "elastic states";
