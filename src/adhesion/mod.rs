@@ -28,7 +28,7 @@ pub use van_der_waals::VanDerWaals;
 
 use std::fmt::Debug;
 
-use crate::error::{Result, finite, length, positive};
+use crate::error::{Result, UserError, finite, length, positive};
 
 /// A law of attraction: a traction that never grows with the gap. Implementations are tested by [`laws::all`].
 ///
@@ -68,6 +68,11 @@ pub trait Attraction: Debug + Send + Sync {
     fn range(&self) -> f64 {
         self.energy(0.0) / self.traction(0.0)
     }
+
+    /// Why the last value was none, of a law that can fail: such a value is NaN, and this error comes out of the call that needed it.
+    fn failure(&self) -> Option<UserError> {
+        None
+    }
 }
 
 /// The slope at which an attraction softens \[Pa/m\]: the greater of w/ρ², its slope on average, and of the steepest slope −s′ up to the gap
@@ -104,6 +109,10 @@ macro_rules! forward_attraction {
 
             fn range(&$self) -> f64 {
                 $inner.range()
+            }
+
+            fn failure(&$self) -> Option<$crate::UserError> {
+                $inner.failure()
             }
         }
     };

@@ -1,11 +1,16 @@
 use std::fmt;
 
-use crate::error::{Result, finite};
+use crate::error::{Failure, Result, UserError, finite};
 
 /// The position of an indenter as a function of time.
 pub trait Path: fmt::Debug + Send + Sync {
     /// Position (x1, x2) \[m\] of the origin of the shape at time `t` \[s\].
     fn at(&self, t: f64) -> [f64; 2];
+
+    /// Why the last position was none, of a path that can fail ([`FnPath::fallible`]): such a position is NaN.
+    fn failure(&self) -> Option<UserError> {
+        None
+    }
 }
 
 /// A straight path at constant velocity.
@@ -53,12 +58,25 @@ impl Path for Straight {
 #[derive(Clone)]
 pub struct FnPath<F> {
     at: F,
+    failure: Failure,
+}
+
+impl FnPath<fn(f64) -> [f64; 2]> {
+    /// Wraps a closure that may fail: its error comes out of the step that needed the position, as the source of
+    /// [`Error::User`](crate::Error::User).
+    pub fn fallible<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
+        at: impl Fn(f64) -> Result<[f64; 2], E> + Send + Sync,
+    ) -> FnPath<impl Fn(f64) -> [f64; 2] + Send + Sync> {
+        let failure = Failure::default();
+        let caught = failure.clone();
+        FnPath { at: move |t| caught.or("the path", at(t), [f64::NAN; 2]), failure }
+    }
 }
 
 impl<F: Fn(f64) -> [f64; 2] + Send + Sync> FnPath<F> {
     /// Wraps the closure; each step checks its values.
     pub fn new(at: F) -> FnPath<F> {
-        FnPath { at }
+        FnPath { at, failure: Failure::default() }
     }
 }
 
@@ -67,5 +85,9 @@ debug_by!(self: FnPath<F> =>);
 impl<F: Fn(f64) -> [f64; 2] + Send + Sync> Path for FnPath<F> {
     fn at(&self, t: f64) -> [f64; 2] {
         (self.at)(t)
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.failure.take()
     }
 }

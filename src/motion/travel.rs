@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::error::{Result, finite};
+use crate::error::{Error, Result, finite};
 use crate::geometry::{Geometry, Shifted};
 use crate::motion::Path;
 
@@ -52,7 +52,8 @@ impl Travel {
     /// If the path returns a value that is not finite.
     pub fn position(&self, t: f64) -> Result<[f64; 2]> {
         let [x1, x2] = self.path.at(t);
-        Ok([finite("position along x1", x1)?, finite("position along x2", x2)?])
+        let position = || Ok([finite("position along x1", x1)?, finite("position along x2", x2)?]);
+        position().map_err(|error| self.path.failure().map_or(error, Error::User))
     }
 
     /// The moving shape at its position at time `t` \[s\], without the track.

@@ -5,11 +5,13 @@ use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use viscocontact::Error;
+use viscocontact::adhesion::{Attraction, ExponentialAttraction};
 use viscocontact::load::LoadError;
+use viscocontact::motion::{FnPath, Travel};
 use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::run::RunContact;
+use viscocontact::{Error, UserError};
 
 use crate::common::{Draws, Temporary, from_environment};
 
@@ -379,6 +381,54 @@ fn errors_of_gaps_and_creep_come_out_as_themselves() {
         let builder = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap()).geometry(shape);
         own(builder.material(Material::incompressible(Elastic::new(1.0e6).unwrap())).build().unwrap_err());
     }
+}
+
+/// Paths and laws of attraction that fail after a while, on bodies of both kinds of solver for attraction.
+#[test]
+fn errors_of_paths_and_attraction_come_out_as_themselves() {
+    #[derive(Debug)]
+    struct Drifting(ExponentialAttraction, Arc<AtomicBool>);
+    impl Attraction for Drifting {
+        fn traction(&self, gap: f64) -> f64 {
+            if self.1.load(Ordering::Relaxed) { f64::NAN } else { self.0.traction(gap) }
+        }
+        fn energy(&self, gap: f64) -> f64 {
+            self.0.energy(gap)
+        }
+        fn failure(&self) -> Option<UserError> {
+            self.1.load(Ordering::Relaxed).then(|| UserError::new("the law", "x".parse::<f64>().unwrap_err()))
+        }
+    }
+    let (grid, ball) = (Grid::square(32, 4.0e-3).unwrap(), Sphere::new(10.0e-3).unwrap());
+    let material = || Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+    let own = |error: Error| {
+        assert!(matches!(error, Error::User(_)), "{error}");
+        assert!(error.source().unwrap().is::<std::num::ParseFloatError>());
+    };
+    for periodic in [false, true] {
+        let fails = Arc::new(AtomicBool::new(true));
+        let law = || Drifting(ExponentialAttraction::new(1.0, 1.0e-5).unwrap(), Arc::clone(&fails));
+        let builder = || {
+            let builder = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(material());
+            let builder =
+                if periodic { builder.kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap())) } else { builder };
+            builder.attraction(law())
+        };
+        own(builder().build().unwrap_err());
+        fails.store(false, Ordering::Relaxed);
+        let mut contact = builder().build().unwrap();
+        contact.step(0.1, Load::approach(1.0e-5)).unwrap();
+        let before = (contact.time(), contact.force().to_bits());
+        fails.store(true, Ordering::Relaxed);
+        own(contact.step(0.1, Load::approach(1.1e-5)).unwrap_err());
+        assert_eq!((contact.time(), contact.force().to_bits()), before);
+    }
+    let path = FnPath::fallible(|t| if t < 0.15 { Ok([1.0e-3 * t, 0.0]) } else { "x".parse().map(|x1| [x1, 0.0]) });
+    let travel = Travel::new(ball, path);
+    let mut contact = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(material()).build().unwrap();
+    contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap();
+    own(contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap_err());
+    assert_eq!(contact.time(), 0.1);
 }
 
 /// A run that is interrupted at any step and resumed writes the files of one that is not: rows and frames after the save are cut off.

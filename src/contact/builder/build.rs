@@ -286,9 +286,12 @@ fn longer_side(grid: &Grid) -> f64 {
 
 /// Rejects a law that is no attraction, and a mesh on which even the elastic response has too short a zone.
 fn zone_is_resolved(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<()> {
-    positive("work of separation", law.work())?;
-    length("range of the attraction", law.range())?;
-    laws::usable(law).map_err(AdhesionError::Law)?;
+    let usable = || {
+        positive("work of separation", law.work())?;
+        length("range of the attraction", law.range())?;
+        Ok(laws::usable(law).map_err(AdhesionError::Law)?)
+    };
+    usable().map_err(|error| law.failure().map_or(error, Error::User))?;
     let cells = cells_in_zone(softening(law), material.checked_compliance(0.0, (0.0, 0.0))?, grid);
     if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
         return Ok(());

@@ -300,8 +300,9 @@ impl Computation {
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
         if let Some(law) = scene.attraction.as_deref() {
-            AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] }
-                .solve(window, trial)?;
+            let solved = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] }
+                .solve(window, trial);
+            solved.map_err(|error| law.failure().map_or(error, Error::User))?;
         } else {
             guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
             if c == 0.0 {
