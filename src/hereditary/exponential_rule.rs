@@ -133,7 +133,7 @@ impl ExponentialRule {
     }
 
     /// E_i of each relaxation time.
-    pub(super) fn moduli(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn moduli(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + '_ {
         self.relaxation.terms().iter().map(|&(modulus, _)| modulus)
     }
 
