@@ -200,9 +200,14 @@ impl Levels {
         } else if level == 0.0 {
             self.release();
         }
-        if let (Demand::Depth { depth, .. }, true) = (demand, level == 0.0) {
-            self.lift = self.motions.depth - depth;
-            self.motions.depth = depth;
+        match demand {
+            Demand::Depth { depth, .. } if level == 0.0 => {
+                self.lift = self.motions.depth - depth;
+                self.motions.depth = depth;
+            }
+            // in place of the sum of tractions, which are rounded differences over the compliance of the step
+            Demand::Force(force) if level > 0.0 => self.force = force,
+            _ => {}
         }
     }
 
