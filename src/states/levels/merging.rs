@@ -4,7 +4,7 @@ use crate::states::curve::ElasticStates;
 use crate::states::levels::{Group, Levels};
 
 /// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
-const MORE: [usize; 2] = [8, 8];
+const MORE: [usize; 2] = [16, 8];
 /// What merging changes is measured against the force and depth with a cut at the level of the groups, but against this part of those at the
 /// top at least.
 const LEAST: f64 = 1e-4;
