@@ -97,7 +97,8 @@ fn same(a: f64, b: f64, within: f64) -> bool {
 }
 
 /// The gap at a point, if `found` differs from it by more than `within`.
-fn mismatch(geometry: &dyn Geometry, grid: &Grid, [x1, x2]: [f64; 2], found: f64, within: f64) -> Option<f64> {
+fn mismatch(geometry: &dyn Geometry, grid: &Grid, point: [f64; 2], found: f64, within: f64) -> Option<f64> {
+    let [x1, x2] = point;
     let expected = geometry.initial_gap(x1, x2);
     if same(found, expected, within) {
         return None;

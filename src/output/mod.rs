@@ -78,10 +78,11 @@ struct Kept {
 
 impl Kept {
     /// Includes what ends at `end`, with its time, force and approach, unless it is later than the contact.
-    fn includes(&mut self, end: u64, [time, force, approach]: [f64; 3], contact: &impl Contact) -> bool {
+    fn includes(&mut self, end: u64, state: [f64; 3], contact: &impl Contact) -> bool {
+        let time = state[0];
         if time < contact.time() {
             self.earlier = end;
-        } else if [time, force, approach] == [contact.time(), contact.force(), contact.approach()] {
+        } else if state == [contact.time(), contact.force(), contact.approach()] {
             self.with_state = Some(end);
         }
         time <= contact.time()

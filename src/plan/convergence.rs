@@ -106,7 +106,7 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
         Load::Force { tilt, .. } => Load::Force { normal: level, tilt },
         other => Load::Approach { approach: curve.approach(level), tilt: other.tilt() },
     };
-    let (mut levels, peak) = (levels(trace.levels), trace.level);
+    let (mut levels, peak) = (levels(trace.levels[0], trace.levels[1]), trace.level);
     let is_period = size.sides.iter().any(|side| matches!(side, Side::Period(_)));
     // a period holds all of its contacts
     let is_small = !is_period && curve.radius(peak) < SMALL_CONTACT * curve.radius(trace.levels[1]);
@@ -141,7 +141,7 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
 
 /// The levels at which meshes are compared, the greatest first: the run is made of the states between its least level
 /// and its greatest.
-fn levels([least, greatest]: [f64; 2]) -> Vec<f64> {
+fn levels(least: f64, greatest: f64) -> Vec<f64> {
     let parts = ((greatest / least).ln() / RATIO.ln()).ceil().clamp(0.0, (MAX_LEVELS - 1) as f64);
     let ratio = if parts > 0.0 { (greatest / least).powf(1.0 / parts).min(LARGEST_RATIO) } else { 1.0 };
     let mut levels: Vec<f64> = (0..=parts as usize).map(|k| greatest / ratio.powf(k as f64)).collect();

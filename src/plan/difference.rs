@@ -52,11 +52,11 @@ pub(super) fn unseen(scene: &TrialScene<'_>, run: &Run, values: &[[f64; 2]]) -> 
     let step = run.states.partition_point(|state| state.time < at);
     let around = run.steps.iter().skip(step.saturating_sub(1)).take(3);
     let length = around.map(|(dt, _)| *dt).fold(0.0, f64::max);
-    missed(values, [at, greatest], [start, end], length)
+    missed(values, at, greatest, [start, end], length)
 }
 
 /// The share of the greatest value that steps of this length miss, wherever they end between two corners.
-fn missed(values: &[[f64; 2]], [at, greatest]: [f64; 2], [start, end]: [f64; 2], length: f64) -> f64 {
+fn missed(values: &[[f64; 2]], at: f64, greatest: f64, [start, end]: [f64; 2], length: f64) -> f64 {
     let within = values.iter().filter(|[time, _]| *time > start && (at - length..=at).contains(time));
     let shown = within.map(|&[time, before]| {
         let next = values.iter().find(|[next, _]| *next >= end.min(time + length));
@@ -83,9 +83,9 @@ mod tests {
         let values: Vec<[f64; 2]> =
             (-1000..=1000).map(|k| f64::from(k) * 1e-3).map(|t| [t, 1.0 - 0.25 * t * t]).collect();
         for length in [0.1_f64, 0.4, 0.8] {
-            let found = missed(&values, [0.0, 1.0], [-1.0, 1.0], length);
+            let found = missed(&values, 0.0, 1.0, [-1.0, 1.0], length);
             assert!((found - 0.0625 * length * length).abs() < 2e-3 * length, "{length}: {found}");
-            let beside = missed(&values, [0.0, 1.0], [-1.0, 0.1 * length], length);
+            let beside = missed(&values, 0.0, 1.0, [-1.0, 0.1 * length], length);
             assert!((beside - 0.0025 * length * length).abs() < 2e-3 * length, "{length}: {beside}");
         }
     }

@@ -139,7 +139,8 @@ impl Canvas {
     }
 
     /// A black text of `size` pixels per em whose baseline starts, is centred or ends at a point; upright texts run upwards.
-    pub(super) fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, anchor: Anchor, upright: bool) {
+    pub(super) fn text(&mut self, text: &str, at: [f64; 2], size: f64, anchor: Anchor, upright: bool) {
+        let [x, y] = at;
         // XML does not allow all characters
         let forbidden = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
         let text = text.replace(forbidden, "\u{fffd}");

@@ -25,7 +25,8 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 
 /// Calls `ink` with every pixel of a text whose baseline starts at a point, and the share of the pixel that is covered;
 /// returns the width of the text.
-pub(super) fn draw(text: &str, size: f64, [x, y]: [f64; 2], ink: &mut dyn FnMut(i32, i32, f32)) -> f64 {
+pub(super) fn draw(text: &str, size: f64, start: [f64; 2], ink: &mut dyn FnMut(i32, i32, f32)) -> f64 {
+    let [x, y] = start;
     let mut left = x as f32;
     for c in text.chars() {
         // the font lacks the superscript minus: a small raised one replaces it

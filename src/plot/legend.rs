@@ -17,7 +17,8 @@ const ALL: [usize; 9] = [2, 0, 8, 6, 1, 7, 5, 3, 4];
 
 impl Legend {
     /// The rectangle of a legend of this size at a position: left, top, right and bottom.
-    fn rectangle(position: usize, [width, height]: [f64; 2], frame: &Frame) -> [f64; 4] {
+    fn rectangle(position: usize, size: [f64; 2], frame: &Frame) -> [f64; 4] {
+        let [width, height] = size;
         let (row, column) = (position / 3, position % 3);
         let start = |low: f64, high: f64, size: f64| [low + INSET, 0.5 * (low + high - size), high - INSET - size];
         let left = start(frame.left, frame.right, width)[column];

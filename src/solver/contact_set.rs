@@ -196,8 +196,8 @@ impl ContactSet {
                         value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
                     }
                 }
-                gram.add(&line, weights);
-                let part = line.sums(pressures);
+                gram.add(&line, weights[0], weights[1], weights[2]);
+                let part = line.sums(pressures[0], pressures[1]);
                 (0..3).for_each(|m| sums[m] += part[m]);
             }
             let [a, b, c] = gram.entries;

@@ -165,7 +165,8 @@ impl<'a> Passes<'a> {
     /// d ← scale (z + β d + motion) in contact, 0 elsewhere; with β = 0 for any d, NaN included.
     pub(crate) fn redirect(
         self,
-        [scale, beta]: [f64; 2],
+        scale: f64,
+        beta: f64,
         motions: &[ModeCoefficients],
         z: &[f64],
         direction: &mut [f64],
@@ -252,7 +253,7 @@ pub(crate) fn add(x: &mut [f64], a: f64, y: &[f64]) {
 #[inline]
 fn add_modes(sums: &mut [f64; 3], line: &Line, f: &[f64]) {
     let moment = if line.step != 0.0 { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
-    let part = line.sums([sum(f), moment]);
+    let part = line.sums(sum(f), moment);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
 }
 
@@ -311,7 +312,7 @@ mod tests {
             })
             .collect();
         let at = |k: usize| problem.modes(problem.owner(k)).displacement(motions[problem.owner(k)], k);
-        let modes = |k: usize| problem.modes(problem.owner(k)).line(k).sums([1.0, 0.0]);
+        let modes = |k: usize| problem.modes(problem.owner(k)).line(k).sums(1.0, 0.0);
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * (1.0 + a.abs()), "{a} {b}");
         let inside = |body: usize, f: &dyn Fn(usize) -> f64| {
             (0..n).filter(|&k| set.member[k] && problem.owner(k) == body).map(f).sum::<f64>()
@@ -367,7 +368,7 @@ mod tests {
             near(found.direction_image, inside(body, &|k| d[k] * kd[k]));
         }
         let mut turned = d.clone();
-        set.passes(&problem, &mut bands).redirect([2.0, 0.5], &motions, &z, &mut turned);
+        set.passes(&problem, &mut bands).redirect(2.0, 0.5, &motions, &z, &mut turned);
         (0..n).for_each(|k| {
             near(turned[k], if set.member[k] { 2.0 * (z[k] + 0.5 * d[k] + at(k)) } else { 0.0 });
         });

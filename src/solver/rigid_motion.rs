@@ -165,7 +165,7 @@ impl Line {
     }
 
     /// Σ B f, from Σ f and Σ j f.
-    pub(crate) fn sums(&self, [sum, moment]: [f64; 2]) -> [f64; 3] {
+    pub(crate) fn sums(&self, sum: f64, moment: f64) -> [f64; 3] {
         let [mode0, mode1, mode2] = self.first;
         [mode0 * sum, mode1 * sum, mode2 * sum + self.step * moment]
     }
@@ -173,10 +173,10 @@ impl Line {
 
 impl Gram {
     /// Adds Σ w B Bᵀ of a line, from Σ w, Σ w j and Σ w j².
-    pub(super) fn add(&mut self, line: &Line, [weight, moment, square]: [f64; 3]) {
+    pub(super) fn add(&mut self, line: &Line, weight: f64, moment: f64, square: f64) {
         let modes = line.first;
         for (m, row) in self.entries.iter_mut().enumerate() {
-            let part = line.sums([weight, moment]).map(|sum| modes[m] * sum);
+            let part = line.sums(weight, moment).map(|sum| modes[m] * sum);
             row.iter_mut().zip(part).for_each(|(entry, part)| *entry += part);
         }
         // the third mode is modes[2] + step j
@@ -190,7 +190,7 @@ impl Gram {
     pub(crate) fn add_cells(&mut self, line: &Line, cells: usize) {
         let count = cells as f64;
         // about their middle Σ j vanishes
-        self.add(&line.from(0.5 * (count - 1.0)), [count, 0.0, count * (count * count - 1.0) / 12.0]);
+        self.add(&line.from(0.5 * (count - 1.0)), count, 0.0, count * (count * count - 1.0) / 12.0);
     }
 
     /// Solves Gram x = `right`; x is zero for a mode that depends on the others.

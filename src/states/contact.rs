@@ -230,7 +230,7 @@ impl StatesContact {
             Load::Spring { stiffness: 1.0 / give, drive, tilt }
         };
         let solved = elastic.lock().unwrap_or_else(PoisonError::into_inner).solve(load)?;
-        Arc::make_mut(&mut self.states).insert(solved);
+        Arc::make_mut(&mut self.states).insert(solved.state, solved.pressure);
         Ok(())
     }
 

@@ -312,8 +312,8 @@ impl StepControl {
             of_surface[1] = 0.0;
         }
         let demand = contact.demand(load_at(history, end)?)?;
-        let steps = [self.record.until, self.record.pressed].map(|time| time / half);
-        let expected = halves.levels.expected(&halves.states, demand, self.record.greatest_load, steps);
+        let Record { until, pressed, greatest_load, .. } = self.record;
+        let expected = halves.levels.expected(&halves.states, demand, greatest_load, until / half, pressed / half);
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
         let StepControl { whole, halves, middle, .. } = self;

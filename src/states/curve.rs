@@ -7,7 +7,6 @@ use crate::Grid;
 use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
-use crate::states::elastic::Solved;
 use crate::states::interpolation::{hermite, hermite_slope, root};
 use crate::states::pressed::Pressed;
 
@@ -142,7 +141,7 @@ impl ElasticStates {
     }
 
     /// Adds a state, unless one as near as rounding, or out of order by it, is there.
-    pub(super) fn insert(&mut self, Solved { state, pressure }: Solved) {
+    pub(super) fn insert(&mut self, state: ElasticState, pressure: Pressed) {
         let at = self.states.partition_point(|other| other.level < state.level);
         let depth = self.depth_of(&state);
         let is_below =

@@ -53,10 +53,13 @@ impl Indenter {
     }
 
     fn slopes(&self, grid: &Grid) -> Slopes {
-        *self.slopes.get_or_init(|| self.slopes_of(self.greatest_slope_and_relief(whole(grid)), grid))
+        *self.slopes.get_or_init(|| {
+            let [squared, relief] = self.greatest_slope_and_relief(whole(grid));
+            self.slopes_of(squared, relief, grid)
+        })
     }
 
-    fn slopes_of(&self, [squared, relief]: [f64; 2], grid: &Grid) -> Slopes {
+    fn slopes_of(&self, squared: f64, relief: f64, grid: &Grid) -> Slopes {
         let longest = grid.lengths().into_iter().fold(0.0, f64::max);
         let rises_little = squared < FLAT * FLAT || longest > LONG && relief < LEAST_RISE * longest;
         let too_flat = squared > 0.0 && rises_little && relief > RELIEF * self.gap.datum.abs();
@@ -80,7 +83,8 @@ impl Indenter {
             exchange.fetch(&mut self.beyond, n2, own, |k, row| row.copy_from_slice(&above[k * n2..][..n2]));
         }
         let own = self.greatest_slope_and_relief(local(region));
-        self.slopes = self.slopes_of(own.map(|own| rows.greatest(own)), region.whole_grid()).into();
+        let [squared, relief] = own.map(|own| rows.greatest(own));
+        self.slopes = self.slopes_of(squared, relief, region.whole_grid()).into();
         self
     }
 

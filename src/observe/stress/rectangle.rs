@@ -85,7 +85,8 @@ pub(super) fn exchanged(stress: Stress) -> Stress {
 
 /// The stress at a point below a field on rectangles: the sum over all corners, weighted by the double difference of the field
 /// at the corner. Each corner is computed once; corners between equal values are skipped.
-pub(super) fn below_cells(grid: &Grid, field: &[f64], [x, y, z]: [f64; 3], weights: Weights) -> Stress {
+pub(super) fn below_cells(grid: &Grid, field: &[f64], point: [f64; 3], weights: Weights) -> Stress {
+    let [x, y, z] = point;
     let ([n1, n2], [d1, d2]) = (grid.cells(), grid.spacing());
     let mut sum = Stress::default();
     for i in 0..=n1 {
@@ -130,7 +131,8 @@ mod tests {
     use crate::quadrature::GaussLegendre;
 
     /// Displacement (u1, u2, u3) times 4πG under a point force of 1 N (J. Boussinesq; Johnson, section 3.2).
-    fn boussinesq([x, y, z]: [f64; 3], nu: f64) -> [f64; 3] {
+    fn boussinesq(from: [f64; 3], nu: f64) -> [f64; 3] {
+        let [x, y, z] = from;
         let rho = (x * x + y * y + z * z).sqrt();
         let lateral = z / rho.powi(3) - (1.0 - 2.0 * nu) / (rho * (rho + z));
         [x * lateral, y * lateral, z * z / rho.powi(3) + 2.0 * (1.0 - nu) / rho]
@@ -138,16 +140,17 @@ mod tests {
 
     /// Stress below a rectangle of half sides a, b under unit pressure: Hooke's law on differences of fourth order of
     /// Boussinesq's displacement, integrated over the rectangle.
-    fn by_quadrature([a, b]: [f64; 2], [x, y, z]: [f64; 3], nu: f64) -> Stress {
+    fn by_quadrature(half: [f64; 2], below: [f64; 3], nu: f64) -> Stress {
+        let [a, b] = half;
         let rule = GaussLegendre::new(48);
         let displacement = |point: [f64; 3], component: usize| {
             let at = |s: f64, t: f64| boussinesq([point[0] - s, point[1] - t, point[2]], nu)[component];
             rule.integrate(-a, a, |s| rule.integrate(-b, b, |t| at(s, t)))
         };
-        let h = 2e-3 * z;
+        let h = 2e-3 * below[2];
         let slope = |component: usize, axis: usize| {
             let at = |steps: f64| {
-                let mut point = [x, y, z];
+                let mut point = below;
                 point[axis] += steps * h;
                 displacement(point, component)
             };
@@ -162,9 +165,9 @@ mod tests {
         Stress::new(normal, shear)
     }
 
-    fn below([a, b]: [f64; 2], [x, y, z]: [f64; 3], nu: f64) -> Stress {
-        let grid = Grid::new([1, 1], [2.0 * a, 2.0 * b]).unwrap();
-        below_cells(&grid, &[1.0], [x, y, z], [1.0, 1.0 - 2.0 * nu])
+    fn below(half: [f64; 2], point: [f64; 3], nu: f64) -> Stress {
+        let grid = Grid::new([1, 1], half.map(|side| 2.0 * side)).unwrap();
+        below_cells(&grid, &[1.0], point, [1.0, 1.0 - 2.0 * nu])
     }
 
     #[test]

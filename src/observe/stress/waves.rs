@@ -47,7 +47,8 @@ impl Wave {
 
 /// The factors of the stress below a wave at a depth, for a unit pressure. The factors of σ13 and σ23 multiply its slopes
 /// over q1 and q2, the factor of σ12 both slopes.
-pub(super) fn below_wave([q1, q2]: [f64; 2], z: f64, [all, by_ratio]: Weights) -> Stress {
+pub(super) fn below_wave(wave: [f64; 2], z: f64, [all, by_ratio]: Weights) -> Stress {
+    let [q1, q2] = wave;
     let q = q1.hypot(q2);
     if q == 0.0 {
         // with r = 1 − 2ν, ν/(1 − ν) = (1 − r)/(1 + r)
@@ -61,7 +62,8 @@ pub(super) fn below_wave([q1, q2]: [f64; 2], z: f64, [all, by_ratio]: Weights) -
 }
 
 /// The stress at a point below the field with this spectrum.
-pub(super) fn below_field(grid: &Grid, spectrum: &[Complex64], [x, y, z]: [f64; 3], weights: Weights) -> Stress {
+pub(super) fn below_field(grid: &Grid, spectrum: &[Complex64], point: [f64; 3], weights: Weights) -> Stress {
+    let [x, y, z] = point;
     let ([n1, n2], [d1, d2], start) = (grid.cells(), grid.spacing(), grid.center(0, 0));
     let second: Vec<_> = (0..n2).map(|k| Wave::new(k, n2, d2)).map(|wave| (wave.q, wave.at(y - start[1]))).collect();
     let mut sum = Stress::default();

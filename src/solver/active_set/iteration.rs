@@ -159,7 +159,7 @@ impl ActiveSet {
             }
         }
         let scale = if pending { length } else { 1.0 };
-        set.passes(problem, bands).redirect([scale, beta], shifts, z, &mut search.direction);
+        set.passes(problem, bands).redirect(scale, beta, shifts, z, &mut search.direction);
         if pending {
             self.correct_direction(problem, &solution.pressure);
         }

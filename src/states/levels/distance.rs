@@ -17,7 +17,8 @@ impl Levels {
         states: &ElasticStates,
         demand: Demand,
         size: f64,
-        [run, spell]: [f64; 2],
+        run: f64,
+        spell: f64,
     ) -> [f64; 2] {
         let rule = self.history.rule();
         match demand {
