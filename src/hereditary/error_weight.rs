@@ -41,6 +41,6 @@ impl Weight {
     }
 }
 
-fn least([tried, now, before]: [f64; 3]) -> f64 {
-    tried.min(now).min(before)
+fn least(states: [f64; 3]) -> f64 {
+    states.into_iter().fold(f64::INFINITY, f64::min)
 }

@@ -135,11 +135,11 @@ impl GroupHistory {
 
     /// Whether W of two groups, its first difference and what their strains can ever add to W differ by `most` at most. Strains of groups that
     /// are held together, or free together, approach each other ever after, and W of a free group is a mean of them: so their greatest
-    /// difference is never passed, nor is the sum of what each of them alone can raise ([`ExponentialRule::influences`]), here without E∞.
+    /// difference is never passed, nor is the sum of what each of them alone can raise ([`ExponentialRule::influences`]).
     pub(crate) fn differ_at_most(&self, a: usize, b: usize, most: f64) -> bool {
         let [displacements, changes, _, stresses @ ..] = &self.columns[..] else { return true };
         let difference = displacements[a] - displacements[b];
-        let (mut longer, mut greatest, mut raised) = (0.0, 0.0f64, 0.0);
+        let (mut longer, mut greatest, mut raised) = (self.rule.equilibrium(), 0.0f64, 0.0);
         let mut from_longest = stresses.iter().zip(self.rule.moduli()).rev();
         difference.abs() <= most
             && (changes[a] - changes[b]).abs() <= most

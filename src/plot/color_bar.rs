@@ -15,7 +15,8 @@ const TICK: f64 = 7.0;
 /// lie `beyond` it.
 pub(super) fn draw(
     canvas: &mut Canvas,
-    [left, top, bottom]: [f64; 3],
+    left: f64,
+    [top, bottom]: [f64; 2],
     quantity: &Quantity,
     range: [f64; 2],
     beyond: [bool; 2],

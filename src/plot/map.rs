@@ -167,7 +167,7 @@ impl Map {
                 let [low, high] = extremes(of.iter().flat_map(|map| &map.values));
                 let beyond = [low < map.range[0], high > map.range[1]];
                 let bottom = TOP + f64::from(if shared { tallest } else { height }.max(MIN_BAR));
-                color_bar::draw(&mut canvas, [f64::from(side), TOP, bottom], &map.quantity, map.range, beyond);
+                color_bar::draw(&mut canvas, f64::from(side), [TOP, bottom], &map.quantity, map.range, beyond);
             }
             Ok(Picture::new(canvas))
         };
@@ -176,7 +176,8 @@ impl Map {
     }
 
     /// Draws the map with its axes.
-    fn draw_on(&self, canvas: &mut Canvas, [width, height]: [f64; 2]) {
+    fn draw_on(&self, canvas: &mut Canvas, size: [f64; 2]) {
+        let [width, height] = size;
         let half = self.lengths.map(|length| 0.5 * length);
         let axis = |k: usize, length: f64| {
             let [low, high] = [-half[k], half[k]].map(|end| self.middle[k] + end);

@@ -124,7 +124,7 @@ impl Record {
 
     /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
     /// between the equal parts of the step. How far apart bodies are does not matter where this is farther than the greatest depth.
-    fn bend(&mut self, [now, end]: [f64; 2], loads: &[f64; PARTS + 1]) -> f64 {
+    fn bend(&mut self, Span { now, end }: Span, loads: &[f64; PARTS + 1]) -> f64 {
         self.greatest_load = loads.iter().copied().fold(self.greatest_load, f64::max);
         let near = |load: f64| load.max(-self.greatest_load);
         let [a, b, c] = [0, PARTS / 2, PARTS].map(|k| near(loads[k]));
@@ -182,17 +182,18 @@ impl StepControl {
                 return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
             }
             let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
+            let step = Span { now, end };
             let mut loads = [value(contact, history.checked_at(now, false)?)?; PARTS + 1];
             for (k, load) in loads.iter_mut().enumerate().skip(1) {
-                *load = value(contact, load_at(history, part([now, end], k as f64))?)?;
+                *load = value(contact, load_at(history, step.part(k as f64))?)?;
             }
-            if self.record.bend([now, end], &loads) > BEND * self.record.greatest_load && end - now > 2.0 * shortest {
+            if self.record.bend(step, &loads) > BEND * self.record.greatest_load && end - now > 2.0 * shortest {
                 length = 0.5 * (end - now);
                 continue;
             }
-            let event = self.event(contact, history, [now, end], &loads, tolerance)?;
+            let event = self.event(contact, history, step, &loads, tolerance)?;
             end = event.unwrap_or(end);
-            let (report, difference) = self.compare(contact, history, [now, end])?;
+            let (report, difference) = self.compare(contact, history, Span { now, end })?;
             let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(load_at(history, end)?);
             let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
             let order = match last {
@@ -227,10 +228,11 @@ impl StepControl {
         &mut self,
         contact: &StatesContact,
         history: &dyn LoadHistory,
-        [now, end]: [f64; 2],
+        step: Span,
         loads: &[f64; PARTS + 1],
         tolerance: f64,
     ) -> Result<Option<f64>> {
+        let Span { now, end } = step;
         let by_force = is_force(load_at(history, end)?);
         if !by_force && contact.level() > 0.0 {
             return Ok(None);
@@ -238,10 +240,10 @@ impl StepControl {
         // the load at equal parts, the greatest among its neighbours at its top
         let mut points = [(now, loads[0]); PARTS + 1];
         for k in 1..=PARTS {
-            points[k] = (part([now, end], k as f64), loads[k]);
+            points[k] = (step.part(k as f64), loads[k]);
             if k < PARTS && loads[k] > loads[k - 1] && loads[k] > loads[k + 1] {
                 let (before, after) = (loads[k] - loads[k - 1], loads[k] - loads[k + 1]);
-                let top = part([now, end], k as f64 + 0.5 * (before - after) / (before + after));
+                let top = step.part(k as f64 + 0.5 * (before - after) / (before + after));
                 points[k] = (top, value(contact, load_at(history, top)?)?);
             }
         }
@@ -286,7 +288,7 @@ impl StepControl {
         &mut self,
         contact: &StatesContact,
         history: &dyn LoadHistory,
-        [now, end]: [f64; 2],
+        Span { now, end }: Span,
     ) -> Result<(StepReport, f64)> {
         let StepControl { whole, halves, middle, .. } = self;
         let to = |contact: &mut StatesContact, time: f64| {
@@ -371,7 +373,16 @@ fn value(contact: &StatesContact, load: Load) -> Result<f64> {
     Ok(value)
 }
 
-/// The end of one of the equal parts of a step.
-fn part([now, end]: [f64; 2], k: f64) -> f64 {
-    if k == PARTS as f64 { end } else { now + (end - now) * k / PARTS as f64 }
+/// Start and end of a step.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    now: f64,
+    end: f64,
+}
+
+impl Span {
+    /// The end of one of the equal parts.
+    fn part(self, k: f64) -> f64 {
+        if k == PARTS as f64 { self.end } else { self.now + (self.end - self.now) * k / PARTS as f64 }
+    }
 }

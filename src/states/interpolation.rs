@@ -27,14 +27,16 @@ pub(super) fn root([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> [f64; 2]) 
     }
 }
 
-/// Cubic with the values `f` and slopes `m` at 0 and 1.
-pub(super) fn hermite([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f64 {
-    let (r, d) = (1.0 - s, f1 - f0);
+/// Cubic with these values and slopes at 0 and 1.
+pub(super) fn hermite(values: [f64; 2], slopes: [f64; 2], s: f64) -> f64 {
+    let ([f0, f1], [m0, m1], r) = (values, slopes, 1.0 - s);
+    let d = f1 - f0;
     f0 + s * d + s * r * (r * (m0 - d) - s * (m1 - d))
 }
 
 /// Its slope.
-pub(super) fn hermite_slope([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f64 {
-    let (r, d) = (1.0 - s, f1 - f0);
+pub(super) fn hermite_slope(values: [f64; 2], slopes: [f64; 2], s: f64) -> f64 {
+    let ([f0, f1], [m0, m1], r) = (values, slopes, 1.0 - s);
+    let d = f1 - f0;
     d + (r - s) * (r * (m0 - d) - s * (m1 - d)) - s * r * (m0 + m1 - 2.0 * d)
 }

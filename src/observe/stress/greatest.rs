@@ -93,7 +93,8 @@ impl SubsurfaceStress {
 }
 
 /// The vertex of the parabola through three points, or the highest point if no vertex lies between them.
-fn vertex_of([before, here, after]: [f64; 3], [low, middle, high]: [f64; 3]) -> f64 {
+fn vertex_of(points: [f64; 3], values: [f64; 3]) -> f64 {
+    let ([before, here, after], [low, middle, high]) = (points, values);
     let highest = if low > middle && low >= high {
         before
     } else if high > middle {

@@ -36,7 +36,8 @@ pub struct Stress {
 
 impl Stress {
     /// The stress with the normal components 11, 22, 33 and the shear components 12, 13, 23 \[Pa\].
-    pub fn new([s11, s22, s33]: [f64; 3], [s12, s13, s23]: [f64; 3]) -> Stress {
+    pub fn new(normal: [f64; 3], shear: [f64; 3]) -> Stress {
+        let ([s11, s22, s33], [s12, s13, s23]) = (normal, shear);
         Stress { s11, s22, s33, s12, s13, s23 }
     }
 

@@ -9,6 +9,9 @@ const MORE: [usize; 2] = [16, 8];
 /// top at least.
 const LEAST: f64 = 1e-4;
 
+/// Share of the error that merging uses: the contact area errs by up to ten times as much as the depth.
+const SHARE: f64 = 0.9;
+
 impl Levels {
     /// Merges neighbours, both held or both free, where a later step that ends within the merged group errs by at most about `error`, in
     /// depth and in force, relative to those with a cut at its top. Let A be the greatest difference of the strains of both: what a cut inside
@@ -37,7 +40,7 @@ impl Levels {
                 let before = width(self, kept - 1);
                 let [level, depth] = [0, 1].map(|axis| before[axis] + own[axis]);
                 let deep = group.motions.depth.max(LEAST * last.motions.depth);
-                let most = 4.0 * error * (carried.max(least) / level).min(deep / depth);
+                let most = 4.0 * SHARE * error * (carried.max(least) / level).min(deep / depth);
                 if self.history.differ_at_most(kept - 1, k, most) {
                     let share = if k < held { own[0] / level } else { own[1] / depth };
                     self.history.mix(kept - 1, k, share);
