@@ -92,9 +92,8 @@
 //! ([`contact::Settings::symmetry`]); on half-spaces, cells that contact cannot reach are not computed
 //! ([`contact::Settings::window`]).
 //!
-//! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. A rheology
-//! without an exact exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two
-//! relaxation times per decade for an error of 1e-4.
+//! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. Other
+//! rheologies are fitted by an exponential series, of about two relaxation times per decade ([`rheology::Rheology::series`]).
 //!
 //! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
 //! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, <!-- figures memory of a line -->370<!-- end --> in a line contact, and 8 for each computed
@@ -113,11 +112,10 @@
 //!
 //! # Features
 //!
-//! * `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the pool in which the
-//!   contact is built.
-//! * `checkpoint`: `ViscoelasticContact::save` and `resume`, [`run::Run`]`::autosave_to`.
-//! * `plot`: pictures as PNG and SVG files, and animated GIFs. `npy`: NPZ and NPY files. `x3p`: height maps from X3P files.
-//! * `serde`: serialised loads, settings, spectra, reports and estimates. `laws`: `proptest` strategies. `tracing`: events.
+//! `rayon` (on by default): threads of the pool in which the contact is built, for grids of 2¹⁵ computed cells or more.
+//! `checkpoint`: `ViscoelasticContact::save` and `resume`, [`run::Run`]`::autosave_to`. `plot`: PNG, SVG and GIF. `npy`: NPZ and
+//! NPY files. `x3p`: height maps from X3P files. `serde`: serialised loads, settings, spectra, reports and estimates. `laws`:
+//! `proptest` strategies. `tracing`: events.
 //!
 //! # Limitations
 //!
