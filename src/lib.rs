@@ -92,8 +92,9 @@
 //! ([`contact::Settings::symmetry`]); on half-spaces, cells that contact cannot reach are not computed
 //! ([`contact::Settings::window`]).
 //!
-//! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. Other
-//! rheologies are fitted by an exponential series, of about two relaxation times per decade ([`rheology::Rheology::series`]).
+//! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. A
+//! rheology without an exact exponential series is fitted by one when the contact is built, with about two relaxation times per
+//! decade ([`rheology::Rheology::series`]).
 //!
 //! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
 //! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, <!-- figures memory of a line -->370<!-- end --> in a line contact, and 8 for each computed
