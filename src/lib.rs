@@ -1,8 +1,8 @@
 //! Frictionless contact of viscoelastic bodies, for tribologists, and for engineers who couple a contact to other programs.
 //!
-//! An indenter is pressed onto a creeping half-space. The crate computes the pressure between them, the contact area and the
-//! approach, and how they evolve in time. Geometry and load history are arbitrary, the rheology is linear with a creep compliance that is
-//! concave after t = 0; measured surfaces and measured creep are read from files.
+//! An indenter is pressed onto a creeping body. The crate computes the pressure between them, the contact area and the
+//! approach, and how they evolve in time. Geometry and load history are arbitrary. The rheology is linear, with a creep
+//! compliance that is concave after t = 0. Surfaces and creep may be measured ones, read from files.
 //!
 //! # The problem
 //!
@@ -24,8 +24,7 @@
 //! Periodic bodies, line contacts in plane strain, layers ([`Layer`]) and user-defined bodies have another K
 //! ([`InfluenceKernel`]).
 //!
-//! Pressure and contact area are unknown, and both change even under a constant force. The discretisation follows S. Spinu,
-//! *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. The page [`paper`] lists
+//! The discretisation follows S. Spinu, *The surface contact of viscoelastic materials, Part I*; the page [`paper`] lists
 //! where its equations and figures are implemented.
 //!
 //! # A simulation
@@ -46,18 +45,22 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 //!
-//! To drive every step yourself, use [`ViscoelasticContact::step`]. For a load history, use
-//! [`ViscoelasticContact::follow`], with fixed steps or steps chosen by their error. For a required accuracy, let a
-//! [`plan::Plan`] choose domain, mesh and steps. Your own shapes, bodies and histories implement
-//! [`geometry::Geometry`], [`rheology::Rheology`] and [`load::LoadHistory`]. [`analytic`] has reference solutions.
+//! | to | use |
+//! |---|---|
+//! | drive every step | [`ViscoelasticContact::step`] |
+//! | follow a load history, in fixed or adaptive steps | [`ViscoelasticContact::follow`] |
+//! | reach a required accuracy | [`plan::Plan`]: domain, mesh and steps |
+//! | compute many materials, histories or temperatures on one surface | [`states`] |
+//! | let surfaces attract each other | [`adhesion`] |
+//! | slide and roll, in steps or as a steady state | [`motion`], [`sliding`] |
+//! | read a measured surface, or generate a rough one | [`geometry::HeightMap`], [`geometry::Rough`] |
+//! | add a shape, a body or a history | [`geometry::Geometry`], [`rheology::Rheology`], [`load::LoadHistory`] |
+//! | evaluate a state, and write files for NumPy and ParaView | [`observe`], [`output`] |
+//! | compare with closed forms | [`analytic`] |
+//! | identify a modulus from a measured indentation | the package `viscocontact-identify` |
 //!
-//! Real surfaces are read from files ([`geometry::HeightMap`]) or generated at random ([`geometry::Rough`]). Indenters
-//! slide and roll: [`motion`]. [`observe`] evaluates a state, and [`output`] writes it to files that NumPy and ParaView
-//! open.
-//!
-//! Pages to read next, with programs to start from: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
-//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and
-//! [`guide::results`]. The package `viscocontact-identify` finds the modulus over time of a measured indentation.
+//! Guides with programs, in the order of use: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
+//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
 //!
 //! # Conventions
 //!
@@ -83,74 +86,44 @@
 //!
 //! # Cost
 //!
-//! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid, O(N log N). Periodic
-//! bodies are not padded and cost a third; a line of N × 1 cells is transformed in one dimension. A step of the default
-//! solver takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents (a transform without padding is a quarter of one) in the scene of the paper; tilts cost nothing in
-//! a scene without them. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
-//! ([`contact::Settings::symmetry`]); on half-spaces, cells that contact cannot reach are not computed at all
-//! ([`contact::Settings::window`]). `docs/performance.md` gives the cost of a step with each method.
+//! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid, O(N log N). A step of the
+//! default solver takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents (a transform without padding is a quarter of one) in the scene of the
+//! paper. Where gap and load are even in x1, x2 or both, half or a quarter of the cells is computed
+//! ([`contact::Settings::symmetry`]); on half-spaces, cells that contact cannot reach are not computed
+//! ([`contact::Settings::window`]).
 //!
-//! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. Thirty
-//! relaxation times make a step of 256² cells about a tenth longer than one where a quarter is computed, a third longer on the whole grid. A rheology without an exact
-//! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
-//! times per decade for an error of 1e-4, in a tenth of a second.
+//! The history costs no transform: one field per relaxation time, independent of the number of earlier steps. A
+//! rheology without an exact exponential series is fitted by one when the contact is built, with about two relaxation times per
+//! decade ([`rheology::Rheology::series`]).
 //!
 //! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
-//! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, 16 more for each computed cell where threads share a contact
-//! (<!-- figures memory of a line -->370<!-- end --> for a line contact, whose transform tables are as long as the line), and 8 for each
-//! computed cell and further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory for it is an error
-//! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
-//! first two of a run, along a path, under a tilting load or an attraction; one in which a window grows; and one in which a changing
-//! temperature alters the rate of creep by many decades. `docs/performance.md` has the threads.
+//! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, <!-- figures memory of a line -->370<!-- end --> in a line contact, and 8 for each computed
+//! cell and further relaxation time. [`contact::Builder::memory`] returns it before a contact is built; if it does not fit, `build` returns
+//! [`Error::OutOfMemory`].
+//!
+//! A step of the default rule allocates nothing, except the first two of a run, along a path, under a tilting load or an attraction; one in
+//! which a window grows; and one in which a changing temperature alters the rate of creep by many decades.
 //!
 //! # Co-simulation and long runs
 //!
 //! A failed step leaves no trace and may be tried again, shorter or under another load. A caller that iterates takes a
 //! [`contact::Snapshot`], tries steps and restores it, without allocating. With the feature `checkpoint` the whole
-//! state is saved to a file and resumed; the following steps are bitwise identical.
+//! state is saved to a file and resumed; the following steps are bitwise identical. Results do not depend on the number of
+//! threads or [ranks](parallel), bit by bit.
 //!
 //! # Features
 //!
-//! `checkpoint`: saves the state to a file and resumes from it ([`run::Run`]`::autosave_to`,
-//! `ViscoelasticContact::save` and `resume`).
-//!
-//! `laws`: `proptest` strategies for testing your own rheologies, geometries and load histories (`laws`).
-//!
-//! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
-//!
-//! `plot`: pictures of contacts and runs as PNG and SVG files, and animated GIFs, with a built-in font.
-//!
-//! `x3p`: height maps from X3P files (ISO 25178-72).
-//!
-//! `serde`: `Serialize` and `Deserialize` for the description of a run, [`load::Load`], [`contact::Settings`],
-//! [`run::Stepping`], [`geometry::RoughSpec`], spectra and their parts, and for its results: reports, error estimates, observations,
-//! statistics. Part of `checkpoint`.
-//!
-//! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
-//!
-//! `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the pool in which the
-//! contact is built. The result is bitwise independent of the number of threads.
+//! `rayon` (on by default): threads of the pool in which the contact is built, for grids of 2¹⁵ computed cells or more.
+//! `checkpoint`: `ViscoelasticContact::save` and `resume`, [`run::Run`]`::autosave_to`. `plot`: PNG, SVG and GIF. `npy`: NPZ and
+//! NPY files. `x3p`: height maps from X3P files. `serde`: serialised loads, settings, spectra, reports and estimates. `laws`:
+//! `proptest` strategies. `tracing`: events.
 //!
 //! # Limitations
 //!
-//! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes: steps warn beyond ([`guide::accuracy`] lists the warnings). Surfaces may
-//! attract each other ([`contact::Builder::attraction`]): one body on the whole grid ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on one
-//! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
-//! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
-//!
-//! # Related programs
-//!
-//! [Tamaas](https://gitlab.com/tamaas/tamaas) (C++ and Python) computes rough contacts, mostly periodic, with
-//! plasticity, adhesion and friction, and has a solver for generalized Maxwell bodies.
-//! [ContactMechanics](https://github.com/ContactEngineering/ContactMechanics) (Python) computes elastic half-spaces,
-//! periodic or not, with contact plasticity; adhesion is in a separate package.
-//! [CONTACT](https://www.kalkersoftware.org) (Fortran) computes rolling and sliding with friction, conformal and
-//! transient, also of viscoelastic bodies. Their friction and plasticity are not available here. This crate
-//! offers any concave creep, measured or fitted, in a recursion whose cost does not grow with the number of steps, of
-//! third order in given steps and fourth in steps chosen by their error (second at cells that join); eccentric loads
-//! that tilt; all of it as a typed library that another program drives step by step. Its accuracy is given claim by
-//! claim in `docs/validation.md` and `docs/accuracy.md`.
+//! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact at small strains and
+//! slopes. Steps warn beyond ([`guide::accuracy`] lists the warnings). With attraction there is one body on the whole grid
+//! ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on a base with the same creep function; bodies of several layers need
+//! influence coefficients or a spectrum from the user ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![deny(missing_docs)]

@@ -87,7 +87,7 @@ fn documents() -> Result<Vec<PathBuf>, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = here.ancestors().find(|folder| folder.join("docs/accuracy.md").is_file()).ok_or("no documents")?;
     let mut files = vec![root.join("src/lib.rs")];
-    for folder in [".", "docs", "docs/guide"] {
+    for folder in [".", "docs", "docs/guide", "docs/maintainers"] {
         for entry in fs::read_dir(root.join(folder)).map_err(|error| error.to_string())? {
             let path = entry.map_err(|error| error.to_string())?.path();
             files.extend(path.extension().is_some_and(|ending| ending == "md").then_some(path));

@@ -52,7 +52,7 @@ pub fn step_loaded_ellipsoid() -> Outcome {
     let ratio = material.contact_compliance(2.0) / material.contact_compliance(0.0);
     let rows = [
         ("approach", contact.approach(), exact(2.0)?.approach, 1e-3),
-        ("approach over that at once", contact.approach() / at_once, ratio.powf(2.0 / 3.0), 1e-3),
+        ("approach over its instantaneous value", contact.approach() / at_once, ratio.powf(2.0 / 3.0), 1e-3),
         ("contact area", contact.contact_area(), PI * a1 * a2, 5e-3),
     ];
     Ok(Checked::new(
@@ -82,10 +82,10 @@ pub fn opened_punch() -> Outcome {
     let end = state(&contact);
     let growth = material.contact_compliance(2.0) / material.contact_compliance(0.0);
     let rows = [
-        ("approach over that at once", end[0] / start[0], growth, 1e-4),
-        ("tilt over that at once", end[1] / start[1], growth, 1e-4),
-        ("contact area over that at once", end[2] / start[2], 1.0, 1e-4),
-        ("greatest pressure over that at once", end[3] / start[3], 1.0, 1e-4),
+        ("approach over its instantaneous value", end[0] / start[0], growth, 1e-4),
+        ("tilt over its instantaneous value", end[1] / start[1], growth, 1e-4),
+        ("contact area over its instantaneous value", end[2] / start[2], 1.0, 1e-4),
+        ("greatest pressure over its instantaneous value", end[3] / start[3], 1.0, 1e-4),
     ];
     Ok(Checked::new(
         "flat punch on a Zener body, force at 0.6 R, half open, held",
@@ -144,7 +144,7 @@ pub fn elastic_bulk() -> Outcome {
     at_once.step(0.0, Load::force(1.0))?;
     at_last.step(1.0e9, Load::force(1.0))?;
     let rows = [
-        ("approach at once", at_once.approach(), approach(glassy), 1e-3),
+        ("instantaneous approach", at_once.approach(), approach(glassy), 1e-3),
         ("approach in the end", at_last.approach(), approach(relaxed), 1e-3),
     ];
     Ok(Checked::new("sphere, shear relaxing from 1 GPa to 1 MPa, bulk elastic", "Hertz 1882, ν of G and B", &rows))
@@ -232,7 +232,7 @@ pub fn relaxing() -> Outcome {
     for _ in 0..50 {
         contact.step(0.04, Load::approach(1.0e-4))?;
     }
-    let rows = [("force after 2 τ over that at once", contact.force() / start, (-2.0_f64).exp(), 1e-4)];
+    let rows = [("force after 2 τ over its instantaneous value", contact.force() / start, (-2.0_f64).exp(), 1e-4)];
     Ok(Checked::new("sphere held at its approach on a Maxwell body", "Lee & Radok 1960", &rows))
 }
 

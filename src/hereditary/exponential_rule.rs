@@ -37,7 +37,7 @@ pub(crate) enum Interpolant {
 /// 1/c = E∞ + γ₁ + γ₂ + γ₃, u_old = c (Σ γ_k R_k − Σ e^(−z_i) q_i).
 ///
 /// All γ_k are positive, and so is c. In a jump, Δ = 0, u is linear and γ₁ = Σ E_i. The derivation, the orders and the stability
-/// are in docs/methods.md and docs/measurements.md.
+/// are in docs/methods.md and docs/maintainers/measurements.md.
 ///
 /// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length of the
 /// steps: d_k of a step is d_(k−1) less ρ_(k−1) times the d_(k−1) of the previous step.

@@ -48,6 +48,8 @@
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
 //! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
 //!
+//! Surfaces that attract each other are refused, too, by [`AdhesionError::NotCovered`](crate::adhesion::AdhesionError::NotCovered).
+//!
 //! Files and checkpoints are written by rank 0, files with the same bytes as in one process; the other ranks send it their rows a
 //! piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
 //!

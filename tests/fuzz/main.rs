@@ -6,7 +6,7 @@
 //! `FUZZ_SECONDS=3600 FUZZ_SEED=7 cargo test --all-features --test fuzz -- --nocapture`
 //!
 //! with `FUZZ_TARGET=scene` for targets whose names begin so. A finding is printed with its case; `FUZZ_TARGET=scene
-//! FUZZ_CASE=123` runs that alone. The record of long runs is docs/fuzzing.md.
+//! FUZZ_CASE=123` runs that alone. docs/maintainers/fuzzing.md has the limits.
 
 #[cfg(feature = "checkpoint")]
 mod checkpoints;

@@ -144,25 +144,6 @@ fn tests_that_are_named_exist() {
     assert!(missing.is_empty() && found > 20, "{found} {missing:#?}");
 }
 
-/// Tests that the table of findings in docs/fuzzing.md names are functions of the sources.
-#[test]
-fn findings_of_fuzzing_have_their_tests() {
-    let page = fs::read_to_string(root().join("docs/fuzzing.md")).unwrap();
-    let rows = page.lines().filter_map(|line| line.strip_prefix('|')?.split('|').nth(2));
-    let names: BTreeSet<&str> = rows.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
-    let is_name = |name: &&&str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    let files = ["src", "tests"].iter().flat_map(|folder| sources(&root().join(folder)));
-    let text: String = files.map(|path| fs::read_to_string(path).unwrap()).collect();
-    let (mut missing, mut found) = (Vec::new(), 0);
-    for name in names.iter().filter(is_name).filter(|name| name.contains('_')) {
-        found += 1;
-        if !text.contains(&format!("fn {name}(")) {
-            missing.push(name);
-        }
-    }
-    assert!(missing.is_empty() && found > 25, "{found} {missing:?}");
-}
-
 /// Figures between marks are written by programs: each mark ends, has a program that names it, and begins no line, which would
 /// not be text of the line any more.
 #[test]

@@ -26,7 +26,7 @@ fn run(material: &Material, load: &dyn LoadHistory, dt: f64, parts: u32) -> (Vec
 const RATIOS: [(&str, &str); 4] = [
     ("force held", "force held after a jump (of Maxwell: exact)"),
     ("force ramp", "force that grows linearly"),
-    ("force sine", "force 1 − cos, whose course in the first step nothing tells"),
+    ("force sine", "force 1 − cos, whose first step has no earlier data"),
     ("approach ramp", "approach that grows linearly"),
 ];
 

@@ -97,7 +97,7 @@ fn rolling_ends_in_the_steady_state_of_the_reference() {
     }
     let others = frictions[1..].iter().fold(0.0_f64, |most, error| most.max(*error));
     let text = format!(
-        "maximum pressure {worst_peak:.1e}, width {worst_width:.2} cells, friction {:.1e} at the slowest speed, {others:.1e} at the          others",
+        "maximum pressure {worst_peak:.1e}, width {worst_width:.2} cells, friction {:.1e} at the slowest speed, {others:.1e} at the others",
         frictions[0]
     );
     figures::figure("errors of rolling", &text).unwrap();

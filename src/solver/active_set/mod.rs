@@ -21,7 +21,7 @@
 //! * A guess extrapolated from earlier steps comes with its own v.
 //! * Where the cells that remain cannot carry the load, the last step is cut where its first pressure vanished.
 //!
-//! docs/measurements.md gives the gain of each of these rules.
+//! docs/maintainers/measurements.md gives the gain of these rules.
 
 mod balance;
 mod fallback;
