@@ -10,6 +10,7 @@ pub fn targets() -> Vec<Target> {
     vec![
         Target { name: "map_gsf", short: 1500, run: gsf },
         Target { name: "map_sdf", short: 1500, run: sdf },
+        Target { name: "map_sur", short: 1500, run: sur },
         Target { name: "map_text", short: 1500, run: text },
         Target { name: "map_xyz", short: 1500, run: xyz },
         Target { name: "map_operations", short: 500, run: operations },
@@ -89,6 +90,23 @@ fn sdf(source: &mut Source) -> Verdict {
     }
     let head = if file.starts_with(b"b") { Some(81) } else { None };
     read(&file, head, source, |file| HeightMap::from_sdf(file))
+}
+
+fn sur(source: &mut Source) -> Verdict {
+    let (columns, rows, size) = (source.count(1, 4), source.count(1, 4), source.choose(&[2, 4]));
+    let mut file = vec![0; 512];
+    let mut put = |at: usize, bytes: &[u8]| file[at..at + bytes.len()].copy_from_slice(bytes);
+    put(0, b"DIGITAL SURF");
+    for (at, number) in [(14, 1), (18, 2), (86, source.count(0, 1)), (98, 8 * size), (108, columns), (112, rows)] {
+        put(at, &(number as u16).to_le_bytes());
+    }
+    for at in [120, 124, 128] {
+        put(at, &(source.scale(1e-3, 1e3) as f32).to_le_bytes());
+        put(at + if at == 120 { 60 } else { 72 }, b"um");
+    }
+    put(212, b"nm");
+    file.extend(source.bytes(size * columns * rows));
+    read(&file, Some(340), source, |file| HeightMap::from_sur(file))
 }
 
 fn text(source: &mut Source) -> Verdict {

@@ -26,6 +26,9 @@ const AROUND: usize = 4;
 const AS_GOOD: f64 = 8.0;
 /// The squared error over the squared error of independent differences: each is counted from both sides, and outliers count less.
 const INFLATION: f64 = 6.0;
+/// Few differences tell their own scatter poorly: three deviations of Student's t with n degrees of freedom exceed those of the normal law, squared,
+/// by about 1 + 6/n. Half of the differences are independent.
+const FEW: f64 = 12.0;
 /// Shifts that differ by less, in ln a, agree: 0.05 decades.
 const LEAST_DISAGREEMENT: f64 = 0.115;
 /// ln of the values may differ by this in the root mean square where two isotherms overlap.
@@ -183,7 +186,7 @@ impl Pair<'_> {
 
     /// The standard error of a shift: by the slopes, or as far as shifts are as good.
     fn error(&self, shift: f64, [low, high]: [f64; 2], columns: &[usize], scatter: &[f64]) -> f64 {
-        let (mut sums, factor) = ([0.0; 3], self.factor(shift, columns));
+        let (mut sums, mut count, factor) = ([0.0; 3], 0.0, self.factor(shift, columns));
         self.differences(shift, columns, |found| {
             let scatter = scatter[found.column];
             let robust = 1.0 / (1.0 + (0.5 * (found.value - factor) / scatter).powi(2) / found.variance);
@@ -191,11 +194,13 @@ impl Pair<'_> {
             let [slope, variance] = found.slope;
             // noise makes slopes where there are none
             let square = slope * slope - variance * scatter * scatter;
+            count += 1.0;
             sums.iter_mut().zip([1.0, slope, square]).for_each(|(sum, part)| *sum += weight * part);
         });
         // of slopes that are alike a factor takes the place of a shift
         let information = sums[2] - if self.is_vertical { sums[1] * sums[1] / sums[0] } else { 0.0 };
-        let by_slopes = if information > 0.0 { (INFLATION / information).sqrt() } else { high - low };
+        let by_slopes =
+            if information > 0.0 { (INFLATION * (1.0 + FEW / count) / information).sqrt() } else { high - low };
         let least = self.cost(shift, columns, scatter);
         let tried = (0..=TRIED).map(|k| low + (high - low) * k as f64 / TRIED as f64);
         let near = tried.filter(|other| (other - shift).abs() < 0.1 * (high - low));

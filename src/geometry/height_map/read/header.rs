@@ -47,10 +47,15 @@ impl<'a> Header<'a> {
     }
 
     /// Accepts a header whose entry `key` is `allowed`.
-    #[cfg(feature = "x3p")]
     pub(super) fn must_be(&self, key: &'static str, allowed: &'static str) -> Result<()> {
         let text = self.require(key)?;
         if text == allowed { Ok(()) } else { Err(self.error(key, text, allowed).into()) }
+    }
+
+    /// The entry `key`, which has to be one of some `values`.
+    pub(super) fn one_of(&self, key: &'static str, values: &[&str], allowed: &'static str) -> Result<&'a str> {
+        let text = self.require(key)?;
+        if values.contains(&text) { Ok(text) } else { Err(self.error(key, text, allowed).into()) }
     }
 
     /// A whole number. The grid checks the range of numbers of cells.

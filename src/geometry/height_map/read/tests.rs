@@ -18,6 +18,7 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
     let mut files: Vec<(_, _, Reader)> = vec![
         ("gsf", gsf, |file| HeightMap::from_gsf(file)),
         ("sdf", sdf, |file| HeightMap::from_sdf(file)),
+        ("sur", sur(16, 1, &[1; 12]), |file| HeightMap::from_sur(file)),
         ("binary sdf", binary_sdf(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
         ("text", b"# a\n1, 2, 3\n4, bad, 6\n".to_vec(), |file| {
             HeightMap::from_text(file, [1.0; 2], LengthUnit::Metre, TextFormat::default())
@@ -49,6 +50,28 @@ pub(super) fn binary_sdf(data_type: u8, data: &[u8]) -> Vec<u8> {
     file.extend([3, 0, 2, 0]);
     file.extend([1e-6_f64, 2.5e-6, 1e-9, -1.0].iter().flat_map(|scale| scale.to_le_bytes()));
     file.extend([0, data_type, 0]);
+    file.extend(data);
+    file
+}
+
+/// A SUR of 3 × 2 points of this size, measured between −6 and 5, in units of 2 nm.
+pub(super) fn sur(bits: i16, special: i16, data: &[u8]) -> Vec<u8> {
+    let mut file = vec![0; 512];
+    let mut put = |at: usize, bytes: &[u8]| file[at..at + bytes.len()].copy_from_slice(bytes);
+    put(0, b"DIGITAL SURF");
+    for (at, number) in [(14, 1), (18, 2), (86, special), (98, bits), (334, 3), (336, 2)] {
+        put(at, &number.to_le_bytes());
+    }
+    for (at, number) in [(100, -6_i32), (104, 5), (108, 3), (112, 2)] {
+        put(at, &number.to_le_bytes());
+    }
+    for (at, number) in [(120, 1.0_f32), (124, 2.5), (128, 2.0)] {
+        put(at, &number.to_le_bytes());
+    }
+    for (at, unit) in [(180, &b"\xb5m"[..]), (196, b"um"), (212, b"nm")] {
+        put(at, unit);
+    }
+    file.extend(b"abcde");
     file.extend(data);
     file
 }
