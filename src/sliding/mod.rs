@@ -7,22 +7,30 @@
 //!
 //! All friction comes from hysteresis: the surfaces have none.
 
+mod bodies;
 mod coefficients;
 mod contact_problem;
 mod gmres;
+mod layer_on_base;
 mod operator;
 
 pub use crate::error::SlidingError;
 
 use std::fmt;
+use std::sync::Arc;
+
+use num_complex::Complex64;
 
 use crate::contact::{Builder, Frame, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite};
+use crate::kernel::HalfSpace;
 use crate::load::{Load, Tilt};
-use crate::rheology::CreepSpectrum;
+use crate::rheology::{Elastic, Material};
 use crate::rounded::rounded;
 use crate::solver::RigidMotion;
+use bodies::{Bodies, Creep};
 use contact_problem::{Found, Problem};
+use layer_on_base::{LayerOnBase, THINNEST};
 use operator::MovingBodies;
 
 /// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
@@ -51,7 +59,7 @@ use operator::MovingBodies;
 pub struct SteadySliding {
     /// Shows the state; it has no past, and takes no steps.
     contact: ViscoelasticContact,
-    creep: CreepSpectrum,
+    bodies: Bodies,
 }
 
 /// The state of a steady motion, in numbers.
@@ -101,50 +109,103 @@ impl fmt::Display for SlidingReport {
     }
 }
 
+/// A refusal.
+fn not_covered<T>(what: &'static str, cure: &'static str) -> Result<T> {
+    Err(SlidingError::NotCovered { what, cure }.into())
+}
+
+/// Relative difference of ratios that is rounding.
+const SAME_RATIO: f64 = 1e-6;
+
 impl Builder {
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of [`Builder::build`]. All fields take the whole grid.
     ///
-    /// The body is a half-space, which is passed along x1 or x2, or periodic along both axes ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic),
-    /// [`InfluenceKernel::from_spectrum`](crate::InfluenceKernel::from_spectrum), layers that are), or in plane strain
-    /// ([`InfluenceKernel::line`](crate::InfluenceKernel::line)). On a periodic body the shape must be periodic too: a height map that jumps at its ends slides over
-    /// an edge there.
+    /// All bodies of the crate are covered but those of coefficients ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Those that are periodic along both
+    /// axes are passed in any direction, the others along x1 or x2. Where a body is periodic the shape must be periodic too: a height map that jumps at
+    /// its ends slides over an edge there. A half-space may flow: the pressure under a force is steady then.
     ///
     /// # Errors
-    /// As [`Builder::build`], and if the body is another one, or flows without end, the surfaces attract each other, there are several rigid bodies, ranks, or a history
+    /// As [`Builder::build`], and if the body is another one, or flows, the surfaces attract each other, there are several rigid bodies, ranks, or a history
     /// of the temperature: scale the velocity by the shift factor instead.
-    pub fn build_sliding(mut self) -> Result<SteadySliding> {
-        let refuse = |what, cure| Err(SlidingError::NotCovered { what, cure }.into());
+    pub fn build_sliding(self) -> Result<SteadySliding> {
+        self.sliding(None, None)
+    }
+
+    /// [`Builder::build_sliding`] on a layer whose base creeps otherwise, or not: a rubber sheet on steel. The kernel belongs to a layer that
+    /// [`Layer::bonded_to_material`](crate::Layer::bonded_to_material) made.
+    ///
+    /// # Errors
+    /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no series, or flows; if the body is not periodic along both axes,
+    /// and a side of the grid is more than 64 times as long as the layer is thick.
+    pub fn build_sliding_on(self, base: Material) -> Result<SteadySliding> {
+        self.sliding(Some(base), None)
+    }
+
+    /// [`Builder::build_sliding`] on a body of which the complex contact modulus E* = 1/C \[Pa\] is known as a function of the frequency ≥ 0 \[rad/s\], E′ + i E″,
+    /// without a series. It takes the place of [`Builder::material`]; 4 G* if the body is incompressible. Only bodies that are periodic along both axes are covered.
+    ///
+    /// # Errors
+    /// As [`Builder::build_sliding`]; if the body is not periodic along both axes. [`SteadySliding::at`] fails where the modulus has no positive real part.
+    pub fn build_sliding_by(
+        mut self,
+        modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,
+    ) -> Result<SteadySliding> {
+        // the contact shows the state on an elastic body
+        self = self.material(Material::incompressible(Elastic::new(0.25 * modulus(0.0).re)?));
+        self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
+    }
+
+    fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
         if self.attraction.is_some() {
-            return refuse("a contact of surfaces that attract each other", "build it without attraction");
+            return not_covered("a contact of surfaces that attract each other", "build it without attraction");
         }
         if self.temperature.is_some() {
-            return refuse(
-                "a history of the temperature",
-                "multiply the velocity by the shift factor of the temperature",
-            );
+            return not_covered("a history of the temperature", "multiply the velocity by the shift factor of the temperature");
         }
         if self.ranks.is_some() {
-            return refuse("a contact that ranks share out", "compute it in one process");
+            return not_covered("a contact that ranks share out", "compute it in one process");
         }
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         self.steady = true;
         let contact = self.build()?;
         let kernel = contact.kernel();
-        let cure = "take a half-space, InfluenceKernel::periodic or InfluenceKernel::line, or go to the steady state by ViscoelasticContact::toward_steady";
-        if kernel.periodic_axes() != [true; 2] && kernel.around_a_cell().is_none() {
-            return refuse("a body that is neither a half-space nor periodic along both axes", cure);
+        let is_periodic = kernel.periodic_axes() == [true; 2];
+        if !is_periodic && (0..2).all(|axis| kernel.rows_along(axis, Some(0.0)).is_none()) {
+            return not_covered("a body of coefficients", "take InfluenceKernel::from_spectrum or a layer");
         }
         if contact.bodies() > 1 {
-            return refuse("a contact of several rigid bodies", "take one");
+            return not_covered("a contact of several rigid bodies", "take one");
         }
-        let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series("a motion"))?;
-        if creep.fluidity() > 0.0 {
-            return refuse(
-                "a body that flows",
-                "take one with an equilibrium modulus: on a flowing one approach or slope grow for ever",
-            );
+        if modulus.is_some() && !is_periodic {
+            return not_covered("a modulus over frequency, of a body that is not periodic along both axes,", "fit a series to it");
         }
-        Ok(SteadySliding { contact, creep })
+        let series = |material: &Material| {
+            Ok::<_, Error>(Creep::Series(material.contact_spectrum()?.ok_or_else(|| material.no_series("a motion"))?))
+        };
+        let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
+        let flows = creep.fluidity() > 0.0;
+        if flows && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid) {
+            return not_covered("a body that flows", "take a half-space, or an equilibrium modulus: one approach or slope grows for ever");
+        }
+        let on_base = |base: Material| {
+            let (thin, cure) = ("a layer so thin on a base of its own", "take fewer cells, or a periodic body");
+            let Some(layer) = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid()) else {
+                return not_covered("a base below another body than a layer", "make the layer by Layer::bonded_to_material");
+            };
+            let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
+            let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
+            if (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson() {
+                return not_covered("a base of another ratio than the layer's", "make the layer by Layer::bonded_to_material");
+            }
+            let longest = contact.grid().lengths().into_iter().fold(0.0, f64::max);
+            if !is_periodic && longest > THINNEST * layer.thickness() {
+                return not_covered(thin, cure);
+            }
+            Ok(LayerOnBase { layer, base: series(&base)?, base_poisson: layer.base_poisson().unwrap_or(0.5) })
+        };
+        let layer = base.map(on_base).transpose()?;
+        let bodies = Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() };
+        Ok(SteadySliding { contact, bodies })
     }
 }
 
@@ -172,11 +233,10 @@ impl SteadySliding {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
         if let Load::Spring { .. } = load {
-            let (what, cure) = ("a body on a spring", "give the force or the approach");
-            return Err(SlidingError::NotCovered { what, cure }.into());
+            return not_covered("a body on a spring", "give the force or the approach");
         }
         let (free, given) = (self.contact.free_motion(load)?, prescribed(load));
-        let mut bodies = self.bodies(velocity, load)?;
+        let mut bodies = self.moving(velocity, load)?;
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
         let (gap, n2) = (self.contact.initial_gap(), grid.cells()[1]);
         let datum = gap.datum;
@@ -202,7 +262,7 @@ impl SteadySliding {
         } else {
             problem.solve(&mut bodies, self.contact.pressure())
         };
-        let Found { pressure, displacement, motion, residual, sets, converged } = found;
+        let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }
@@ -210,6 +270,9 @@ impl SteadySliding {
         let cell_area = grid.cell_area();
         let transforms = bodies.transforms();
         let lateral_force = bodies.drag(&pressure).map(|force| force * cell_area);
+        let excess = self.bodies.excess(velocity, cell_area * pressure.iter().sum::<f64>());
+        displacement.iter_mut().for_each(|u| *u -= excess);
+        motion.approach -= excess;
         let motion = RigidMotion { approach: datum, tilt: [0.0; 2] } + lowered + motion;
         self.contact.show_steady(load, motion, pressure, displacement);
         Ok(SlidingReport {
@@ -225,30 +288,21 @@ impl SteadySliding {
         })
     }
 
-    /// The bodies under a pressure with this velocity.
-    fn bodies(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
-        let (kernel, grid) = (self.contact.kernel(), self.contact.grid());
-        let Some(influence) = kernel.around_a_cell() else {
-            return Ok(MovingBodies::periodic(kernel, &self.creep, velocity));
-        };
-        let periodic = kernel.periodic_axes();
-        // in plane strain a motion along the lines changes nothing
-        let across = periodic.iter().position(|&periodic| periodic).map(|along| 1 - along);
-        let axis = across.unwrap_or(usize::from(velocity[0] == 0.0));
-        if across.is_none() && velocity[1 - axis] != 0.0 {
-            let (what, cure) =
-                ("a motion over a half-space that follows neither x1 nor x2", "rotate the shape (geometry::Rotated)");
-            return Err(SlidingError::NotCovered { what, cure }.into());
+    /// The bodies under a pressure with this velocity, where a load has a steady state.
+    fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
+        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
+        if creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]) {
+            return not_covered("a body that flows, under an approach or at rest,", "give a force and a velocity");
         }
-        let farthest = self.creep.terms().iter().map(|(_, time)| time * velocity[axis].abs()).fold(0.0, f64::max);
-        if across.is_some()
-            && !matches!(load, Load::Force { .. })
-            && kernel.datum() < Some(grid.lengths()[axis] + farthest)
-        {
-            let what = "a line contact of given approach whose datum is nearer than the grid and the longest memory of the motion";
-            return Err(SlidingError::NotCovered { what, cure: "give the force, or a datum farther away" }.into());
+        let bodies = self.bodies.moving(velocity)?;
+        let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
+        let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
+        let farthest = reaches.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
+        if !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest) {
+            let what = "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
+            return not_covered(what, "give the force, or a datum farther away");
         }
-        Ok(MovingBodies::half_space(grid, &*influence, &self.creep, axis, velocity[axis]))
+        Ok(bodies)
     }
 
     /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.

@@ -3,4 +3,5 @@
 mod motion;
 mod rough;
 mod sliding;
+mod sliding_bodies;
 mod steady;

@@ -10,8 +10,13 @@ mod tests;
 
 use std::fmt;
 
+use num_complex::Complex64;
+
 pub(super) use remainder::Remainder;
+pub(crate) use wave::Bonded;
 use wave::Response;
+
+use crate::rheology::Material;
 
 use crate::error::{Error, KernelError, Result, length, within};
 
@@ -43,8 +48,8 @@ const SAME_POISSON: f64 = 1e-9;
 /// in line contact too. The mean belongs to a layer compressed everywhere, with no free side: its oedometric
 /// compliance, zero for an incompressible one.
 ///
-/// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A creeping layer on an
-/// elastic base is not of this form and not modelled. The layer's ν must equal the material's, and constant: the
+/// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A base that creeps otherwise, or not, is
+/// modelled in steady motions ([`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on)), not in time. The layer's ν must equal the material's, and constant: the
 /// contact is refused ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with
 /// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
@@ -110,6 +115,31 @@ impl Layer {
         within("shear modulus of a layer over that of its base", shear_ratio, inside, "in [1e-6, 1e6]")?;
         let poisson = poisson_ratio("Poisson's ratio of the base", base_nu)?;
         Layer::new(thickness, nu, Base::HalfSpace { shear_ratio, poisson })
+    }
+
+    /// A layer of one material bonded to a half-space of another one, with the ratio of their moduli at rest: for
+    /// [`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on) the base.
+    ///
+    /// # Errors
+    /// As [`Layer::bonded_to_half_space`]; if a material has no constant Poisson's ratio or no series, or flows.
+    pub fn bonded_to_material(thickness: f64, layer: &Material, base: &Material) -> Result<Layer> {
+        let [(nu, own), (base_nu, below)] = [at_rest(layer)?, at_rest(base)?];
+        Layer::bonded_to_half_space(thickness, nu, below / (1.0 - base_nu) * ((1.0 - nu) / own), base_nu)
+    }
+
+    /// L of a layer bonded to a half-space whose shear modulus is 1/`mu` of the layer's, in a steady oscillation.
+    pub(crate) fn oscillating(&self, mu: Complex64) -> Bonded<Complex64> {
+        Bonded::new(self.poisson, self.base_poisson().unwrap_or(0.5), mu)
+    }
+
+    /// Poisson's ratio of a base that is a half-space.
+    pub(crate) fn base_poisson(&self) -> Option<f64> {
+        if let Base::HalfSpace { poisson, .. } = self.base { Some(poisson) } else { None }
+    }
+
+    /// What the layer adds to the displacement of the half-space at the datum of a line load: under a unit pressure on a strip, over its width.
+    pub(crate) fn at_datum(&self, datum: f64) -> f64 {
+        Remainder::of_lines(self, self.thickness, Some(datum)).at_datum()
     }
 
     fn new(thickness: f64, nu: f64, base: Base) -> Result<Layer> {
@@ -207,6 +237,18 @@ impl Layer {
             _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
         }
     }
+}
+
+/// Poisson's ratio of a material, and its contact compliance after a long time.
+fn at_rest(material: &Material) -> Result<(f64, f64)> {
+    let ratios: Vec<_> = material.poisson_ratios().collect();
+    let [Some(nu)] = ratios[..] else {
+        return Err(KernelError::LayerMaterial { layer: f64::NAN, what: "one body of constant ratio is needed".into() }.into());
+    };
+    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a layer on a base"))?;
+    let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
+    within("fluidity of a layer or its base", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
+    Ok((nu, relaxed))
 }
 
 fn poisson_ratio(field: &'static str, nu: f64) -> Result<f64> {
