@@ -13,8 +13,10 @@ mod contact_problem;
 mod gmres;
 mod layer_on_base;
 mod operator;
+mod sweep;
 
 pub use crate::error::SlidingError;
+pub use sweep::{SlidingSweep, SlidingTable, SweptState};
 
 use std::fmt;
 use std::sync::Arc;
@@ -79,6 +81,8 @@ pub struct SlidingReport {
     pub contact_cells: usize,
     /// Contact area \[m²\].
     pub contact_area: f64,
+    /// Mean of the gap over the grid \[m\], where the indenter has a surface.
+    pub mean_gap: f64,
     /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
     pub residual: f64,
     /// Sets of cells that were tried.
@@ -250,17 +254,18 @@ impl SteadySliding {
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
         }
         let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
+        let warm = (self.contact.contact_cells() > 0).then(|| problem.solve(&mut bodies, self.contact.pressure()));
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
-        } else if self.contact.contact_cells() == 0 {
+        } else if let Some(warm) = warm.filter(|found| found.converged) {
+            warm
+        } else {
             // the symmetric part of the response gives a first contact: in slow motion a set would grow by one row of cells at a time
             let mut symmetric = bodies.symmetric();
             let first = problem.solve(&mut symmetric, self.contact.pressure());
             let found = problem.solve(&mut bodies, &first.pressure);
             bodies.response.pairs += symmetric.transforms();
             Found { sets: found.sets + first.sets, ..found }
-        } else {
-            problem.solve(&mut bodies, self.contact.pressure())
         };
         let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
         if !converged {
@@ -282,6 +287,7 @@ impl SteadySliding {
             lateral_force,
             contact_cells: self.contact.contact_cells(),
             contact_area: self.contact.contact_area(),
+            mean_gap: self.mean_gap()?,
             residual,
             sets,
             transforms,
@@ -303,6 +309,11 @@ impl SteadySliding {
             return not_covered(what, "give the force, or a datum farther away");
         }
         Ok(bodies)
+    }
+
+    fn mean_gap(&self) -> Result<f64> {
+        let finite: Vec<f64> = self.contact.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
+        Ok(finite.iter().sum::<f64>() / finite.len() as f64)
     }
 
     /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.

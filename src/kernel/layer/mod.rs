@@ -8,6 +8,7 @@ mod wave;
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::FRAC_2_PI;
 use std::fmt;
 
 use num_complex::Complex64;
@@ -137,9 +138,11 @@ impl Layer {
         if let Base::HalfSpace { poisson, .. } = self.base { Some(poisson) } else { None }
     }
 
-    /// What the layer adds to the displacement of the half-space at the datum of a line load: under a unit pressure on a strip, over its width.
+    /// What the layer adds to the displacement of the half-space at the datum of a line load, beyond the load at a depth of 2h that the half-space lacks: under
+    /// a unit pressure on a strip, over its width.
     pub(crate) fn at_datum(&self, datum: f64) -> f64 {
-        Remainder::of_lines(self, self.thickness, Some(datum)).at_datum()
+        let deep = FRAC_2_PI * (1.0 - self.longest_over_half_space()) * (2.0 * self.thickness / datum).ln();
+        Remainder::of_lines(self, self.thickness, Some(datum)).at_datum() + deep
     }
 
     fn new(thickness: f64, nu: f64, base: Base) -> Result<Layer> {
