@@ -1,12 +1,10 @@
 //! The displacement under a steady pressure that moves, in the frame of the pressure.
 
-use std::f64::consts::TAU;
-
 use num_complex::Complex64;
 
 use super::coefficients::{Row, Rules};
 use crate::Grid;
-use crate::fft::RealPlane;
+use crate::fft::{RealPlane, wave_numbers};
 use crate::kernel::{fast_length, waves_at};
 
 /// A reach beyond so many cells gives nothing.
@@ -81,7 +79,7 @@ impl MovingBodies {
     /// Bodies that are periodic along both axes, of which `displaces` returns the compliance \[m/Pa\] of a wave \[1/m\] of these absolute numbers.
     pub(super) fn periodic(grid: &Grid, displaces: &dyn Fn([usize; 2], [f64; 2]) -> Complex64) -> MovingBodies {
         let cells @ [n1, n2] = grid.cells();
-        let waves = waves(grid);
+        let waves = wave_numbers(grid);
         let mut loss = [Vec::with_capacity(waves.len()), Vec::with_capacity(waves.len())];
         let factor = |(k, &q): (usize, &[f64; 2])| {
             let k = [(k % n1).min(n1 - k % n1), k / n1];
@@ -151,14 +149,6 @@ impl MovingBodies {
     pub(super) fn transforms(&self) -> usize {
         self.response.pairs + self.inverse.pairs
     }
-}
-
-/// The wave numbers of a grid along each axis \[1/m\], in the order of a [`RealPlane`].
-fn waves(grid: &Grid) -> Vec<[f64; 2]> {
-    let ([n1, n2], [length1, length2]) = (grid.cells(), grid.lengths());
-    let number = |k1: usize| if 2 * k1 > n1 { k1 as f64 - n1 as f64 } else { k1 as f64 };
-    let of = |k2: usize| (0..n1).map(move |k1| [TAU * number(k1) / length1, TAU * k2 as f64 / length2]);
-    (0..=n2 / 2).flat_map(of).collect()
 }
 
 /// A map of fields that multiplies each wave by a factor.

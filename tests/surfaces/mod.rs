@@ -4,4 +4,5 @@ mod motion;
 mod rough;
 mod sliding;
 mod sliding_bodies;
+mod sliding_marched;
 mod steady;
