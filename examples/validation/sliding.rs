@@ -278,6 +278,7 @@ pub fn rough_full_contact() -> Outcome {
         let modulus = |omega: f64| spectrum.complex_modulus(omega.max(1e-30));
         Ok((name, PerssonFriction::new(&grid, &road, modulus, pressure, velocity, 0.5)?.friction, found, 1e-7))
     };
-    let rows = [row("friction at 10 µm/s", 1.0e-5)?, row("friction at 1 mm/s", 1.0e-3)?, row("friction at 0.1 m/s", 0.1)?];
+    let rows =
+        [row("friction at 10 µm/s", 1.0e-5)?, row("friction at 1 mm/s", 1.0e-3)?, row("friction at 0.1 m/s", 0.1)?];
     Ok(Checked::new("Persson's integral in full contact, 64² cells", "contact problems in steady motion", &rows))
 }

@@ -82,6 +82,9 @@ impl PerssonFriction {
             friction += (gamma + (1.0 - gamma) * p * p) * p * same.iter().map(|wave| wave[2]).sum::<f64>();
             coarser += own;
         }
-        Ok(PerssonFriction { friction: finite("friction of a rough surface", friction)?, contact_share: share(coarser) })
+        Ok(PerssonFriction {
+            friction: finite("friction of a rough surface", friction)?,
+            contact_share: share(coarser),
+        })
     }
 }

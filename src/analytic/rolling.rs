@@ -108,7 +108,10 @@ mod tests {
             (100.0, 0.00347562378807),
         ] {
             let found = RollingCylinder::new(radius, [c0, c1], force, over_half * half).unwrap().friction;
-            assert!((found / exact - 1.0).abs() < 1e-11 * (1.0 + over_half * over_half), "{over_half}: {found} {exact}");
+            assert!(
+                (found / exact - 1.0).abs() < 1e-11 * (1.0 + over_half * over_half),
+                "{over_half}: {found} {exact}"
+            );
         }
     }
 }

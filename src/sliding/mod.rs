@@ -164,7 +164,10 @@ impl Builder {
             return not_covered("a contact of surfaces that attract each other", "build it without attraction");
         }
         if self.temperature.is_some() {
-            return not_covered("a history of the temperature", "multiply the velocity by the shift factor of the temperature");
+            return not_covered(
+                "a history of the temperature",
+                "multiply the velocity by the shift factor of the temperature",
+            );
         }
         if self.ranks.is_some() {
             return not_covered("a contact that ranks share out", "compute it in one process");
@@ -181,7 +184,10 @@ impl Builder {
             return not_covered("a contact of several rigid bodies", "take one");
         }
         if modulus.is_some() && !is_periodic {
-            return not_covered("a modulus over frequency, of a body that is not periodic along both axes,", "fit a series to it");
+            return not_covered(
+                "a modulus over frequency, of a body that is not periodic along both axes,",
+                "fit a series to it",
+            );
         }
         let series = |material: &Material| {
             Ok::<_, Error>(Creep::Series(material.contact_spectrum()?.ok_or_else(|| material.no_series("a motion"))?))
@@ -189,17 +195,26 @@ impl Builder {
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
         let flows = creep.fluidity() > 0.0;
         if flows && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid) {
-            return not_covered("a body that flows", "take a half-space, or an equilibrium modulus: one approach or slope grows for ever");
+            return not_covered(
+                "a body that flows",
+                "take a half-space, or an equilibrium modulus: one approach or slope grows for ever",
+            );
         }
         let on_base = |base: Material| {
             let (thin, cure) = ("a layer so thin on a base of its own", "take fewer cells, or a periodic body");
             let Some(layer) = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid()) else {
-                return not_covered("a base below another body than a layer", "make the layer by Layer::bonded_to_material");
+                return not_covered(
+                    "a base below another body than a layer",
+                    "make the layer by Layer::bonded_to_material",
+                );
             };
             let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
             if (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson() {
-                return not_covered("a base of another ratio than the layer's", "make the layer by Layer::bonded_to_material");
+                return not_covered(
+                    "a base of another ratio than the layer's",
+                    "make the layer by Layer::bonded_to_material",
+                );
             }
             let longest = contact.grid().lengths().into_iter().fold(0.0, f64::max);
             if !is_periodic && longest > THINNEST * layer.thickness() {

@@ -133,7 +133,13 @@ impl SlidingTable {
             for SweptState { temperature, report: own, .. } in &self.0 {
                 let ([v1, v2], [f1, f2]) = (own.velocity, own.lateral_force);
                 let kelvin = temperature.map(|kelvin| format!("{kelvin:?}")).unwrap_or_default();
-                write!(out, "{kelvin},{v1:?},{v2:?},{:?},{:?},{:?},{f1:?},{f2:?},", own.force, own.approach, own.friction())?;
+                write!(
+                    out,
+                    "{kelvin},{v1:?},{v2:?},{:?},{:?},{:?},{f1:?},{f2:?},",
+                    own.force,
+                    own.approach,
+                    own.friction()
+                )?;
                 write!(out, "{:?},{:?},{:?},", own.contact_area, own.mean_gap, own.dissipation())?;
                 writeln!(out, "{},{},{},{:?}", own.contact_cells, own.sets, own.transforms, own.residual)?;
             }

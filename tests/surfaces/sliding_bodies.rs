@@ -148,11 +148,9 @@ impl Scene {
             Base::None => return None,
             Base::Rigid => Layer::bonded_to_rigid(self.thickness, self.nu),
             Base::Frictionless => Layer::frictionless_on_rigid(self.thickness, self.nu),
-            Base::Body(base) => Layer::bonded_to_material(
-                self.thickness,
-                &self.creep.material(self.nu),
-                &base.material(self.base_nu),
-            ),
+            Base::Body(base) => {
+                Layer::bonded_to_material(self.thickness, &self.creep.material(self.nu), &base.material(self.base_nu))
+            }
         };
         Some(made.unwrap())
     }
@@ -330,7 +328,8 @@ impl Scene {
                     let half = 0.5 * q * side;
                     if half < 1e-5 { 1.0 } else { half.sin() / half }
                 };
-                let own = self.added(q, along) * (q * weight * part / (PI * PI) * d * side)
+                let own = self.added(q, along)
+                    * (q * weight * part / (PI * PI) * d * side)
                     * (cell(along, d) * cell(aside, side));
                 for (j, row) in table.iter_mut().enumerate().take(m) {
                     let cos = (aside * side * j as f64).cos();
@@ -508,9 +507,14 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
             (lateral / force - exact.friction).abs(),
             again.unwrap_or_else(|error| panic!("{number} {scene:?}: {error}")),
         ];
-        println!("{number}: {errors:?} {drag:e} {lateral:e} {:?} {:?} {report}, {} sets, {} pairs", scene.periodic, scene.base, report.sets, report.transforms);
+        println!(
+            "{number}: {errors:?} {drag:e} {lateral:e} {:?} {:?} {report}, {} sets, {} pairs",
+            scene.periodic, scene.base, report.sets, report.transforms
+        );
         compared += 1;
-        kinds[2 * usize::from(scene.periodic[0]) + usize::from(scene.periodic[1]) + if matches!(scene.base, Base::Body(_)) { 4 } else { 0 }] += 1;
+        kinds[2 * usize::from(scene.periodic[0])
+            + usize::from(scene.periodic[1])
+            + if matches!(scene.base, Base::Body(_)) { 4 } else { 0 }] += 1;
         (0..4).for_each(|k| worst[k] = worst[k].max(errors[k]));
     }
     drags.sort_by(f64::total_cmp);
@@ -523,7 +527,10 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
 }
 
 /// A builder of a ball or a wavy indenter on a grid of 1 m.
-fn pressed(kernel: impl Fn(&Grid) -> viscocontact::Result<InfluenceKernel>, grid: &Grid) -> viscocontact::contact::Builder {
+fn pressed(
+    kernel: impl Fn(&Grid) -> viscocontact::Result<InfluenceKernel>,
+    grid: &Grid,
+) -> viscocontact::contact::Builder {
     let kernel = kernel(grid).unwrap();
     let periodic = kernel.periodic_axes();
     let shape = FnGeometry::new(move |x1: f64, x2: f64| {
@@ -554,7 +561,9 @@ fn bases_that_are_equal_elastic_or_rigid_are_limits() {
     let thickness = 0.1;
     let grids = [Grid::square(24, 1.0).unwrap(), Grid::new([48, 1], [1.0, 1.0]).unwrap()];
     let bodies: [(&Grid, &dyn Fn(&Grid, Option<Layer>) -> viscocontact::Result<InfluenceKernel>); 4] = [
-        (&grids[0], &|grid, layer| layer.map_or_else(|| InfluenceKernel::half_space(grid), |layer| InfluenceKernel::layer(grid, layer))),
+        (&grids[0], &|grid, layer| {
+            layer.map_or_else(|| InfluenceKernel::half_space(grid), |layer| InfluenceKernel::layer(grid, layer))
+        }),
         (&grids[0], &|grid, layer| {
             layer.map_or_else(|| InfluenceKernel::periodic(grid), |layer| InfluenceKernel::layer_periodic(grid, layer))
         }),
@@ -580,7 +589,9 @@ fn bases_that_are_equal_elastic_or_rigid_are_limits() {
             if number == 3 && velocity[0] == 0.0 {
                 continue;
             }
-            let at = |sliding: viscocontact::Result<SteadySliding>| sliding.unwrap().at(velocity, Load::force(20.0)).unwrap();
+            let at = |sliding: viscocontact::Result<SteadySliding>| {
+                sliding.unwrap().at(velocity, Load::force(20.0)).unwrap()
+            };
             let half_space = at(pressed(|grid| kernel(grid, None), grid).material(body(1.0, nu)).build_sliding());
             let on = |base: Material| {
                 let layer = Layer::bonded_to_material(thickness, &body(1.0, nu), &base).unwrap();
@@ -595,7 +606,10 @@ fn bases_that_are_equal_elastic_or_rigid_are_limits() {
             let rigid = at(pressed(|grid| kernel(grid, Some(Layer::bonded_to_rigid(thickness, nu)?)), grid)
                 .material(body(1.0, nu))
                 .build_sliding());
-            let limit = [(stiffer.friction(), stiff.friction(), rigid.friction()), (stiffer.approach, stiff.approach, rigid.approach)];
+            let limit = [
+                (stiffer.friction(), stiff.friction(), rigid.friction()),
+                (stiffer.approach, stiff.approach, rigid.approach),
+            ];
             let errors = limit.map(|(stiffer, stiff, rigid)| (2.0 * stiffer - stiff) / rigid - 1.0);
             println!("{number} rigid: {errors:?}");
             assert!(errors.iter().all(|error| error.abs() < 1e-8), "{number}: {errors:?}");
@@ -632,7 +646,8 @@ fn a_half_space_may_flow() {
     let d = grid.spacing()[0];
     let shape = FnGeometry::new(|x1: f64, x2: f64| 0.05 * (x1 * x1 + x2 * x2));
     let rheology = || GeneralizedKelvin::new(4.0 * GLASSY, 4.0 * fluidity, &[(8.0 * GLASSY, 0.2)]).unwrap();
-    let builder = || ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(Material::incompressible(rheology()));
+    let builder =
+        || ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(Material::incompressible(rheology()));
     let mut sliding = builder().settings(Settings::default().with_tolerance(1e-10)).build_sliding().unwrap();
     let report = sliding.at([speed, 0.0], Load::force(force)).unwrap();
     let at = |k: usize, shift: f64| {
@@ -654,7 +669,8 @@ fn a_half_space_may_flow() {
         let love = |x: f64| {
             let (a, y) = (0.5 * d, j as f64 * d);
             if x.hypot(y) > 100.0 * d {
-                return d * d / (PI * x.hypot(y)) * (1.0 + d * d * (3.0 / (x * x + y * y) * (x * x + y * y) - 2.0) / (24.0 * (x * x + y * y)));
+                return d * d / (PI * x.hypot(y))
+                    * (1.0 + d * d * (3.0 / (x * x + y * y) * (x * x + y * y) - 2.0) / (24.0 * (x * x + y * y)));
             }
             let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
             let corner = |x: f64, y: f64| term(x, y) + term(y, x);
@@ -669,7 +685,8 @@ fn a_half_space_may_flow() {
         let mut sum = tail - d * d / PI * (from / 2.0).ln();
         for i in (0..2 * n - 1).rev() {
             let x = (i as f64 - (n - 1) as f64) * d;
-            sum += points(x, x + 0.5 * d, 8).chain(points(x + 0.5 * d, x + d, 8)).map(|(x, w)| w * love(x)).sum::<f64>();
+            sum +=
+                points(x, x + 0.5 * d, 8).chain(points(x + 0.5 * d, x + d, 8)).map(|(x, w)| w * love(x)).sum::<f64>();
             row[i] += fluidity / speed * sum;
         }
     }

@@ -246,7 +246,11 @@ impl Layer {
 fn at_rest(material: &Material) -> Result<(f64, f64)> {
     let ratios: Vec<_> = material.poisson_ratios().collect();
     let [Some(nu)] = ratios[..] else {
-        return Err(KernelError::LayerMaterial { layer: f64::NAN, what: "one body of constant ratio is needed".into() }.into());
+        return Err(KernelError::LayerMaterial {
+            layer: f64::NAN,
+            what: "one body of constant ratio is needed".into(),
+        }
+        .into());
     };
     let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a layer on a base"))?;
     let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();

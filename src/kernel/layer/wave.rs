@@ -54,7 +54,13 @@ pub(crate) struct Bonded<T> {
 
 /// A real or a complex number.
 pub(crate) trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Mul<f64, Output = Self> + Div<Output = Self> + From<f64>
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<Output = Self>
+    + From<f64>
 {
 }
 
@@ -142,9 +148,7 @@ impl<T: Number> Bonded<T> {
 
     /// θ N.
     fn numerator(&self, t: f64, theta: f64) -> T {
-        self.sinh * sinh_less_first(t, theta)
-            + self.cosh * 0.5 * (1.0 + theta * theta)
-            + self.linear * 2.0 * t * theta
+        self.sinh * sinh_less_first(t, theta) + self.cosh * 0.5 * (1.0 + theta * theta) + self.linear * 2.0 * t * theta
     }
 
     /// θ D.
