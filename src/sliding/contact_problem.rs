@@ -14,6 +14,8 @@ const MOST_SETS: usize = 60;
 const ROUGHLY: f64 = 3e-2;
 /// A cell joins for no less penetration than so many root mean squares of the residual.
 const CERTAIN: f64 = 3.0;
+/// One of so many cells is many.
+const MANY: usize = 4;
 /// Restarts of the iteration on a set.
 const CYCLES: usize = 3;
 /// The part of the lowest cells that a first set takes.
@@ -156,14 +158,19 @@ impl Problem<'_> {
             balance.satisfy(&mut p);
             let allowed = tolerance * self.unit(&set, &balance) * (set.len() as f64).sqrt();
             let part = if stands { 0.0 } else { ROUGHLY };
-            let left = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
+            let [left, doubt] = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
             let open = |k: usize| found.displacement[k] + gap[k];
             found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
             found.residual = tolerance * left / allowed;
             let height = |k: usize| open(k) - found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let deep = -(SLACK * allowed).max(CERTAIN * left) / (set.len() as f64).sqrt();
-            let pulls = p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
+            let mut pulls: Vec<(f64, usize)> =
+                p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
+            // until the set stands, what is left of the residual leaves the pressure in doubt; of a set that is far too large all such cells leave
+            if !stands && pulls.len() < set.len() / MANY {
+                pulls.retain(|(p, _)| *p < -doubt);
+            }
             let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
             let penetrates: Vec<(f64, usize)> = outside.filter(|(h, _)| *h < deep).collect();
             let mut changes: [Vec<(f64, usize)>; 2] = [pulls, penetrates];
@@ -198,8 +205,8 @@ impl Problem<'_> {
         found
     }
 
-    /// Solves for the pressure on a set down to a residual allowed, or to a part of the first one. Returns the residual left, and writes the
-    /// displacement.
+    /// Solves for the pressure on a set down to a residual allowed, or to a part of the first one. Returns the residual left, and the root mean square of the
+    /// pressure that would close it; writes the displacement.
     fn solve_on(
         &self,
         set: &[usize],
@@ -208,7 +215,7 @@ impl Problem<'_> {
         bodies: &mut MovingBodies,
         pressure: &mut [f64],
         displacement: &mut [f64],
-    ) -> f64 {
+    ) -> [f64; 2] {
         let cells = self.gap.len();
         let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
         let mut goal = 0.0;
@@ -222,7 +229,10 @@ impl Problem<'_> {
                 goal = allowed.max(part * left);
             }
             if left <= goal || cycle + 1 == CYCLES {
-                return left;
+                scatter(&residual, set, &mut full);
+                bodies.inverse.apply(&full, &mut image);
+                let closing: f64 = set.iter().map(|&k| image[k] * image[k]).sum();
+                return [left, (closing / set.len() as f64).sqrt()];
             }
             gmres(pressure, &residual, goal, |direction| {
                 scatter(direction, set, &mut full);
@@ -236,7 +246,7 @@ impl Problem<'_> {
                 [better, own]
             });
         }
-        f64::INFINITY
+        [f64::INFINITY; 2]
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps

@@ -216,8 +216,9 @@ impl Builder {
                     "make the layer by Layer::bonded_to_material",
                 );
             }
-            let longest = contact.grid().lengths().into_iter().fold(0.0, f64::max);
-            if !is_periodic && longest > THINNEST * layer.thickness() {
+            let ends = (0..2).filter(|&axis| !kernel.periodic_axes()[axis]);
+            let longest = ends.map(|axis| contact.grid().lengths()[axis]).fold(0.0, f64::max);
+            if longest > THINNEST * layer.thickness() {
                 return not_covered(thin, cure);
             }
             Ok(LayerOnBase { layer, base: series(&base)?, base_poisson: layer.base_poisson().unwrap_or(0.5) })
