@@ -158,7 +158,8 @@ impl Problem<'_> {
             balance.satisfy(&mut p);
             let allowed = tolerance * self.unit(&set, &balance) * (set.len() as f64).sqrt();
             let part = if stands { 0.0 } else { ROUGHLY };
-            let [left, doubt] = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
+            let residual = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
+            let left = norm(&residual);
             let open = |k: usize| found.displacement[k] + gap[k];
             found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
             found.residual = tolerance * left / allowed;
@@ -167,12 +168,16 @@ impl Problem<'_> {
             let deep = -(SLACK * allowed).max(CERTAIN * left) / (set.len() as f64).sqrt();
             let mut pulls: Vec<(f64, usize)> =
                 p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
-            // until the set stands, what is left of the residual leaves the pressure in doubt; of a set that is far too large all such cells leave
-            if !stands && pulls.len() < set.len() / MANY {
-                pulls.retain(|(p, _)| *p < -doubt);
-            }
             let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
             let penetrates: Vec<(f64, usize)> = outside.filter(|(h, _)| *h < deep).collect();
+            // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back
+            if !stands && !penetrates.is_empty() && pulls.len() < set.len() / MANY {
+                let mut closing = vec![0.0; cells];
+                scatter(&residual, &set, &mut closing);
+                bodies.inverse.apply(&closing.clone(), &mut closing);
+                let doubt = norm(&set.iter().map(|&k| closing[k]).collect::<Vec<_>>()) / (set.len() as f64).sqrt();
+                pulls.retain(|(p, _)| *p < -doubt);
+            }
             let mut changes: [Vec<(f64, usize)>; 2] = [pulls, penetrates];
             found.pressure.fill(0.0);
             p.iter().zip(&set).for_each(|(&p, &k)| found.pressure[k] = p.max(0.0));
@@ -205,8 +210,8 @@ impl Problem<'_> {
         found
     }
 
-    /// Solves for the pressure on a set down to a residual allowed, or to a part of the first one. Returns the residual left, and the root mean square of the
-    /// pressure that would close it; writes the displacement.
+    /// Solves for the pressure on a set down to a residual allowed, or to a part of the first one. Returns the residual left, and writes the
+    /// displacement.
     fn solve_on(
         &self,
         set: &[usize],
@@ -215,7 +220,7 @@ impl Problem<'_> {
         bodies: &mut MovingBodies,
         pressure: &mut [f64],
         displacement: &mut [f64],
-    ) -> [f64; 2] {
+    ) -> Vec<f64> {
         let cells = self.gap.len();
         let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
         let mut goal = 0.0;
@@ -229,10 +234,7 @@ impl Problem<'_> {
                 goal = allowed.max(part * left);
             }
             if left <= goal || cycle + 1 == CYCLES {
-                scatter(&residual, set, &mut full);
-                bodies.inverse.apply(&full, &mut image);
-                let closing: f64 = set.iter().map(|&k| image[k] * image[k]).sum();
-                return [left, (closing / set.len() as f64).sqrt()];
+                return residual;
             }
             gmres(pressure, &residual, goal, |direction| {
                 scatter(direction, set, &mut full);
@@ -246,7 +248,7 @@ impl Problem<'_> {
                 [better, own]
             });
         }
-        [f64::INFINITY; 2]
+        Vec::new()
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps

@@ -17,8 +17,10 @@ use super::bodies::Creep;
 use super::coefficients::{Row, Rules};
 use super::operator::Coefficients;
 use crate::Layer;
+use crate::error::{KernelError, Result, within};
 use crate::kernel::InfluenceKernel;
 use crate::quadrature::GaussLegendre;
+use crate::rheology::Material;
 
 /// Points of a panel, and the greatest change of phase on one.
 const POINTS: usize = 16;
@@ -34,6 +36,34 @@ pub(super) struct LayerOnBase {
     pub(super) layer: Layer,
     pub(super) base: Creep,
     pub(super) base_poisson: f64,
+}
+
+impl Layer {
+    /// A layer of one material bonded to a half-space of another one, with the ratio of their moduli at rest: for
+    /// [`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on) the base.
+    ///
+    /// # Errors
+    /// As [`Layer::bonded_to_half_space`]; if a material has no constant Poisson's ratio or no series, or flows.
+    pub fn bonded_to_material(thickness: f64, layer: &Material, base: &Material) -> Result<Layer> {
+        let [(nu, own), (base_nu, below)] = [at_rest(layer)?, at_rest(base)?];
+        Layer::bonded_to_half_space(thickness, nu, below / (1.0 - base_nu) * ((1.0 - nu) / own), base_nu)
+    }
+}
+
+/// Poisson's ratio of a material, and its contact compliance after a long time.
+fn at_rest(material: &Material) -> Result<(f64, f64)> {
+    let ratios: Vec<_> = material.poisson_ratios().collect();
+    let [Some(nu)] = ratios[..] else {
+        return Err(KernelError::LayerMaterial {
+            layer: f64::NAN,
+            what: "one body of constant ratio is needed".into(),
+        }
+        .into());
+    };
+    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a layer on a base"))?;
+    let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
+    within("fluidity of a layer or its base", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
+    Ok((nu, relaxed))
 }
 
 /// Wave numbers and weights of an integral over q > 0.

@@ -27,6 +27,7 @@ use crate::contact::{Builder, Frame, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite};
 use crate::kernel::HalfSpace;
 use crate::load::{Load, Tilt};
+use crate::memory;
 use crate::rheology::{Elastic, Material};
 use crate::rounded::rounded;
 use crate::solver::RigidMotion;
@@ -118,6 +119,37 @@ fn not_covered<T>(what: &'static str, cure: &'static str) -> Result<T> {
     Err(SlidingError::NotCovered { what, cure }.into())
 }
 
+/// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
+fn jumps(gap: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> bool {
+    (0..2).filter(|&axis| periodic[axis] && cells[axis] > 2).any(|axis| {
+        let (n, stride) = (cells[axis], if axis == 0 { cells[1] } else { 1 });
+        let mut most = [0.0_f64; 2];
+        for k in 0..gap.len() {
+            let is_last = k / stride % n + 1 == n;
+            let next = if is_last { k - (n - 1) * stride } else { k + stride };
+            let rise = (gap[next] - gap[k]).abs();
+            let most = &mut most[usize::from(is_last)];
+            *most = most.max(if rise.is_finite() { rise } else { 0.0 });
+        }
+        most[1] > JUMP * most[0]
+    })
+}
+
+/// A shape that changes so many times as much at its ends as elsewhere jumps there.
+const JUMP: f64 = 4.0;
+
+/// Bytes of a problem in steady motion beside its contact, at most.
+fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
+    let [n1, n2] = cells.map(|n| n as u64);
+    let padded = [0, 1].map(|axis| if periodic[axis] || cells[axis] == 1 { 1 } else { 2 } * cells[axis] as u64);
+    // factors, coefficients and losses of the response, with its symmetric part; of the inverses
+    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 64 * n1 * (n2 / 2 + 1));
+    // influences at about four nodes a cell, and the panels of these; tables of coefficients
+    let nodes = if periodic == [true; 2] { 0 } else { 150 * n1 * n2 };
+    // two fields for each direction, and a dozen others
+    response + inverse + nodes + 8 * (2 * gmres::MOST as u64 + 12) * n1 * n2
+}
+
 /// Relative difference of ratios that is rounding.
 const SAME_RATIO: f64 = 1e-6;
 
@@ -159,6 +191,19 @@ impl Builder {
         self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
     }
 
+    /// Bytes of a contact in steady motion at most, with all cells in contact: of [`Builder::memory`], the factors of waves and the nodes of influences, and the
+    /// directions of the iteration, which are most. No field is allocated to find out.
+    ///
+    /// # Errors
+    /// As [`Builder::memory`].
+    pub fn sliding_memory(&self) -> Result<u64> {
+        let own = self.memory()?;
+        // neither symmetry nor a window counts
+        let times = (self.grid.len() as u64).div_ceil(own.computed_cells.max(1) as u64);
+        let periodic = self.kernel.as_ref().map_or([false; 2], |kernel| kernel.periodic_axes());
+        Ok(own.total().saturating_mul(times).saturating_add(bytes(self.grid.cells(), periodic)))
+    }
+
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
         if self.attraction.is_some() {
             return not_covered("a contact of surfaces that attract each other", "build it without attraction");
@@ -174,6 +219,7 @@ impl Builder {
         }
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         self.steady = true;
+        memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
         let contact = self.build()?;
         let kernel = contact.kernel();
         let is_periodic = kernel.periodic_axes() == [true; 2];
@@ -182,6 +228,9 @@ impl Builder {
         }
         if contact.bodies() > 1 {
             return not_covered("a contact of several rigid bodies", "take one");
+        }
+        if jumps(&contact.initial_gap().above, contact.grid().cells(), kernel.periodic_axes()) {
+            return not_covered("a shape that jumps at the period of its body", "take one that repeats, or taper its ends");
         }
         if modulus.is_some() && !is_periodic {
             return not_covered(

@@ -1,18 +1,11 @@
 //! Steady motions at many velocities, loads and temperatures.
 
-use std::io::Write;
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use super::{SlidingReport, SteadySliding};
 use crate::error::Result;
-use crate::file::replace;
 use crate::load::Load;
-#[cfg(feature = "plot")]
-use crate::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
 use crate::rheology::TimeTemperature;
-#[cfg(feature = "plot")]
-use crate::rounded::rounded;
 
 /// Velocities, loads and temperatures of steady motions, for [`SteadySliding::sweep`].
 #[derive(Debug, Clone)]
@@ -67,10 +60,9 @@ impl SteadySliding {
     /// let speeds = (-4..=2).map(|decade| [10_f64.powi(decade), 0.0]);
     /// let table = roller.sweep(&SlidingSweep::new(speeds, [Load::force(50.0), Load::force(100.0)]))?;
     /// assert_eq!(table.states().len(), 14);
-    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-sweep-{}", std::process::id()));
-    /// table.save(&path)?; // a CSV file, and with the feature `plot` a picture of the friction
-    /// # let _ = std::fs::remove_file(path.with_extension("png"));
-    /// # std::fs::remove_file(path.with_extension("csv")).unwrap();
+    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-sweep-{}.csv", std::process::id()));
+    /// table.write_csv(&path)?; // with the feature `plot`, `save` draws the friction, too
+    /// # std::fs::remove_file(&path).unwrap();
     /// # Ok::<(), Error>(())
     /// ```
     ///
@@ -116,52 +108,5 @@ impl SlidingTable {
     /// The states, in the order of the sweep.
     pub fn states(&self) -> &[SweptState] {
         &self.0
-    }
-
-    /// Writes the table as a CSV file, and with the feature `plot` a picture of the friction over the speed: `path` with the endings `csv` and `png`.
-    /// Existing files are replaced. Columns: temperature \[K\], velocity along x1 and x2, force, approach, friction, lateral force along x1 and x2, contact area, mean
-    /// gap, dissipation \[SI\], cells in contact, sets, pairs of transforms, residual.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or there is nothing to draw.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
-        let head = "temperature [K],velocity 1 [m/s],velocity 2 [m/s],force [N],approach [m],friction,lateral force 1 [N],lateral force 2 [N],\
-            contact area [m2],mean gap [m],dissipation [W],contact cells,sets,transforms,residual";
-        replace(&path.with_extension("csv"), |out| {
-            writeln!(out, "{head}")?;
-            for SweptState { temperature, report: own, .. } in &self.0 {
-                let ([v1, v2], [f1, f2]) = (own.velocity, own.lateral_force);
-                let kelvin = temperature.map(|kelvin| format!("{kelvin:?}")).unwrap_or_default();
-                write!(
-                    out,
-                    "{kelvin},{v1:?},{v2:?},{:?},{:?},{:?},{f1:?},{f2:?},",
-                    own.force,
-                    own.approach,
-                    own.friction()
-                )?;
-                write!(out, "{:?},{:?},{:?},", own.contact_area, own.mean_gap, own.dissipation())?;
-                writeln!(out, "{},{},{},{:?}", own.contact_cells, own.sets, own.transforms, own.residual)?;
-            }
-            Ok(())
-        })?;
-        #[cfg(feature = "plot")]
-        self.chart("coefficient of friction", SlidingReport::friction).save(path.with_extension("png"))?;
-        Ok(())
-    }
-
-    /// A chart of a value of the states over the speed, a curve for each temperature and load.
-    #[cfg(feature = "plot")]
-    pub fn chart(&self, quantity: impl Into<Quantity>, value: impl Fn(&SlidingReport) -> f64) -> Chart {
-        let mut chart = Chart::new("Steady motion", Quantity::new("speed", "m/s"), quantity, Legend::UpperLeft);
-        chart.scale = Scale::LogX;
-        let curves = self.0.chunk_by(|a, b| (a.temperature, a.load) == (b.temperature, b.load));
-        for (k, curve) in curves.enumerate() {
-            let point = |own: &SweptState| (own.report.velocity[0].hypot(own.report.velocity[1]), value(&own.report));
-            let kelvin = curve[0].temperature.map(|kelvin| format!("{} K, ", rounded(kelvin, 5))).unwrap_or_default();
-            let label = format!("{kelvin}{}", curve[0].load);
-            chart.add(label, COLORS[k % COLORS.len()], Style::LineAndDots, curve.iter().map(point).collect());
-        }
-        chart
     }
 }

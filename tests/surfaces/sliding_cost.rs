@@ -1,5 +1,5 @@
 //! What a steady motion costs, in pairs of transforms, and how it converges with the mesh. `SLIDING_COSTS` (8) random scenes of each kind, `SLIDING_ROAD` (256) the finest
-//! mesh of a road, from 64 cells a side on, `SLIDING_SEED` (1).
+//! mesh of a road, from an eighth or at least 64 cells a side on, `SLIDING_SEED` (1).
 
 use std::f64::consts::TAU;
 
@@ -76,7 +76,7 @@ fn the_friction_of_a_road_converges_with_the_mesh() {
     // one surface on all meshes: its waves are those of the coarsest
     let road = Rough::new(&Grid::square(64, 1e-3).unwrap(), spec).unwrap();
     let mut results: Vec<(usize, Vec<(f64, usize)>)> = Vec::new();
-    let mut cells = 64;
+    let mut cells = (finest / 8).max(64);
     while cells <= finest {
         let grid = Grid::square(cells, 1e-3).unwrap();
         let mut sliding = ViscoelasticContact::builder(grid.clone())
@@ -107,5 +107,6 @@ fn the_friction_of_a_road_converges_with_the_mesh() {
         })
         .collect();
     println!("friction changes by {changes:?} from mesh to mesh");
-    assert!(changes.len() > 1 && changes.windows(2).all(|two| two[1] < 0.7 * two[0]), "{changes:?}");
+    // down to what is left to the tolerance of the solver
+    assert!(changes.len() > 1 && changes.windows(2).all(|two| two[1] < (0.7 * two[0]).max(1e-3)), "{changes:?}");
 }

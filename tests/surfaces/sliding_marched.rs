@@ -65,14 +65,16 @@ impl Scene {
         let load = Load::force(self.force);
         let velocity = if self.axis == Axis::X1 { [self.velocity, 0.0] } else { [0.0, self.velocity] };
         let mut sliding = builder().kernel(kernel.clone()).build_sliding().unwrap();
-        let report = sliding.at(velocity, load).unwrap_or_else(|error| panic!("{self:?}: {error}"));
+        sliding.at(velocity, load).unwrap_or_else(|error| panic!("{self:?}: {error}"));
         let settings = Settings::default().with_frame(Frame::Indenter).with_tolerance(1e-7);
         let mut marched = builder().kernel(kernel).settings(settings).build().unwrap();
         let motion =
             SteadyMotion::new(self.axis, self.velocity, load).with_tolerance(3e-4).with_max_distance(Some(100.0));
         marched.toward_steady(motion).and_then(|run| run.run()).unwrap_or_else(|error| panic!("{self:?}: {error}"));
-        let lateral = self.velocity * marched.lateral_force(&shape)[self.axis.index()];
-        [lateral / marched.force(), report.friction()]
+        // from the slope of the shape in both
+        [&marched, sliding.contact()].map(|own| {
+            self.velocity * own.lateral_force(&shape)[self.axis.index()] / own.force()
+        })
     }
 }
 

@@ -17,8 +17,6 @@ pub(super) use remainder::Remainder;
 pub(crate) use wave::Bonded;
 use wave::Response;
 
-use crate::rheology::Material;
-
 use crate::error::{Error, KernelError, Result, length, within};
 
 /// Ratio of the shear moduli of a layer and its base.
@@ -116,16 +114,6 @@ impl Layer {
         within("shear modulus of a layer over that of its base", shear_ratio, inside, "in [1e-6, 1e6]")?;
         let poisson = poisson_ratio("Poisson's ratio of the base", base_nu)?;
         Layer::new(thickness, nu, Base::HalfSpace { shear_ratio, poisson })
-    }
-
-    /// A layer of one material bonded to a half-space of another one, with the ratio of their moduli at rest: for
-    /// [`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on) the base.
-    ///
-    /// # Errors
-    /// As [`Layer::bonded_to_half_space`]; if a material has no constant Poisson's ratio or no series, or flows.
-    pub fn bonded_to_material(thickness: f64, layer: &Material, base: &Material) -> Result<Layer> {
-        let [(nu, own), (base_nu, below)] = [at_rest(layer)?, at_rest(base)?];
-        Layer::bonded_to_half_space(thickness, nu, below / (1.0 - base_nu) * ((1.0 - nu) / own), base_nu)
     }
 
     /// L of a layer bonded to a half-space whose shear modulus is 1/`mu` of the layer's, in a steady oscillation.
@@ -240,22 +228,6 @@ impl Layer {
             _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
         }
     }
-}
-
-/// Poisson's ratio of a material, and its contact compliance after a long time.
-fn at_rest(material: &Material) -> Result<(f64, f64)> {
-    let ratios: Vec<_> = material.poisson_ratios().collect();
-    let [Some(nu)] = ratios[..] else {
-        return Err(KernelError::LayerMaterial {
-            layer: f64::NAN,
-            what: "one body of constant ratio is needed".into(),
-        }
-        .into());
-    };
-    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a layer on a base"))?;
-    let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
-    within("fluidity of a layer or its base", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
-    Ok((nu, relaxed))
 }
 
 fn poisson_ratio(field: &'static str, nu: f64) -> Result<f64> {
