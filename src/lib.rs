@@ -56,7 +56,7 @@
 //! open.
 //!
 //! Pages to read next, with programs to start from: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
-//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and
+//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::steady_motion`], [`guide::coupling`] to other integrators, [`guide::long_runs`] and
 //! [`guide::results`]. The package `viscocontact-identify` finds the modulus over time of a measured indentation.
 //!
 //! # Conventions
@@ -136,7 +136,7 @@
 //! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact
 //! at small strains and slopes: steps warn beyond ([`guide::accuracy`] lists the warnings). Surfaces may
 //! attract each other ([`contact::Builder::attraction`]): one body on the whole grid ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on one
-//! that creeps as it does; bodies of several layers need their own influence coefficients or spectrum from the user
+//! that creeps as it does (in steady motions on any: [`sliding`]); bodies of several layers need their own influence coefficients or spectrum from the user
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 //!
 //! # Related programs

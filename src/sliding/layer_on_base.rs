@@ -13,8 +13,8 @@ use std::f64::consts::FRAC_1_PI;
 use faer::Mat;
 use num_complex::Complex64;
 
-use super::bodies::Creep;
 use super::coefficients::{Row, Rules};
+use super::creep::Creep;
 use super::operator::Coefficients;
 use crate::Layer;
 use crate::error::{KernelError, Result, within};

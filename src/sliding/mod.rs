@@ -10,6 +10,7 @@
 mod bodies;
 mod coefficients;
 mod contact_problem;
+mod creep;
 mod gmres;
 mod layer_on_base;
 mod operator;
@@ -31,8 +32,9 @@ use crate::memory;
 use crate::rheology::{Elastic, Material};
 use crate::rounded::rounded;
 use crate::solver::RigidMotion;
-use bodies::{Bodies, Creep};
+use bodies::Bodies;
 use contact_problem::{Found, Problem};
+use creep::Creep;
 use layer_on_base::{LayerOnBase, THINNEST};
 use operator::MovingBodies;
 
@@ -230,7 +232,10 @@ impl Builder {
             return not_covered("a contact of several rigid bodies", "take one");
         }
         if jumps(&contact.initial_gap().above, contact.grid().cells(), kernel.periodic_axes()) {
-            return not_covered("a shape that jumps at the period of its body", "take one that repeats, or taper its ends");
+            return not_covered(
+                "a shape that jumps at the period of its body",
+                "take one that repeats, or taper its ends",
+            );
         }
         if modulus.is_some() && !is_periodic {
             return not_covered(
