@@ -158,7 +158,7 @@ const SAME_RATIO: f64 = 1e-6;
 impl Builder {
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of [`Builder::build`]. All fields take the whole grid.
     ///
-    /// All bodies of the crate are covered but those of coefficients ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Those that are periodic along both
+    /// All bodies of the crate are covered but kernels of coefficients ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Bodies that are periodic along both
     /// axes are passed in any direction, the others along x1 or x2. Where a body is periodic the shape must be periodic too: a height map that jumps at
     /// its ends slides over an edge there. A half-space may flow: the pressure under a force is steady then.
     ///

@@ -58,7 +58,7 @@ impl Coefficients {
         }
     }
 
-    /// The rows at the distances of n cells, where the rows are those of the waves of a period of n cells aside.
+    /// The rows at the distances of n cells, from one row for each wave of a period of n cells aside.
     pub(super) fn of_waves_aside(&self, n: usize) -> Coefficients {
         let sum = |rows: &[Vec<f64>]| {
             let of = |j: usize| {

@@ -547,6 +547,9 @@ fn body(factor: f64, nu: f64) -> Material {
     Creep { glassy: factor, terms: vec![(2.0 * factor, 0.05), (4.0 * factor, 1.0)] }.material(nu)
 }
 
+/// The kernels of a body, without a layer and with one.
+type Kernels = dyn Fn(&Grid, Option<Layer>) -> viscocontact::Result<InfluenceKernel>;
+
 /// Friction and approach over two bases are the same to 1e-8.
 fn same(what: &str, found: &viscocontact::sliding::SlidingReport, exact: &viscocontact::sliding::SlidingReport) {
     let errors = [found.friction() / exact.friction() - 1.0, found.approach / exact.approach - 1.0];
@@ -560,7 +563,7 @@ fn same(what: &str, found: &viscocontact::sliding::SlidingReport, exact: &viscoc
 fn bases_that_are_equal_elastic_or_rigid_are_limits() {
     let thickness = 0.1;
     let grids = [Grid::square(24, 1.0).unwrap(), Grid::new([48, 1], [1.0, 1.0]).unwrap()];
-    let bodies: [(&Grid, &dyn Fn(&Grid, Option<Layer>) -> viscocontact::Result<InfluenceKernel>); 4] = [
+    let bodies: [(&Grid, &Kernels); 4] = [
         (&grids[0], &|grid, layer| {
             layer.map_or_else(|| InfluenceKernel::half_space(grid), |layer| InfluenceKernel::layer(grid, layer))
         }),
