@@ -245,17 +245,19 @@ pub fn rolling_cylinder() -> Outcome {
             .build_sliding()?;
         Ok(sliding.at([over_half * half, 0.0], Load::force(force))?.friction())
     };
-    let exact = |over_half: f64| Ok(RollingCylinder::new(1.0, [c0, c1], force, over_half * half)?.friction);
+    let exact =
+        |over_half: f64| -> Result<f64> { Ok(RollingCylinder::new(1.0, [c0, c1], force, over_half * half)?.friction) };
     let row = |name, over_half| -> Result<_> { Ok((name, found(2048, over_half)?, exact(over_half)?, 2e-5)) };
     let rows = [row("friction, l = w/20", 0.05)?, row("friction, l = w", 1.0)?, row("friction, l = 1000 w", 1e3)?];
     let at = |exponent: f64| 10_f64.powf(exponent);
     let line = between(-2.0, 3.0).map(|x| Ok((x, exact(at(x))?))).collect::<Result<Vec<_>>>()?;
     let dots = (0..=10).map(|k| 0.5 * f64::from(k) - 2.0).map(|x| Ok((x, found(512, at(x))?)));
+    let dots = dots.collect::<Result<Vec<_>>>()?;
     Ok(Checked::new("cylinder that rolls steadily, one state a velocity, 2048 cells", "Hunter 1961", &rows).drawn(
         ["lg of l/w", "coefficient of friction"],
         Legend::UpperRight,
         line,
-        dots.collect::<Result<Vec<_>>>()?,
+        dots,
     ))
 }
 
