@@ -21,7 +21,7 @@ use crate::geometry::{Geometry, evaluate};
 /// use viscocontact::prelude::*;
 ///
 /// let grid = Grid::square(64, 1.0e-3)?;
-/// let road = Rough::new(&grid, RoughSpec::new(5.0e-4, 3.0e-5, Roughness::RmsSlope(0.2)))?;
+/// let road = Rough::new(&grid, RoughSpec::new(5.0e-4, 6.0e-5, Roughness::RmsSlope(0.2)))?;
 /// let rubber = GeneralizedMaxwell::new(1.0e6, &[(1.0e7, 1.0e-4)])?.creep_spectrum().unwrap().relaxation();
 /// let modulus = |omega: f64| 4.0 * rubber.complex_modulus(omega);
 /// let theory = PerssonFriction::new(&grid, &road, modulus, 1.0e5, [0.1, 0.0], 0.5)?;
