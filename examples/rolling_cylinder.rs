@@ -3,7 +3,8 @@
 //!
 //! Each speed is computed step by step to its steady state, on a grid that follows the cylinder, and compared with a
 //! formulation that has no steps: exponential integrals in a dense system for the steady state itself
-//! (`examples/support/scenes/rolling.rs`).
+//! (`examples/support/scenes/rolling.rs`). The curve is the closed form of S. C. Hunter (J. Appl. Mech. 28, 1961); on it are the steady states
+//! as one contact problem each, too.
 //!
 //! `cargo run --release --features plot --example rolling_cylinder`
 
@@ -18,8 +19,10 @@ use std::path::PathBuf;
 use clap::Parser;
 use reference::RollingCylinder;
 use viscocontact::Result;
+use viscocontact::analytic;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
+use viscocontact::sliding::SlidingSweep;
 
 /// A cylinder rolling over a standard solid: pressure and friction at many speeds.
 #[derive(Parser)]
@@ -191,10 +194,21 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
     let finely = (0..=80).map(|k| 10f64.powf(-2.0 + 0.05 * f64::from(k)));
     let exact = finely.map(|ratio| {
-        let scene = RollingCylinder { reach: ratio * glassy, ..scene };
-        (ratio, scene.steady(200).friction(args.radius))
+        let compliances = [scene.glassy, scene.delayed];
+        Ok((ratio, analytic::RollingCylinder::new(args.radius, compliances, args.load, ratio * glassy)?.friction))
     });
-    let exact = exact.collect();
+    let exact = exact.collect::<Result<Vec<_>>>()?;
+    let grid = Grid::new([16 * cells, 1], [3.0 * relaxed, 1.0])?;
+    let mut roller = ViscoelasticContact::builder(grid.clone())
+        .geometry(&Cylinder::new(args.radius)?)
+        .material(material)
+        .kernel(InfluenceKernel::line(&grid, 1.0)?)
+        .build_sliding()?;
+    let velocities = (0..=20).map(|k| [10f64.powf(-2.0 + 0.2 * f64::from(k)) * glassy / args.tau, 0.0]);
+    let table = roller.sweep(&SlidingSweep::new(velocities, [Load::force(args.load)]))?;
+    let states =
+        table.states().iter().map(|state| (state.report.velocity[0] * args.tau / glassy, state.report.friction()));
+    let states: Vec<_> = states.collect();
     let mut chart = Chart::new(
         "Hysteretic friction of a rolling cylinder",
         "v τ / half the width of the glassy contact",
@@ -202,8 +216,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         Legend::UpperLeft,
     );
     chart.scale = Scale::LogX;
-    chart.add("steady state, without steps", COLORS[0], Style::Line, exact);
-    chart.add("computed", COLORS[1], Style::Dots, computed);
+    chart.add("Hunter 1961", COLORS[0], Style::Line, exact);
+    chart.add("one problem a speed", COLORS[2], Style::Dots, states);
+    chart.add("by steps", COLORS[1], Style::Dots, computed);
     chart.save(args.output.join("friction.png"))?;
     let mut chart = Chart::new(
         "Pressure under a cylinder that rolls to the right",

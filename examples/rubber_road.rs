@@ -1,4 +1,5 @@
-//! A rubber slides over a road, at speeds over eight decades and three temperatures: friction and contact area, each speed as one contact problem.
+//! A rubber slides over a road, at speeds over eight decades and three temperatures: friction and contact area, each speed as one contact problem, and the
+//! estimate of Persson's theory beside it.
 //!
 //! To step there would take as many steps as the longest relaxation time takes: 10 s at 1 m/s are ten kilometres of road.
 //!
@@ -8,13 +9,16 @@ mod support;
 
 use std::error::Error;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Parser;
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style};
+use viscocontact::analytic::PerssonFriction;
+use viscocontact::plot::{COLORS, Legend, Map, Style};
 use viscocontact::prelude::*;
-use viscocontact::rheology::TimeTemperature;
+use viscocontact::rheology::{TimeTemperature, library};
+use viscocontact::sliding::{SlidingSweep, SlidingTable};
 
 /// A rubber slides over a road, at speeds over eight decades.
 #[derive(Parser)]
@@ -42,10 +46,8 @@ struct Args {
     output: PathBuf,
 }
 
-/// Temperatures [°C]; the spectrum is that at the first of them.
-const TEMPERATURES: [f64; 3] = [20.0, 0.0, 60.0];
-/// 0 °C in K.
-const ZERO: f64 = 273.15;
+/// Temperatures [K]; the spectrum was measured at the first of them.
+const TEMPERATURES: [f64; 3] = [298.15, 273.15, 333.15];
 /// Speeds [m/s], as powers of ten.
 const DECADES: [i32; 2] = [-6, 2];
 
@@ -53,13 +55,21 @@ fn main() {
     support::finish(run(&Args::parse()));
 }
 
-/// A rubber of 1 MPa at rest and of 100 MPa at once: a term in each half decade from 1e-7 to 10 s, less the slower it is.
+/// Polyisobutylene as measured at 25 °C over 17 decades (Catsiff & Tobolsky, 1955), as a rubber: crosslinks keep the terms slower than this time [s], by which
+/// the polymer flows.
+const CROSSLINKED: f64 = 1.0;
+
 fn rubber() -> viscocontact::Result<GeneralizedMaxwell> {
-    let times = (0..17).map(|k| 10f64.powf(-7.0 + 0.5 * f64::from(k)));
-    let share = |time: f64| time.powf(-0.25);
-    let all: f64 = times.clone().map(share).sum();
-    let terms: Vec<(f64, f64)> = times.map(|time| (99.0e6 * share(time) / all, time)).collect();
-    GeneralizedMaxwell::new(1.0e6, &terms)
+    // a third of the modulus in tension
+    let polymer = library::find("polyisobutylene")?.terms();
+    let terms: Vec<(f64, f64)> = polymer.iter().map(|&(modulus, time)| (modulus / 3.0, time)).collect();
+    let (held, terms): (Vec<_>, Vec<_>) = terms.into_iter().partition(|(_, time)| *time > CROSSLINKED);
+    GeneralizedMaxwell::new(held.iter().map(|(modulus, _)| modulus).sum(), &terms)
+}
+
+/// WLF of polyisobutylene about 298 K (J. D. Ferry, Viscoelastic Properties of Polymers, 1980, table 11-II).
+fn law() -> viscocontact::Result<TimeTemperature> {
+    TimeTemperature::wlf(8.61, 200.4, TEMPERATURES[0])
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -69,64 +79,63 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let spec =
         RoughSpec::new(0.5 * args.length, args.length / 32.0, Roughness::RmsSlope(args.slope)).with_seed(args.seed);
     let road = Rough::new(&grid, spec)?;
-    let mut sliding = ViscoelasticContact::builder(grid.clone())
-        .geometry(&road)
-        .material(Material::incompressible(rubber()?))
-        .kernel(InfluenceKernel::periodic(&grid)?)
-        .build_sliding()?;
+    let builder = || -> viscocontact::Result<_> {
+        Ok(ViscoelasticContact::builder(grid.clone())
+            .geometry(&road)
+            .material(Material::incompressible(rubber()?))
+            .kernel(InfluenceKernel::periodic(&grid)?))
+    };
+    let mut sliding = builder()?.build_sliding()?;
     let load = Load::force(args.pressure * args.length.powi(2));
-    // of a rubber with its glass transition at −40 °C
-    let law = TimeTemperature::wlf(17.44, 51.6, ZERO - 40.0)?;
     let count = (f64::from(DECADES[1] - DECADES[0]) / every).round() as i32;
-    let speeds: Vec<f64> = (0..=count).map(|k| 10f64.powf(f64::from(DECADES[1]) - every * f64::from(k))).collect();
+    let speeds = || (0..=count).map(|k| 10f64.powf(f64::from(DECADES[1]) - every * f64::from(k)));
+    let sweep = SlidingSweep::new(speeds().map(|speed| [speed, 0.0]), [load]).at_temperatures(law()?, TEMPERATURES);
+    let (began, bar) = (Instant::now(), support::progress(3 * (count as u64 + 1)));
+    let table = sliding.sweep_with(&sweep, |_, _| {
+        bar.inc(1);
+        ControlFlow::Continue(())
+    })?;
+    bar.finish_and_clear();
+    let transforms: usize = table.states().iter().map(|state| state.report.transforms).sum();
+    let states = table.states().len();
+    println!("{states} states, {transforms} pairs of transforms, {:.2} s", began.elapsed().as_secs_f64());
+    table.save(args.output.join("sweep"))?;
+    draw(args, &grid, &road, &table)?;
 
-    let mut friction = Chart::new(
-        "Friction of a rubber on a road",
-        Quantity::new("speed", "m/s"),
-        "coefficient of friction",
-        Legend::UpperLeft,
-    );
-    let mut area = Chart::new(
-        "Contact of a rubber on a road",
-        Quantity::new("speed", "m/s"),
-        "part of the road in contact",
-        Legend::UpperRight,
-    );
-    (friction.scale, area.scale) = (Scale::LogX, Scale::LogX);
-    let mut table = csv::Writer::from_path(args.output.join("friction.csv"))?;
-    table.write_record(["temperature_c", "speed_m_s", "friction", "area_share", "approach_m", "transforms"])?;
     let mut maps = Vec::new();
-    for (n, temperature) in TEMPERATURES.into_iter().enumerate() {
-        let shift = law.shift_factor(ZERO + temperature)? / law.shift_factor(ZERO + TEMPERATURES[0])?;
-        let (began, mut transforms) = (Instant::now(), 0);
-        let mut points = [Vec::new(), Vec::new()];
-        for &speed in &speeds {
-            let report = sliding.at([speed * shift, 0.0], load)?;
-            let share = report.contact_area / args.length.powi(2);
-            table.serialize((temperature, speed, report.friction(), share, report.approach, report.transforms))?;
-            points[0].push((speed, report.friction()));
-            points[1].push((speed, share));
-            transforms += report.transforms;
-            if n == 0 && [1e2, 1e-2, 1e-6].iter().any(|map: &f64| (speed / map - 1.0).abs() < 1e-9) {
-                let mut map = Map::pressure(sliding.contact())?;
-                map.title = format!("{speed:.0e} m/s: {:.1} % in contact", 100.0 * share);
-                maps.push(map);
-            }
-        }
-        println!(
-            "{temperature} °C: {} speeds, {transforms} pairs of transforms, {:.2} s",
-            speeds.len(),
-            began.elapsed().as_secs_f64()
-        );
-        let [of_friction, of_area] = points;
-        let name = format!("{temperature} °C");
-        friction.add(&name, COLORS[n], Style::LineAndDots, of_friction);
-        area.add(&name, COLORS[n], Style::LineAndDots, of_area);
+    for speed in [1e2, 1e-2, 1e-6] {
+        let report = sliding.at([speed, 0.0], load)?;
+        let mut map = Map::pressure(sliding.contact())?;
+        map.title = format!("{speed:.0e} m/s: {:.1} % in contact", 100.0 * report.contact_area / args.length.powi(2));
+        maps.push(map);
     }
-    table.flush()?;
-    friction.save(args.output.join("friction.png"))?;
-    area.save(args.output.join("area.png"))?;
     Map::save_row(&maps, args.output.join("pressure.png"))?;
     println!("table and pictures are in {}", args.output.display());
+    Ok(())
+}
+
+/// Friction and area over the speed, with Persson's theory.
+fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<(), Box<dyn Error>> {
+    let spectrum = Material::incompressible(rubber()?).contact_spectrum()?.ok_or("the rubber has no series")?;
+    let law = law()?;
+    let mut friction = table.chart("coefficient of friction", |own| own.friction());
+    let mut area = table.chart("part of the road in contact", |own| own.contact_area / args.length.powi(2));
+    (friction.title, area.title) = ("Friction of a rubber on a road".into(), "Contact of a rubber on a road".into());
+    area.legend = Legend::UpperRight;
+    for (k, kelvin) in TEMPERATURES.into_iter().enumerate() {
+        let (shift, mut points) = (law.shift_factor(kelvin)?, [Vec::new(), Vec::new()]);
+        for decade in 4 * DECADES[0]..=4 * DECADES[1] {
+            let speed = 10f64.powf(0.25 * f64::from(decade));
+            let modulus = |omega: f64| spectrum.complex_modulus(omega);
+            let theory = PerssonFriction::new(grid, road, modulus, args.pressure, [speed * shift, 0.0], 0.5)?;
+            points[0].push((speed, theory.friction));
+            points[1].push((speed, theory.contact_share));
+        }
+        for (chart, points) in [&mut friction, &mut area].into_iter().zip(points) {
+            chart.add(format!("{kelvin} K, Persson's theory"), COLORS[3 + k], Style::Line, points);
+        }
+    }
+    friction.save(args.output.join("friction.png"))?;
+    area.save(args.output.join("area.png"))?;
     Ok(())
 }

@@ -1,12 +1,14 @@
 //! Fourier transforms of planes, for surfaces and for the stress below them. The convolution of a contact has
 //! padded and folded transforms that ranks share, in [`kernel`](crate::kernel).
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
+use crate::Grid;
 use crate::parallel::{cut, fork, lanes};
 
 /// Complex transforms of lines of one length that lie one after the other.
@@ -159,6 +161,14 @@ pub(crate) fn fourier_coefficients(field: &[f64], cells: [usize; 2]) -> Vec<Comp
     plane.forward(field.chunks_exact(cells[1]), &mut coefficients);
     coefficients.iter_mut().for_each(|value| *value /= field.len() as f64);
     coefficients
+}
+
+/// The wave numbers of a grid along each axis \[1/m\], in the order of a [`RealPlane`].
+pub(crate) fn wave_numbers(grid: &Grid) -> Vec<[f64; 2]> {
+    let ([n1, n2], [length1, length2]) = (grid.cells(), grid.lengths());
+    let number = |k1: usize| if 2 * k1 > n1 { k1 as f64 - n1 as f64 } else { k1 as f64 };
+    let of = |k2: usize| (0..n1).map(move |k1| [TAU * number(k1) / length1, TAU * k2 as f64 / length2]);
+    (0..=n2 / 2).flat_map(of).collect()
 }
 
 /// Real rows of n2 values: `coefficient` returns the coefficient k2 of the row i.

@@ -10,6 +10,7 @@
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
 //! | [`adhesion`] | surfaces that stick: law, range, resolution, loads that pull |
 //! | [`elastic_states`] | a surface solved once, for many materials and histories: when to take which |
+//! | [`steady_motion`] | sliding and rolling that do not change: when to step, and when to solve for the state |
 //! | [`long_runs`] | saved and resumed runs, many contacts on threads |
 //! | [`results`] | files in pandas, NumPy and PyVista; views as arrays and matrices |
 //!
@@ -25,4 +26,4 @@ macro_rules! pages {
         }
     )*};
 }
-pages! { tour accuracy own_models data curves coupling adhesion elastic_states long_runs results }
+pages! { tour accuracy own_models data curves coupling adhesion elastic_states steady_motion long_runs results }

@@ -60,7 +60,7 @@
 //! | identify a modulus from a measured indentation | the package `viscocontact-identify` |
 //!
 //! Guides with programs, in the order of use: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
-//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
+//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::steady_motion`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
 //!
 //! # Conventions
 //!
@@ -122,7 +122,7 @@
 //!
 //! Friction, plasticity and finite deformation are outside the model: it covers frictionless normal contact at small strains and
 //! slopes. Steps warn beyond ([`guide::accuracy`] lists the warnings). With attraction there is one body on the whole grid
-//! ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on a base with the same creep function; bodies of several layers need
+//! ([`guide::adhesion`] lists what is refused). A [`Layer`] lies on a rigid base, or on a base with the same creep function (in steady motions on any: [`sliding`]); bodies of several layers need
 //! influence coefficients or a spectrum from the user ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -58,7 +58,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 33] = [
+const SCENES: [fn() -> Outcome; 35] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -84,6 +84,8 @@ const SCENES: [fn() -> Outcome; 33] = [
     sliding::slow,
     sliding::fast,
     sliding::wave,
+    sliding::rolling_cylinder,
+    sliding::rough_full_contact,
     layers::punch,
     layers::ball,
     adhesion::exponential,

@@ -8,6 +8,8 @@ use std::f64::consts::{PI, TAU};
 
 use viscocontact::Result;
 use viscocontact::analytic::HertzEllipse;
+use viscocontact::analytic::{PerssonFriction, RollingCylinder};
+use viscocontact::geometry::{Rough, RoughSpec, Roughness};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
 
@@ -226,4 +228,59 @@ pub fn wave() -> Outcome {
         &rows,
     )
     .drawn(["lg of q v [1/s]", "lateral force per area [Pa]"], Legend::UpperLeft, line, dots))
+}
+
+/// The steady states themselves, without steps: a cylinder that rolls, against S. C. Hunter (J. Appl. Mech. 28, 1961), with reaches l = vτ from a
+/// twentieth of the relaxed half width w to a thousand.
+pub fn rolling_cylinder() -> Outcome {
+    let (c0, c1, force) = (0.25e-6, 2.25e-6, 5.0e3);
+    let half = (4.0 * (c0 + c1) * force / PI).sqrt();
+    let found = |cells: usize, over_half: f64| -> Result<f64> {
+        let grid = Grid::new([cells, 1], [3.0 * half, 1.0])?;
+        let mut sliding = ViscoelasticContact::builder(grid.clone())
+            .geometry(&Cylinder::new(1.0)?)
+            .material(Material::incompressible(GeneralizedKelvin::new(4.0 * c0, 0.0, &[(4.0 * c1, 1.0)])?))
+            .kernel(InfluenceKernel::line(&grid, 100.0)?)
+            .settings(Settings::default().with_tolerance(1e-9))
+            .build_sliding()?;
+        Ok(sliding.at([over_half * half, 0.0], Load::force(force))?.friction())
+    };
+    let exact =
+        |over_half: f64| -> Result<f64> { Ok(RollingCylinder::new(1.0, [c0, c1], force, over_half * half)?.friction) };
+    let row = |name, over_half| -> Result<_> { Ok((name, found(2048, over_half)?, exact(over_half)?, 2e-5)) };
+    let rows = [row("friction, l = w/20", 0.05)?, row("friction, l = w", 1.0)?, row("friction, l = 1000 w", 1e3)?];
+    let at = |exponent: f64| 10_f64.powf(exponent);
+    let line = between(-2.0, 3.0).map(|x| Ok((x, exact(at(x))?))).collect::<Result<Vec<_>>>()?;
+    let dots = (0..=10).map(|k| 0.5 * f64::from(k) - 2.0).map(|x| Ok((x, found(512, at(x))?)));
+    let dots = dots.collect::<Result<Vec<_>>>()?;
+    Ok(Checked::new("cylinder that rolls steadily, one state a velocity, 2048 cells", "Hunter 1961", &rows).drawn(
+        ["lg of l/w", "coefficient of friction"],
+        Legend::UpperRight,
+        line,
+        dots,
+    ))
+}
+
+/// A random surface in full contact, where Persson's integral is exact: against contact problems, at three speeds.
+pub fn rough_full_contact() -> Outcome {
+    let grid = Grid::square(64, 1.0e-3)?;
+    let road = Rough::new(&grid, RoughSpec::new(5.0e-4, 6.0e-5, Roughness::RmsSlope(0.05)).with_seed(1))?;
+    let rubber = GeneralizedKelvin::new(GLASSY, 0.0, &TERMS)?;
+    let spectrum = Material::incompressible(rubber.clone()).contact_spectrum()?.unwrap_or_else(|| unreachable!());
+    let mut sliding = ViscoelasticContact::builder(grid.clone())
+        .geometry(&road)
+        .material(Material::incompressible(rubber))
+        .kernel(InfluenceKernel::periodic(&grid)?)
+        .settings(Settings::default().with_tolerance(1e-11))
+        .build_sliding()?;
+    let pressure = 1.0e8;
+    let mut row = |name, speed: f64| -> Result<_> {
+        let velocity = [0.8 * speed, 0.6 * speed];
+        let found = sliding.at(velocity, Load::force(pressure * 1.0e-6))?.friction();
+        let modulus = |omega: f64| spectrum.complex_modulus(omega.max(1e-30));
+        Ok((name, PerssonFriction::new(&grid, &road, modulus, pressure, velocity, 0.5)?.friction, found, 1e-7))
+    };
+    let rows =
+        [row("friction at 10 µm/s", 1.0e-5)?, row("friction at 1 mm/s", 1.0e-3)?, row("friction at 0.1 m/s", 0.1)?];
+    Ok(Checked::new("Persson's integral in full contact, 64² cells", "contact problems in steady motion", &rows))
 }

@@ -8,6 +8,8 @@
 //! | [`Jkr`], [`MaugisDugdale`], [`Dmt`] | sphere that sticks, by an attraction of short, any and long range; elastic |
 //! | [`AdhesivePunch`], [`AdhesiveCylinder`], [`AdhesiveWave`] | other shapes that stick, by an attraction of short range; elastic |
 //! | [`OpeningEdge`] | edge of a contact that opens at a speed, sphere that is pulled off; viscoelastic |
+//! | [`RollingCylinder`] | cylinder in steady motion; one retardation time |
+//! | [`PerssonFriction`] | rough surface in steady motion, an estimate; any creep |
 //!
 //! Sphere, cone, punch and other axisymmetric bodies under any load history, loading and unloading, are contacts on
 //! closed elastic states: [`ElasticStates::sphere`](crate::states::ElasticStates::sphere) and its neighbours.
@@ -18,10 +20,14 @@ mod adhesion;
 mod growing_sphere;
 mod hertz;
 mod hertz_ellipse;
+mod persson;
 mod rigid_punch;
+mod rolling;
 
 pub use adhesion::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Jkr, MaugisDugdale, OpeningEdge, PullOff};
 pub use growing_sphere::GrowingSphere;
 pub use hertz::Hertz;
 pub use hertz_ellipse::HertzEllipse;
+pub use persson::PerssonFriction;
 pub use rigid_punch::RigidPunch;
+pub use rolling::RollingCylinder;

@@ -79,6 +79,7 @@ impl Error {
             },
             Error::Sliding(error) => match error {
                 SlidingError::NotCovered { .. } => ErrorKind::Unsupported,
+                SlidingError::NotPassive { .. } => ErrorKind::Value,
                 SlidingError::NotConverged { .. } => ErrorKind::Convergence,
             },
             Error::States(error) => match error {

@@ -13,6 +13,16 @@ pub enum SlidingError {
         cure: &'static str,
     },
 
+    /// At a frequency that the motion meets, the bodies do not resist: their complex compliance has no positive real part.
+    #[error("at {:e} rad/s the complex compliance is {:e} + {:e} i 1/Pa: its real part must be positive", rounded(*.omega, 5),
+        rounded(.compliance[0], 5), rounded(.compliance[1], 5))]
+    NotPassive {
+        /// Frequency \[rad/s\].
+        omega: f64,
+        /// Real and imaginary part of the compliance, of the conjugate for waves that go with the motion \[1/Pa\].
+        compliance: [f64; 2],
+    },
+
     /// The contact at a velocity was not found.
     #[error("at a velocity of ({:e}, {:e}) m/s {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
         rounded(.velocity[0], 5), rounded(.velocity[1], 5))]

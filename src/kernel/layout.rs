@@ -71,7 +71,7 @@ impl Layout {
 }
 
 /// The sum of the waves ±`k` of a period, `at` cells from their crest: one of them if they are the same.
-pub(super) fn waves_at(at: usize, k: usize, period: usize) -> f64 {
+pub(crate) fn waves_at(at: usize, k: usize, period: usize) -> f64 {
     let count = if k == 0 || 2 * k == period { 1.0 } else { 2.0 };
     count * (TAU * ((k as f64 * at as f64) % period as f64) / period as f64).cos()
 }

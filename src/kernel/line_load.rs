@@ -9,7 +9,9 @@
 //!
 //! v(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds   (Johnson, Contact Mechanics, 1985, section 2.3).
 
-use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2};
+
+use crate::quadrature::GaussLegendre;
 
 /// Step of the trapezoidal rule for ∫ f(cosh t) dt: the integrand being analytic up to π/2 from the real axis, its
 /// error is e^(−π²/step) of the coefficient of a cell on itself.
@@ -18,6 +20,9 @@ const STEP: f64 = 0.25;
 const LAST: f64 = 42.0;
 /// e^(−x) underflows for larger x.
 const UNDERFLOW: f64 = 745.0;
+
+/// So many sides from a cell below the surface six points are enough.
+const FAR: f64 = 8.0;
 
 /// Coefficients of cells of equal length along the axis along which the load varies \[m\].
 #[derive(Debug, Clone, Copy)]
@@ -46,9 +51,15 @@ impl Strip {
         -FRAC_2_PI * (self.side * (x / self.datum).ln() + x * series_of_excess(z).unwrap_or(excess))
     }
 
-    /// The displacement at a distance x from the middle of the cell \[m\], for the mean.
-    pub(crate) fn at(&self, x: f64) -> f64 {
+    /// The displacement at a distance x from the middle of the cell \[m\], for the wave number `kappa` \[1/m\].
+    pub(super) fn at(&self, x: f64, kappa: f64) -> f64 {
         let (a, x) = (0.5 * self.side, x.abs());
+        if kappa > 0.0 {
+            return match x < a {
+                true => on_waves(0.0, kappa * (a - x), kappa) + on_waves(0.0, kappa * (a + x), kappa),
+                false => on_waves(kappa * (x - a), kappa * self.side, kappa),
+            };
+        }
         if x >= 9.0 * self.side {
             let z = a / x;
             return -FRAC_2_PI * (self.side * (x / self.datum).ln() + x * series_of_excess(z).unwrap_or(f64::NAN));
@@ -57,23 +68,38 @@ impl Strip {
         -FRAC_2_PI * (term(x + a) - term(x - a) - self.side)
     }
 
-    /// (2/π) ∫ K0(κ |s|) ds over a cell, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, integrated over the cell first.
-    fn wave(&self, i: usize, kappa: f64) -> f64 {
-        let (far, width) = match i {
-            0 => (0.0, 0.5 * kappa * self.side),
-            _ => (kappa * self.side * (i as f64 - 0.5), kappa * self.side),
-        };
-        let twice = if i == 0 { 2.0 } else { 1.0 };
-        let mut sum = -0.5 * (-far).exp() * (-width).exp_m1();
-        for step in 1..=(LAST / STEP) as usize {
-            let cosh = (step as f64 * STEP).cosh();
-            if far * cosh > UNDERFLOW {
-                break;
-            }
-            sum -= (-far * cosh).exp() * (-width * cosh).exp_m1() / cosh;
+    /// The displacement at a distance x from the middle of a cell that lies at a `depth` below the points \[m\], for the mean:
+    /// −(1/π) ∫ ln((s² + depth²)/d²) ds.
+    pub(super) fn below(&self, x: f64, depth: f64) -> f64 {
+        let a = 0.5 * self.side;
+        let ln = |x: f64| 2.0 * (x.hypot(depth) / self.datum).ln();
+        if x.hypot(depth) > FAR * self.side {
+            return -FRAC_1_PI * a * GaussLegendre::new(6).sum(|s| ln(x + a * s));
         }
-        twice * FRAC_2_PI / kappa * STEP * sum
+        let primitive = |x: f64| x * (ln(x) - 2.0) + 2.0 * depth * (x / depth).atan();
+        -FRAC_1_PI * (primitive(x + a) - primitive(x - a))
     }
+
+    /// (2/π) ∫ K0(κ |s|) ds over a cell.
+    fn wave(&self, i: usize, kappa: f64) -> f64 {
+        match i {
+            0 => 2.0 * on_waves(0.0, 0.5 * kappa * self.side, kappa),
+            _ => on_waves(kappa * self.side * (i as f64 - 0.5), kappa * self.side, kappa),
+        }
+    }
+}
+
+/// (2/π) ∫ K0(κ s) ds over `far` < κs < `far` + `width`, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, integrated over s first.
+fn on_waves(far: f64, width: f64, kappa: f64) -> f64 {
+    let mut sum = -0.5 * (-far).exp() * (-width).exp_m1();
+    for step in 1..=(LAST / STEP) as usize {
+        let cosh = (step as f64 * STEP).cosh();
+        if far * cosh > UNDERFLOW {
+            break;
+        }
+        sum -= (-far * cosh).exp() * (-width * cosh).exp_m1() / cosh;
+    }
+    FRAC_2_PI / kappa * STEP * sum
 }
 
 /// The mean displacement of a length under a uniform pressure on it, divided by the pressure \[m\].
@@ -97,7 +123,6 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::quadrature::GaussLegendre;
 
     /// ln |s| over the cell by quadrature in pieces that shrink towards the load.
     fn by_quadrature(side: f64, i: usize, f: impl Fn(f64) -> f64) -> f64 {

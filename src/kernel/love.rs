@@ -83,6 +83,27 @@ impl Love {
     }
 }
 
+/// The displacement over a cell that lies at a `depth` below the points, at a distance along each axis \[m\]:
+/// (1/π) ∬ dx dy / √(x² + y² + depth²).
+pub(super) fn below(sides: [f64; 2], [x, y]: [f64; 2], depth: f64) -> f64 {
+    let half = sides.map(|side| 0.5 * side);
+    let distance = x.hypot(y).hypot(depth);
+    if distance > DEEP * sides[0].max(sides[1]) {
+        let rule = GaussLegendre::new(6);
+        let over = |t: f64, s: f64| 1.0 / (x + half[0] * t).hypot(y + half[1] * s).hypot(depth);
+        return half[0] * half[1] / PI * rule.sum(|t| rule.sum(|s| over(t, s)));
+    }
+    let corner = |x: f64, y: f64| {
+        let r = x.hypot(y).hypot(depth);
+        x * (y / x.hypot(depth)).asinh() + y * (x / y.hypot(depth)).asinh() - depth * (x * y / (depth * r)).atan()
+    };
+    let [a, b] = half;
+    (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b)) / PI
+}
+
+/// So many longer sides from a cell below the points six points along each side are enough.
+const DEEP: f64 = 8.0;
+
 /// Six points along the shorter side are enough from so many of its halves on.
 const FAR: f64 = 12.0;
 

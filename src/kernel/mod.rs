@@ -28,9 +28,10 @@ mod lines;
 mod love;
 mod transform;
 
-pub(crate) use influence::HalfSpace;
+pub(crate) use influence::{HalfSpace, Row};
 pub use layer::Layer;
-pub(crate) use layout::{fast_length, images};
+pub(crate) use layout::{fast_length, images, waves_at};
+pub(crate) use line_load::wave_number;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
@@ -41,7 +42,7 @@ use crate::{Grid, memory};
 use influence::{Body, Response, magnitude};
 use layer::Remainder;
 use layout::{Ends, Layout};
-use line_load::{Strip, wave_number};
+use line_load::Strip;
 use love::Love;
 use transform::Shares;
 

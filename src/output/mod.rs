@@ -41,6 +41,7 @@ mod npy;
 #[cfg(feature = "npy")]
 mod npz;
 mod series;
+mod sliding;
 #[cfg(feature = "npy")]
 mod states;
 mod stress;

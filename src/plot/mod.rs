@@ -58,6 +58,7 @@ mod palette;
 mod picture;
 mod quantity;
 mod section;
+mod sliding;
 
 pub use animation::Animation;
 pub use chart::{Chart, Scale};

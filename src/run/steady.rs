@@ -75,8 +75,8 @@ pub struct SteadyRun<'a> {
 }
 
 impl ViscoelasticContact {
-    /// Moves the indenter steadily over the bodies, by steps of whole cells, to the steady state. Needs
-    /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
+    /// Moves the indenter steadily over the bodies, by steps of whole cells, towards the steady state: to watch the approach, and to go on from there. The state
+    /// itself is one contact problem, whatever the relaxation times: [`sliding`](crate::sliding). Needs [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
     /// Long strides come first, an eighth of the contact length each, until the bodies have passed the whole grid.
     /// Shorter strides follow, down to one cell, until the motion is steady. The early strides are cheap, and their

@@ -7,15 +7,20 @@
 //! the influence K of where the pressure has been. All parts are positive, so that f follows without cancellation from one recursion against the
 //! motion, f(x) = I(x) + e^(−d/l) f(x + d), with the integral I over one cell. The tail beyond the grid is taken in panels that double.
 
+use crate::kernel;
 use crate::quadrature::GaussLegendre;
 
-/// The influence of a cell on a row of points, and where it is not analytic.
-pub(super) struct Row<'a> {
-    /// K at a distance x ≥ 0 along the row \[m\].
-    pub(super) influence: &'a dyn Fn(f64) -> f64,
-    /// Singular points at ± `half` ± i `aside` from the cell \[m\].
-    pub(super) half: f64,
-    pub(super) aside: f64,
+/// The influence of a cell on a row of points, and its values at the points of the panels: these serve all reaches, and both sides of the cell.
+pub(super) struct Row {
+    own: kernel::Row,
+    /// Cells along the row, and their side \[m\].
+    n: usize,
+    d: f64,
+    /// The influence at the middle of each cell.
+    elastic: Vec<f64>,
+    /// The cell of each panel, counted from the source, the panel, and the influence at its points.
+    panels: Vec<(usize, Panel)>,
+    values: Vec<f64>,
 }
 
 /// Numbers of points of a panel.
@@ -35,17 +40,33 @@ struct Panel {
     points: usize,
 }
 
-impl Row<'_> {
+impl Row {
+    /// A row of n cells of the side d.
+    pub(super) fn new(own: kernel::Row, n: usize, d: f64, rules: &Rules) -> Row {
+        let elastic = (0..n).map(|i| (own.influence)(i as f64 * d)).collect();
+        let mut row = Row { own, n, d, elastic, panels: Vec::new(), values: Vec::new() };
+        let mut panels = Vec::new();
+        for m in 0..n {
+            let begin = m as f64 * d;
+            row.panels(begin, d, LEAST_PANEL * d, &mut panels);
+            for panel in panels.drain(..) {
+                rules.each(&panel, |x| row.values.push((row.own.influence)(x)));
+                row.panels.push((m, Panel { begin: panel.begin - begin, ..panel }));
+            }
+        }
+        row
+    }
+
     /// The smallest number of points that integrates over a panel exactly, as an index of [`POINTS`]: the error is ρ^(−n), ρ of the
     /// greatest ellipse about the panel in which the influence is analytic.
     fn points(&self, begin: f64, length: f64) -> Option<usize> {
         let rho = |at: f64| {
-            let [x, y] = [(at - begin - 0.5 * length) / (0.5 * length), self.aside / (0.5 * length)];
+            let [x, y] = [(at - begin - 0.5 * length) / (0.5 * length), self.own.aside / (0.5 * length)];
             // half of the sum of the distances from the foci, the ends of the panel
             let axis = 0.5 * ((x - 1.0).hypot(y) + (x + 1.0).hypot(y));
             axis + (axis * axis - 1.0).max(0.0).sqrt()
         };
-        let rho = rho(self.half).min(rho(-self.half));
+        let rho = rho(0.5 * self.d).min(rho(-0.5 * self.d));
         POINTS.iter().position(|&points| rho.powi(-(points as i32)) < EXACT)
     }
 
@@ -62,37 +83,40 @@ impl Row<'_> {
         }
     }
 
-    /// f of each of the `reaches` l at the cells −(n − 1) to n − 1 of a row, of cells of the side d.
-    pub(super) fn terms(&self, n: usize, d: f64, reaches: &[f64], rules: &Rules) -> Vec<Vec<f64>> {
+    /// The side of a cell \[m\].
+    pub(super) fn side(&self) -> f64 {
+        self.d
+    }
+
+    /// K at the cells −(n − 1) to n − 1.
+    pub(super) fn elastic(&self) -> impl Iterator<Item = f64> {
+        (0..2 * self.n - 1).map(|i| self.elastic[i.abs_diff(self.n - 1)])
+    }
+
+    /// f of each of the `reaches` l at the cells −(n − 1) to n − 1.
+    pub(super) fn terms(&self, reaches: &[f64], rules: &Rules) -> Vec<Vec<f64>> {
+        let Row { n, d, .. } = *self;
         let mut ahead = vec![vec![0.0; n]; reaches.len()];
         let mut behind = ahead.clone();
-        let (mut panels, mut values) = (Vec::new(), Vec::new());
         let mut weights: Vec<Vec<[Vec<f64>; 2]>> = Vec::new();
         let mut known = Vec::new();
-        for m in 0..n {
-            let begin = m as f64 * d;
-            panels.clear();
-            self.panels(begin, d, LEAST_PANEL * d, &mut panels);
-            // the influence does not depend on the reach: its values serve all terms, and both sides of the cell
-            values.clear();
-            for panel in &panels {
-                rules.each(panel, |x| values.push((self.influence)(x)));
-            }
-            let same: Vec<Panel> = panels.iter().map(|panel| Panel { begin: panel.begin - begin, ..*panel }).collect();
+        let mut values = &self.values[..];
+        for cell in self.panels.chunk_by(|a, b| a.0 == b.0) {
+            let (m, same) = (cell[0].0, cell.iter().map(|(_, panel)| *panel).collect::<Vec<_>>());
             // far from the singular points all cells have the same single panel
             if m == 0 || same.len() > 1 || known != same {
                 weights =
                     reaches.iter().map(|&l| same.iter().map(|panel| rules.weights(panel, d, l)).collect()).collect();
                 known = same;
             }
+            let count = known.iter().map(|panel| POINTS[panel.points]).sum();
+            let (own, rest) = values.split_at(count);
+            values = rest;
+            let sum = |weights: &[[Vec<f64>; 2]], side: usize| -> f64 {
+                own.iter().zip(weights.iter().flat_map(|both| &both[side])).map(|(v, w)| v * w).sum()
+            };
             for (k, weights) in weights.iter().enumerate() {
-                let mut from = 0;
-                for [forward, mirrored] in weights {
-                    let own = &values[from..from + forward.len()];
-                    ahead[k][m] += own.iter().zip(forward).map(|(v, w)| v * w).sum::<f64>();
-                    behind[k][m] += own.iter().zip(mirrored).map(|(v, w)| v * w).sum::<f64>();
-                    from += forward.len();
-                }
+                (ahead[k][m], behind[k][m]) = (sum(weights, 0), sum(weights, 1));
             }
         }
         let tails = self.tails(n as f64 * d, reaches, rules);
@@ -125,7 +149,7 @@ impl Row<'_> {
             self.panels(begin, length, LEAST_PANEL * from, &mut panels);
             for panel in &panels {
                 let mut values = Vec::new();
-                rules.each(panel, |x| values.push((self.influence)(x)));
+                rules.each(panel, |x| values.push((self.own.influence)(x)));
                 for (k, &l) in reaches.iter().enumerate().filter(|(k, _)| left[*k] >= NEGLIGIBLE) {
                     let own = Panel { begin: panel.begin - begin, ..*panel };
                     let [weights, _] = rules.weights(&own, length, l);

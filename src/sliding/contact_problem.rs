@@ -14,6 +14,8 @@ const MOST_SETS: usize = 60;
 const ROUGHLY: f64 = 3e-2;
 /// A cell joins for no less penetration than so many root mean squares of the residual.
 const CERTAIN: f64 = 3.0;
+/// One of so many cells is many.
+const MANY: usize = 4;
 /// Restarts of the iteration on a set.
 const CYCLES: usize = 3;
 /// The part of the lowest cells that a first set takes.
@@ -156,16 +158,26 @@ impl Problem<'_> {
             balance.satisfy(&mut p);
             let allowed = tolerance * self.unit(&set, &balance) * (set.len() as f64).sqrt();
             let part = if stands { 0.0 } else { ROUGHLY };
-            let left = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
+            let residual = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
+            let left = norm(&residual);
             let open = |k: usize| found.displacement[k] + gap[k];
             found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
             found.residual = tolerance * left / allowed;
             let height = |k: usize| open(k) - found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let deep = -(SLACK * allowed).max(CERTAIN * left) / (set.len() as f64).sqrt();
-            let pulls = p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
+            let mut pulls: Vec<(f64, usize)> =
+                p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
             let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
             let penetrates: Vec<(f64, usize)> = outside.filter(|(h, _)| *h < deep).collect();
+            // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back
+            if !stands && !penetrates.is_empty() && pulls.len() < set.len() / MANY {
+                let mut closing = vec![0.0; cells];
+                scatter(&residual, &set, &mut closing);
+                bodies.inverse.apply(&closing.clone(), &mut closing);
+                let doubt = norm(&set.iter().map(|&k| closing[k]).collect::<Vec<_>>()) / (set.len() as f64).sqrt();
+                pulls.retain(|(p, _)| *p < -doubt);
+            }
             let mut changes: [Vec<(f64, usize)>; 2] = [pulls, penetrates];
             found.pressure.fill(0.0);
             p.iter().zip(&set).for_each(|(&p, &k)| found.pressure[k] = p.max(0.0));
@@ -208,7 +220,7 @@ impl Problem<'_> {
         bodies: &mut MovingBodies,
         pressure: &mut [f64],
         displacement: &mut [f64],
-    ) -> f64 {
+    ) -> Vec<f64> {
         let cells = self.gap.len();
         let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
         let mut goal = 0.0;
@@ -222,7 +234,7 @@ impl Problem<'_> {
                 goal = allowed.max(part * left);
             }
             if left <= goal || cycle + 1 == CYCLES {
-                return left;
+                return residual;
             }
             gmres(pressure, &residual, goal, |direction| {
                 scatter(direction, set, &mut full);
@@ -236,7 +248,7 @@ impl Problem<'_> {
                 [better, own]
             });
         }
-        f64::INFINITY
+        Vec::new()
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps

@@ -1,7 +1,7 @@
 //! Generalised minimal residuals (Y. Saad & M. H. Schultz, SIAM J. Sci. Stat. Comput. 7, 1986), preconditioned from the right.
 
 /// Greatest number of directions.
-const MOST: usize = 60;
+pub(super) const MOST: usize = 60;
 /// A direction that is shorter than this part of the first residual is rounding.
 const LEAST: f64 = 1e-14;
 

@@ -7,22 +7,35 @@
 //!
 //! All friction comes from hysteresis: the surfaces have none.
 
+mod bodies;
 mod coefficients;
 mod contact_problem;
+mod creep;
 mod gmres;
+mod layer_on_base;
 mod operator;
+mod sweep;
 
 pub use crate::error::SlidingError;
+pub use sweep::{SlidingSweep, SlidingTable, SweptState};
 
 use std::fmt;
+use std::sync::Arc;
+
+use num_complex::Complex64;
 
 use crate::contact::{Builder, Frame, ViscoelasticContact};
 use crate::error::{Error, Result, StepError, finite};
+use crate::kernel::HalfSpace;
 use crate::load::{Load, Tilt};
-use crate::rheology::CreepSpectrum;
+use crate::memory;
+use crate::rheology::{Elastic, Material};
 use crate::rounded::rounded;
 use crate::solver::RigidMotion;
+use bodies::Bodies;
 use contact_problem::{Found, Problem};
+use creep::Creep;
+use layer_on_base::{LayerOnBase, THINNEST};
 use operator::MovingBodies;
 
 /// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
@@ -51,7 +64,7 @@ use operator::MovingBodies;
 pub struct SteadySliding {
     /// Shows the state; it has no past, and takes no steps.
     contact: ViscoelasticContact,
-    creep: CreepSpectrum,
+    bodies: Bodies,
 }
 
 /// The state of a steady motion, in numbers.
@@ -71,6 +84,8 @@ pub struct SlidingReport {
     pub contact_cells: usize,
     /// Contact area \[m²\].
     pub contact_area: f64,
+    /// Mean of the gap over the grid \[m\], where the indenter has a surface.
+    pub mean_gap: f64,
     /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
     pub residual: f64,
     /// Sets of cells that were tried.
@@ -101,50 +116,170 @@ impl fmt::Display for SlidingReport {
     }
 }
 
+/// A refusal.
+fn not_covered<T>(what: &'static str, cure: &'static str) -> Result<T> {
+    Err(SlidingError::NotCovered { what, cure }.into())
+}
+
+/// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
+fn jumps(gap: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> bool {
+    (0..2).filter(|&axis| periodic[axis] && cells[axis] > 2).any(|axis| {
+        let (n, stride) = (cells[axis], if axis == 0 { cells[1] } else { 1 });
+        let mut most = [0.0_f64; 2];
+        for k in 0..gap.len() {
+            let is_last = k / stride % n + 1 == n;
+            let next = if is_last { k - (n - 1) * stride } else { k + stride };
+            let rise = (gap[next] - gap[k]).abs();
+            let most = &mut most[usize::from(is_last)];
+            *most = most.max(if rise.is_finite() { rise } else { 0.0 });
+        }
+        most[1] > JUMP * most[0]
+    })
+}
+
+/// A shape that changes so many times as much at its ends as elsewhere jumps there.
+const JUMP: f64 = 4.0;
+
+/// Bytes of a problem in steady motion beside its contact, at most.
+fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
+    let [n1, n2] = cells.map(|n| n as u64);
+    let padded = [0, 1].map(|axis| if periodic[axis] || cells[axis] == 1 { 1 } else { 2 } * cells[axis] as u64);
+    // factors, coefficients and losses of the response, with its symmetric part; of the inverses
+    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 64 * n1 * (n2 / 2 + 1));
+    // influences at about four nodes a cell, and the panels of these; tables of coefficients
+    let nodes = if periodic == [true; 2] { 0 } else { 150 * n1 * n2 };
+    // two fields for each direction, and a dozen others
+    response + inverse + nodes + 8 * (2 * gmres::MOST as u64 + 12) * n1 * n2
+}
+
+/// Relative difference of ratios that is rounding.
+const SAME_RATIO: f64 = 1e-6;
+
 impl Builder {
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of [`Builder::build`]. All fields take the whole grid.
     ///
-    /// The body is a half-space, which is passed along x1 or x2, or periodic along both axes ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic),
-    /// [`InfluenceKernel::from_spectrum`](crate::InfluenceKernel::from_spectrum), layers that are), or in plane strain
-    /// ([`InfluenceKernel::line`](crate::InfluenceKernel::line)). On a periodic body the shape must be periodic too: a height map that jumps at its ends slides over
-    /// an edge there.
+    /// All bodies of the crate are covered but kernels of coefficients ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Bodies that are periodic along both
+    /// axes are passed in any direction, the others along x1 or x2. Where a body is periodic the shape must be periodic too: a height map that jumps at
+    /// its ends slides over an edge there. A half-space may flow: the pressure under a force is steady then.
     ///
     /// # Errors
-    /// As [`Builder::build`], and if the body is another one, or flows without end, the surfaces attract each other, there are several rigid bodies, ranks, or a history
+    /// As [`Builder::build`], and if the body is another one, or flows, the surfaces attract each other, there are several rigid bodies, ranks, or a history
     /// of the temperature: scale the velocity by the shift factor instead.
-    pub fn build_sliding(mut self) -> Result<SteadySliding> {
-        let refuse = |what, cure| Err(SlidingError::NotCovered { what, cure }.into());
+    pub fn build_sliding(self) -> Result<SteadySliding> {
+        self.sliding(None, None)
+    }
+
+    /// [`Builder::build_sliding`] on a layer whose base creeps otherwise, or not: a rubber sheet on steel. The kernel belongs to a layer that
+    /// [`Layer::bonded_to_material`](crate::Layer::bonded_to_material) made.
+    ///
+    /// # Errors
+    /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no series, or flows; if the body is not periodic along both axes,
+    /// and a side of the grid is more than 64 times as long as the layer is thick.
+    pub fn build_sliding_on(self, base: Material) -> Result<SteadySliding> {
+        self.sliding(Some(base), None)
+    }
+
+    /// [`Builder::build_sliding`] on a body of which the complex contact modulus E* = 1/C \[Pa\] is known as a function of the frequency ≥ 0 \[rad/s\], E′ + i E″,
+    /// without a series. It takes the place of [`Builder::material`]; 4 G* if the body is incompressible. Only bodies that are periodic along both axes are covered.
+    ///
+    /// # Errors
+    /// As [`Builder::build_sliding`]; if the body is not periodic along both axes. [`SteadySliding::at`] fails where the modulus has no positive real part.
+    pub fn build_sliding_by(
+        mut self,
+        modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,
+    ) -> Result<SteadySliding> {
+        // the contact shows the state on an elastic body
+        self = self.material(Material::incompressible(Elastic::new(0.25 * modulus(0.0).re)?));
+        self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
+    }
+
+    /// Bytes of a contact in steady motion at most, with all cells in contact: of [`Builder::memory`], the factors of waves and the nodes of influences, and the
+    /// directions of the iteration, which are most. No field is allocated to find out.
+    ///
+    /// # Errors
+    /// As [`Builder::memory`].
+    pub fn sliding_memory(&self) -> Result<u64> {
+        let own = self.memory()?;
+        // neither symmetry nor a window counts
+        let times = (self.grid.len() as u64).div_ceil(own.computed_cells.max(1) as u64);
+        let periodic = self.kernel.as_ref().map_or([false; 2], |kernel| kernel.periodic_axes());
+        Ok(own.total().saturating_mul(times).saturating_add(bytes(self.grid.cells(), periodic)))
+    }
+
+    fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
         if self.attraction.is_some() {
-            return refuse("a contact of surfaces that attract each other", "build it without attraction");
+            return not_covered("a contact of surfaces that attract each other", "build it without attraction");
         }
         if self.temperature.is_some() {
-            return refuse(
+            return not_covered(
                 "a history of the temperature",
                 "multiply the velocity by the shift factor of the temperature",
             );
         }
         if self.ranks.is_some() {
-            return refuse("a contact that ranks share out", "compute it in one process");
+            return not_covered("a contact that ranks share out", "compute it in one process");
         }
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         self.steady = true;
+        memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
         let contact = self.build()?;
         let kernel = contact.kernel();
-        let cure = "take a half-space, InfluenceKernel::periodic or InfluenceKernel::line, or go to the steady state by ViscoelasticContact::toward_steady";
-        if kernel.periodic_axes() != [true; 2] && kernel.around_a_cell().is_none() {
-            return refuse("a body that is neither a half-space nor periodic along both axes", cure);
+        let is_periodic = kernel.periodic_axes() == [true; 2];
+        if !is_periodic && (0..2).all(|axis| kernel.rows_along(axis, Some(0.0)).is_none()) {
+            return not_covered("a body of coefficients", "take InfluenceKernel::from_spectrum or a layer");
         }
         if contact.bodies() > 1 {
-            return refuse("a contact of several rigid bodies", "take one");
+            return not_covered("a contact of several rigid bodies", "take one");
         }
-        let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series("a motion"))?;
-        if creep.fluidity() > 0.0 {
-            return refuse(
-                "a body that flows",
-                "take one with an equilibrium modulus: on a flowing one approach or slope grow for ever",
+        if jumps(&contact.initial_gap().above, contact.grid().cells(), kernel.periodic_axes()) {
+            return not_covered(
+                "a shape that jumps at the period of its body",
+                "take one that repeats, or taper its ends",
             );
         }
-        Ok(SteadySliding { contact, creep })
+        if modulus.is_some() && !is_periodic {
+            return not_covered(
+                "a modulus over frequency, of a body that is not periodic along both axes,",
+                "fit a series to it",
+            );
+        }
+        let series = |material: &Material| {
+            Ok::<_, Error>(Creep::Series(material.contact_spectrum()?.ok_or_else(|| material.no_series("a motion"))?))
+        };
+        let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
+        let flows = creep.fluidity() > 0.0;
+        if flows && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid) {
+            return not_covered(
+                "a body that flows",
+                "take a half-space, or an equilibrium modulus: one approach or slope grows for ever",
+            );
+        }
+        let on_base = |base: Material| {
+            let (thin, cure) = ("a layer so thin on a base of its own", "take fewer cells, or a periodic body");
+            let Some(layer) = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid()) else {
+                return not_covered(
+                    "a base below another body than a layer",
+                    "make the layer by Layer::bonded_to_material",
+                );
+            };
+            let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
+            let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
+            if (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson() {
+                return not_covered(
+                    "a base of another ratio than the layer's",
+                    "make the layer by Layer::bonded_to_material",
+                );
+            }
+            let ends = (0..2).filter(|&axis| !kernel.periodic_axes()[axis]);
+            let longest = ends.map(|axis| contact.grid().lengths()[axis]).fold(0.0, f64::max);
+            if longest > THINNEST * layer.thickness() {
+                return not_covered(thin, cure);
+            }
+            Ok(LayerOnBase { layer, base: series(&base)?, base_poisson: layer.base_poisson().unwrap_or(0.5) })
+        };
+        let layer = base.map(on_base).transpose()?;
+        let bodies = Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() };
+        Ok(SteadySliding { contact, bodies })
     }
 }
 
@@ -172,11 +307,10 @@ impl SteadySliding {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
         if let Load::Spring { .. } = load {
-            let (what, cure) = ("a body on a spring", "give the force or the approach");
-            return Err(SlidingError::NotCovered { what, cure }.into());
+            return not_covered("a body on a spring", "give the force or the approach");
         }
         let (free, given) = (self.contact.free_motion(load)?, prescribed(load));
-        let mut bodies = self.bodies(velocity, load)?;
+        let mut bodies = self.moving(velocity, load)?;
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
         let (gap, n2) = (self.contact.initial_gap(), grid.cells()[1]);
         let datum = gap.datum;
@@ -190,19 +324,20 @@ impl SteadySliding {
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
         }
         let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
+        let warm = (self.contact.contact_cells() > 0).then(|| problem.solve(&mut bodies, self.contact.pressure()));
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
-        } else if self.contact.contact_cells() == 0 {
+        } else if let Some(warm) = warm.filter(|found| found.converged) {
+            warm
+        } else {
             // the symmetric part of the response gives a first contact: in slow motion a set would grow by one row of cells at a time
             let mut symmetric = bodies.symmetric();
             let first = problem.solve(&mut symmetric, self.contact.pressure());
             let found = problem.solve(&mut bodies, &first.pressure);
             bodies.response.pairs += symmetric.transforms();
             Found { sets: found.sets + first.sets, ..found }
-        } else {
-            problem.solve(&mut bodies, self.contact.pressure())
         };
-        let Found { pressure, displacement, motion, residual, sets, converged } = found;
+        let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }
@@ -210,6 +345,9 @@ impl SteadySliding {
         let cell_area = grid.cell_area();
         let transforms = bodies.transforms();
         let lateral_force = bodies.drag(&pressure).map(|force| force * cell_area);
+        let excess = self.bodies.excess(velocity, cell_area * pressure.iter().sum::<f64>());
+        displacement.iter_mut().for_each(|u| *u -= excess);
+        motion.approach -= excess;
         let motion = RigidMotion { approach: datum, tilt: [0.0; 2] } + lowered + motion;
         self.contact.show_steady(load, motion, pressure, displacement);
         Ok(SlidingReport {
@@ -219,36 +357,33 @@ impl SteadySliding {
             lateral_force,
             contact_cells: self.contact.contact_cells(),
             contact_area: self.contact.contact_area(),
+            mean_gap: self.mean_gap()?,
             residual,
             sets,
             transforms,
         })
     }
 
-    /// The bodies under a pressure with this velocity.
-    fn bodies(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
-        let (kernel, grid) = (self.contact.kernel(), self.contact.grid());
-        let Some(influence) = kernel.around_a_cell() else {
-            return Ok(MovingBodies::periodic(kernel, &self.creep, velocity));
-        };
-        let periodic = kernel.periodic_axes();
-        // in plane strain a motion along the lines changes nothing
-        let across = periodic.iter().position(|&periodic| periodic).map(|along| 1 - along);
-        let axis = across.unwrap_or(usize::from(velocity[0] == 0.0));
-        if across.is_none() && velocity[1 - axis] != 0.0 {
-            let (what, cure) =
-                ("a motion over a half-space that follows neither x1 nor x2", "rotate the shape (geometry::Rotated)");
-            return Err(SlidingError::NotCovered { what, cure }.into());
+    /// The bodies under a pressure with this velocity, where a load has a steady state.
+    fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
+        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
+        if creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]) {
+            return not_covered("a body that flows, under an approach or at rest,", "give a force and a velocity");
         }
-        let farthest = self.creep.terms().iter().map(|(_, time)| time * velocity[axis].abs()).fold(0.0, f64::max);
-        if across.is_some()
-            && !matches!(load, Load::Force { .. })
-            && kernel.datum() < Some(grid.lengths()[axis] + farthest)
-        {
-            let what = "a line contact of given approach whose datum is nearer than the grid and the longest memory of the motion";
-            return Err(SlidingError::NotCovered { what, cure: "give the force, or a datum farther away" }.into());
+        let bodies = self.bodies.moving(velocity)?;
+        let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
+        let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
+        let farthest = reaches.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
+        if !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest) {
+            let what = "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
+            return not_covered(what, "give the force, or a datum farther away");
         }
-        Ok(MovingBodies::half_space(grid, &*influence, &self.creep, axis, velocity[axis]))
+        Ok(bodies)
+    }
+
+    fn mean_gap(&self) -> Result<f64> {
+        let finite: Vec<f64> = self.contact.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
+        Ok(finite.iter().sum::<f64>() / finite.len() as f64)
     }
 
     /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.

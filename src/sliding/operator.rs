@@ -1,14 +1,14 @@
 //! The displacement under a steady pressure that moves, in the frame of the pressure.
 
-use std::f64::consts::TAU;
-
 use num_complex::Complex64;
 
 use super::coefficients::{Row, Rules};
 use crate::Grid;
-use crate::fft::RealPlane;
-use crate::kernel::{InfluenceKernel, fast_length};
-use crate::rheology::CreepSpectrum;
+use crate::fft::{RealPlane, wave_numbers};
+use crate::kernel::{fast_length, waves_at};
+
+/// A reach beyond so many cells gives nothing.
+const LONGEST: f64 = 1e200;
 
 /// A linear map of the pressure \[Pa\] to the displacement \[m\] of the bodies that it moves over, and an approximate inverse.
 ///
@@ -17,151 +17,138 @@ use crate::rheology::CreepSpectrum;
 ///
 /// u(q) = K(q) C(q·v) p(q), C(ω) = C(0) + Σ C_k/(1 − iω λ_k):
 ///
-/// the conjugate of the complex compliance at the frequency at which the wave passes a point. On a half-space each term has influence
-/// coefficients of its own, in place of waves. The real part of C is positive, so that the map is strictly monotone, and a contact has one
-/// steady state.
+/// the conjugate of the complex compliance at the frequency at which the wave passes a point. Other bodies have influence coefficients in
+/// place of waves. The real part of C is positive, so that the map is strictly monotone, and a contact has one steady state.
 #[derive(Debug)]
 pub(super) struct MovingBodies {
     pub(super) response: Multiplier,
     pub(super) inverse: Multiplier,
-    drag: Drag,
+    /// The symmetric part of −∂u/∂x of each wave along either axis, by which bodies resist.
+    loss: [Vec<f64>; 2],
 }
 
-/// How the force with which bodies resist is found.
-#[derive(Debug)]
-enum Drag {
-    /// From each wave, with its wave numbers \[1/m\].
-    OfWaves(Vec<[f64; 2]>),
-    /// Σ p L p along a direction, L = Σ C_k (K − f_k)/l_k.
-    OfLoss(Box<Multiplier>, [f64; 2]),
+/// Influence coefficients of bodies along a motion, at the distances −(n − 1) to n − 1 in each row aside of the motion.
+#[derive(Debug, Clone)]
+pub(super) struct Coefficients {
+    /// u under a unit pressure on a cell.
+    pub(super) response: Vec<Vec<f64>>,
+    /// −∂u/∂x, of which the symmetric part resists.
+    pub(super) loss: Vec<Vec<f64>>,
+}
+
+impl Coefficients {
+    pub(super) fn zero(rows: usize, count: usize) -> Coefficients {
+        let zero = vec![vec![0.0; count]; rows];
+        Coefficients { response: zero.clone(), loss: zero }
+    }
+
+    /// Adds the influence of a row, of compliances with their reaches l \[m\]: C K where l is 0, else C f with ∂f/∂x = (f − K)/l.
+    pub(super) fn add(&mut self, j: usize, row: &Row, creep: &[(f64, f64)], rules: &Rules) {
+        let (at_once, moving): (Vec<_>, Vec<_>) = creep.iter().partition(|(_, reach)| *reach == 0.0);
+        let at_once: f64 = at_once.iter().map(|(compliance, _)| compliance).sum();
+        // f is nothing at so great a speed that the tail has no end
+        let reaches: Vec<f64> = moving.iter().map(|(_, reach)| reach.min(LONGEST * row.side())).collect();
+        let terms = row.terms(&reaches, rules);
+        for (i, elastic) in row.elastic().enumerate() {
+            self.response[j][i] += at_once * elastic;
+            for ((compliance, _), (f, reach)) in moving.iter().zip(terms.iter().zip(&reaches)) {
+                self.response[j][i] += compliance * f[i];
+                self.loss[j][i] += compliance * ((elastic - f[i]) / reach);
+            }
+        }
+    }
+
+    /// The rows at the distances of n cells, from one row for each wave of a period of n cells aside.
+    pub(super) fn of_waves_aside(&self, n: usize) -> Coefficients {
+        let sum = |rows: &[Vec<f64>]| {
+            let of = |j: usize| {
+                let mut sum = vec![0.0; rows[0].len()];
+                for (k, row) in rows.iter().enumerate() {
+                    let part = waves_at(j, k, n) / n as f64;
+                    sum.iter_mut().zip(row).for_each(|(sum, own)| *sum += part * own);
+                }
+                sum
+            };
+            (0..n).map(of).collect()
+        };
+        Coefficients { response: sum(&self.response), loss: sum(&self.loss) }
+    }
 }
 
 impl MovingBodies {
-    /// Bodies that are periodic along both axes, under a pressure with this `velocity` \[m/s\].
-    pub(super) fn periodic(kernel: &InfluenceKernel, creep: &CreepSpectrum, velocity: [f64; 2]) -> MovingBodies {
-        let grid = kernel.grid();
+    /// Bodies that are periodic along both axes, of which `displaces` returns the compliance \[m/Pa\] of a wave \[1/m\] of these absolute numbers.
+    pub(super) fn periodic(grid: &Grid, displaces: &dyn Fn([usize; 2], [f64; 2]) -> Complex64) -> MovingBodies {
         let cells @ [n1, n2] = grid.cells();
-        let waves = waves(grid);
+        let waves = wave_numbers(grid);
+        let mut loss = [Vec::with_capacity(waves.len()), Vec::with_capacity(waves.len())];
         let factor = |(k, &q): (usize, &[f64; 2])| {
             let k = [(k % n1).min(n1 - k % n1), k / n1];
             // a wave of alternating cells is its own mirror image: it moves both ways
             let signs = [0, 1].map(|axis| if 2 * k[axis] == cells[axis] { &[1.0, -1.0][..] } else { &[1.0] });
             let both = signs[0].iter().flat_map(|s1| signs[1].iter().map(move |s2| [s1 * q[0], s2 * q[1]]));
-            let count = (signs[0].len() * signs[1].len()) as f64;
-            let passes = both.map(|q| moving_compliance(creep, q[0] * velocity[0] + q[1] * velocity[1]));
-            kernel.of_wave(k) / count * passes.sum::<Complex64>()
+            let part = 1.0 / (signs[0].len() * signs[1].len()) as f64;
+            let each: Vec<_> = both.map(|q| (q, part * displaces(k, q))).collect();
+            let sum = |axis: usize| each.iter().map(|(q, own)| q[axis] * own.im).sum();
+            (0..2).for_each(|axis| loss[axis].push(sum(axis)));
+            each.iter().map(|(_, own)| own).sum()
         };
         let factors: Vec<Complex64> = waves.iter().enumerate().map(factor).collect();
         let inverse = factors.iter().map(|&of| if of == Complex64::ZERO { of } else { of.inv() }).collect();
         let of = |factors| Multiplier::new(cells, [n1, n2], factors);
-        MovingBodies { response: of(factors), inverse: of(inverse), drag: Drag::OfWaves(waves) }
+        MovingBodies { response: of(factors), inverse: of(inverse), loss }
     }
 
-    /// A half-space loaded on the grid or in plane strain, with the influence K at a distance from a cell, under a pressure that moves along an axis
-    /// with this `velocity` \[m/s\].
+    /// Bodies of influence coefficients that move along an axis, `backward` or not.
     ///
     /// The approximate inverse inverts the nearest circulant matrix on the grid without padding (T. F. Chan, SIAM J. Sci. Stat. Comput.
     /// 9, 1988).
-    pub(super) fn half_space(
-        grid: &Grid,
-        influence: &dyn Fn([f64; 2]) -> f64,
-        creep: &CreepSpectrum,
-        axis: usize,
-        velocity: f64,
+    pub(super) fn of_coefficients(
+        cells: [usize; 2],
+        periodic: [bool; 2],
+        (axis, backward): (usize, bool),
+        of: &Coefficients,
     ) -> MovingBodies {
-        let (cells, spacing, rules) = (grid.cells(), grid.spacing(), Rules::new());
-        let [n, d, side] = [cells[axis] as f64, spacing[axis], spacing[1 - axis]];
-        let n = n as usize;
-        let at_rest = velocity == 0.0;
-        // f is K at rest, and nothing at so great a speed that the tail has no end
-        let reaches: Vec<f64> =
-            creep.terms().iter().map(|&(_, time)| (velocity.abs() * time).min(LONGEST * d)).collect();
-        let mut response = Vec::new();
-        let mut loss = Vec::new();
-        for j in 0..cells[1 - axis] {
-            let aside = j as f64 * side;
-            let own = |x: f64| influence(if axis == 0 { [x, aside] } else { [aside, x] });
-            let elastic: Vec<f64> = (0..n).map(|i| own(i as f64 * d)).collect();
-            let elastic = |i: usize| elastic[i.abs_diff(n - 1)];
-            let row = Row { influence: &own, half: 0.5 * d, aside: (aside - 0.5 * side).max(0.0) };
-            let terms = if at_rest { Vec::new() } else { row.terms(n, d, &reaches, &rules) };
-            let sum = |weight: &dyn Fn(usize, f64, f64) -> f64, i: usize| {
-                let each = creep.terms().iter().enumerate();
-                each.map(|(k, (compliance, _))| {
-                    compliance * weight(k, terms.get(k).map_or(elastic(i), |f| f[i]), elastic(i))
-                })
-                .sum::<f64>()
-            };
-            response
-                .push((0..2 * n - 1).map(|i| creep.glassy() * elastic(i) + sum(&|_, f, _| f, i)).collect::<Vec<_>>());
-            let lost = |k: usize, f: f64, elastic: f64| if at_rest { 0.0 } else { (elastic - f) / reaches[k] };
-            loss.push((0..2 * n - 1).map(|i| sum(&lost, i)).collect::<Vec<_>>());
-        }
         let table = |rows: &[Vec<f64>], at: [isize; 2]| {
             // towards lower indices the row is mirrored
-            let along = if velocity < 0.0 { -at[axis] } else { at[axis] };
-            rows[at[1 - axis].unsigned_abs()][(n as isize - 1 + along) as usize]
+            let along = if backward { -at[axis] } else { at[axis] };
+            rows[at[1 - axis].unsigned_abs()][(cells[axis] as isize - 1 + along) as usize]
         };
-        let mut direction = [0.0; 2];
-        direction[axis] = velocity.signum();
-        MovingBodies {
-            response: Multiplier::of_coefficients(cells, &|at| table(&response, at)),
-            inverse: Multiplier::of_circulant(cells, &|at| table(&response, at)),
-            drag: Drag::OfLoss(Box::new(Multiplier::of_coefficients(cells, &|at| table(&loss, at))), direction),
-        }
+        let response = Multiplier::of_coefficients(cells, periodic, &|at| table(&of.response, at));
+        let lost = Multiplier::of_coefficients(cells, periodic, &|at| table(&of.loss, at)).factors;
+        let sign = if backward { -1.0 } else { 1.0 };
+        let mut loss = [vec![0.0; lost.len()], vec![0.0; lost.len()]];
+        loss[axis] = lost.iter().map(|factor| sign * factor.re).collect();
+        let inverse = Multiplier::of_circulant(cells, periodic, &|at| table(&of.response, at));
+        MovingBodies { response, inverse, loss }
     }
 
     /// Bodies with the symmetric part of the response: the pressure moves both ways at once.
     pub(super) fn symmetric(&self) -> MovingBodies {
         let Multiplier { cells, ref plane, ref factors, .. } = self.response;
         let real = factors.iter().map(|factor| Complex64::from(factor.re)).collect();
-        let none = Multiplier::new(cells, [1, 1], vec![Complex64::ZERO]);
         MovingBodies {
             response: Multiplier::new(cells, plane.periods(), real),
             inverse: Multiplier { pairs: 0, ..self.inverse.clone() },
-            drag: Drag::OfLoss(Box::new(none), [0.0; 2]),
+            loss: Default::default(),
         }
     }
 
     /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies resist.
     pub(super) fn drag(&mut self, pressure: &[f64]) -> [f64; 2] {
-        match &mut self.drag {
-            Drag::OfWaves(waves) => {
-                let Multiplier { plane, factors, coefficients, cells: [n1, n2], .. } = &mut self.response;
-                plane.forward(pressure.chunks_exact(*n2), coefficients);
-                let mut drag = [0.0; 2];
-                for (k, (p, response)) in coefficients.iter().zip(&*factors).enumerate() {
-                    let k2 = k / *n1;
-                    // the other half of the waves is conjugate to this one
-                    let count = if k2 == 0 || 2 * k2 == *n2 { 1.0 } else { 2.0 };
-                    (0..2).for_each(|axis| drag[axis] += count * waves[k][axis] * p.norm_sqr() * response.im);
-                }
-                drag.map(|sum| sum / (*n1 * *n2) as f64)
-            }
-            Drag::OfLoss(loss, direction) => {
-                let mut lost = vec![0.0; pressure.len()];
-                loss.apply(pressure, &mut lost);
-                let sum: f64 = lost.iter().zip(pressure).map(|(lost, p)| lost * p).sum();
-                direction.map(|along| along * sum)
-            }
-        }
+        let Multiplier { plane, coefficients, cells, .. } = &mut self.response;
+        plane.forward(pressure.chunks_exact(cells[1]), coefficients);
+        let [n1, n2] = plane.periods();
+        // the other half of the waves is conjugate to this one
+        let count = |k: usize| if k < n1 || 2 * (k / n1) == n2 { 1.0 } else { 2.0 };
+        let each = coefficients.iter().enumerate().map(|(k, p)| count(k) * p.norm_sqr());
+        let sum = |loss: &Vec<f64>| each.clone().zip(loss).map(|(energy, loss)| energy * loss).sum::<f64>();
+        self.loss.each_ref().map(|loss| sum(loss) / (n1 * n2) as f64)
     }
 
     /// Pairs of transforms so far.
     pub(super) fn transforms(&self) -> usize {
         self.response.pairs + self.inverse.pairs
     }
-}
-
-/// A reach beyond so many cells gives nothing.
-const LONGEST: f64 = 1e200;
-
-/// The wave numbers of a grid along each axis \[1/m\], in the order of a [`RealPlane`].
-fn waves(grid: &Grid) -> Vec<[f64; 2]> {
-    let ([n1, n2], [length1, length2]) = (grid.cells(), grid.lengths());
-    let number = |k1: usize| if 2 * k1 > n1 { k1 as f64 - n1 as f64 } else { k1 as f64 };
-    let of = |k2: usize| (0..n1).map(move |k1| [TAU * number(k1) / length1, TAU * k2 as f64 / length2]);
-    (0..=n2 / 2).flat_map(of).collect()
 }
 
 /// A map of fields that multiplies each wave by a factor.
@@ -196,10 +183,11 @@ impl Multiplier {
     }
 
     /// The convolution with coefficients of distances in cells.
-    fn of_coefficients(cells: [usize; 2], at: &dyn Fn([isize; 2]) -> f64) -> Multiplier {
-        let periods = cells.map(|n| if n == 1 { 1 } else { fast_length(2 * n - 1) });
+    fn of_coefficients(cells: [usize; 2], periodic: [bool; 2], at: &dyn Fn([isize; 2]) -> f64) -> Multiplier {
+        let padded = |n: usize| if n == 1 { 1 } else { fast_length(2 * n - 1) };
+        let periods = [0, 1].map(|axis| if periodic[axis] { cells[axis] } else { padded(cells[axis]) });
         let mut plane = vec![0.0; periods[0] * periods[1]];
-        let distances = |axis: usize| 1 - cells[axis] as isize..cells[axis] as isize;
+        let distances = |axis: usize| if periodic[axis] { 0 } else { 1 - cells[axis] as isize }..cells[axis] as isize;
         for i in distances(0) {
             for j in distances(1) {
                 let [row, column] = [i.rem_euclid(periods[0] as isize), j.rem_euclid(periods[1] as isize)];
@@ -209,11 +197,11 @@ impl Multiplier {
         Multiplier::of_plane(cells, periods, &plane, |factor| factor)
     }
 
-    /// The inverse of the nearest circulant matrix: along each axis c_k = ((n − k) a_k + k a_(k − n))/n.
-    fn of_circulant(cells: [usize; 2], at: &dyn Fn([isize; 2]) -> f64) -> Multiplier {
+    /// The inverse of the nearest circulant matrix: along each axis that ends c_k = ((n − k) a_k + k a_(k − n))/n.
+    fn of_circulant(cells: [usize; 2], periodic: [bool; 2], at: &dyn Fn([isize; 2]) -> f64) -> Multiplier {
         let parts = |axis: usize, k: usize| {
             let n = cells[axis];
-            let part = k as f64 / n as f64;
+            let part = if periodic[axis] { 0.0 } else { k as f64 / n as f64 };
             [(k as isize, 1.0 - part), (k as isize - n as isize, part)].into_iter().filter(|(_, part)| *part > 0.0)
         };
         let indices = (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| [i, j]));
@@ -233,16 +221,4 @@ impl Multiplier {
         self.plane.inverse(&mut self.coefficients, out.chunks_exact_mut(n2));
         self.pairs += 1;
     }
-}
-
-/// Beyond this ωλ a term has only its imaginary part left, and squares overflow.
-const FAST: f64 = 1e100;
-
-/// C(0) + Σ C_k/(1 − iω λ_k) \[1/Pa\].
-fn moving_compliance(creep: &CreepSpectrum, omega: f64) -> Complex64 {
-    let term = |&(compliance, time): &(f64, f64)| {
-        let x = omega * time;
-        if x.abs() > FAST { Complex64::I * (compliance / x) } else { compliance / Complex64::new(1.0, -x) }
-    };
-    creep.glassy() + creep.terms().iter().map(term).sum::<Complex64>()
 }

@@ -62,11 +62,15 @@ pub struct SteadyState {
 impl SteadySliding {
     /// The steady state; `None` if the active set finds none.
     pub fn solve(&self, time: Time) -> Option<SteadyState> {
-        let [m, n] = self.cells;
-        let table = match self.below {
+        self.solve_by(&match self.below {
             Below::Periodic => self.of_waves(time),
             _ => self.of_recursion(time),
-        };
+        })
+    }
+
+    /// The steady state from influence coefficients, for each distance across the motion 2 m − 1 distances along it.
+    pub fn solve_by(&self, table: &[Vec<f64>]) -> Option<SteadyState> {
+        let [m, n] = self.cells;
         // row after row of the distance across the motion, 2 m − 1 distances along it
         let influence = |k: usize, l: usize| {
             let ([i, j], [a, b]) = ([k / n, k % n], [l / n, l % n]);
@@ -217,13 +221,26 @@ impl SteadySliding {
         (0..n).map(|j| (1 - m..m).map(|i| coefficient(i, j)).collect()).collect()
     }
 
+    /// Coefficients of bodies that end, as for [`SteadySliding::solve_by`].
+    pub fn coefficients(&self) -> Vec<Vec<f64>> {
+        self.of_recursion(Time::Exact)
+    }
+
+    /// A row of them, of this influence at any distance along the motion.
+    pub fn coefficients_of(&self, kernel: &dyn Fn(f64) -> f64) -> Vec<f64> {
+        self.row_of(Time::Exact, kernel)
+    }
+
     /// Coefficients of bodies that end: f(x) = ∫ e^(−s/l) K(x + s) ds/l = I(x) + e^(−d/l) f(x + d), and the like of sums for steps.
     fn of_recursion(&self, time: Time) -> Vec<Vec<f64>> {
-        let ([m, n], [d, _]) = (self.cells, self.spacing);
+        (0..self.cells[1]).map(|j| self.row_of(time, &|x| self.influence(x, j))).collect()
+    }
+
+    fn row_of(&self, time: Time, kernel: &dyn Fn(f64) -> f64) -> Vec<f64> {
+        let ([m, _], [d, _]) = (self.cells, self.spacing);
         let last = m as isize - 1;
         let far = (last + 1) as f64 * d;
-        let of_row = |j: usize| {
-            let kernel = |x: f64| self.influence(x, j);
+        {
             let at = |i: isize| kernel(i as f64 * d);
             // ∫ e^(−s/l) K(far + s) ds from `start`
             let tail = |l: f64, start: f64| {
@@ -266,8 +283,7 @@ impl SteadySliding {
                 }
             }
             row
-        };
-        (0..n).map(of_row).collect()
+        }
     }
 
     /// K at x along the motion from a cell, j cells across it: Love's integral, or of ln(D/|x|) over a side.

@@ -3,4 +3,7 @@
 mod motion;
 mod rough;
 mod sliding;
+mod sliding_bodies;
+mod sliding_cost;
+mod sliding_marched;
 mod steady;

@@ -225,3 +225,64 @@ fn what_is_not_steady_is_refused() {
     let mut stepped = sliding.contact().clone();
     assert!(matches!(stepped.step(1.0, Load::force(1.0)), Err(Error::Sliding(SlidingError::NotCovered { .. }))));
 }
+
+/// A sweep has the states of single problems, at each temperature those of the shifted velocity; it ends where its progress says so, and its file can be read back.
+#[test]
+fn a_sweep_is_its_states() {
+    use std::ops::ControlFlow;
+
+    use viscocontact::rheology::TimeTemperature;
+    use viscocontact::sliding::SlidingSweep;
+
+    let law = TimeTemperature::wlf(8.61, 200.4, 298.15).unwrap();
+    let (velocities, loads) = ([[1e-2, 0.0], [1.0, 1.0], [30.0, -4.0]], [Load::force(20.0), Load::force(60.0)]);
+    let kelvins = [273.15, 313.15];
+    let sweep = SlidingSweep::new(velocities, loads).at_temperatures(law.clone(), kelvins);
+    let mut last = 0.0;
+    let table = wavy(16)
+        .sweep_with(&sweep, |_, share| {
+            assert!(share > last);
+            last = share;
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    assert!(last == 1.0 && table.states().len() == 12);
+    for (k, state) in table.states().iter().enumerate() {
+        assert_eq!(state.temperature, Some(kelvins[k / 6]));
+        assert_eq!((state.load, state.report.velocity), (loads[k / 3 % 2], velocities[k % 3]));
+        let shift = law.shift_factor(kelvins[k / 6]).unwrap();
+        let single = wavy(16).at(state.report.velocity.map(|v| v * shift), state.load).unwrap();
+        assert!((state.report.friction() - single.friction()).abs() < 1e-8 * single.friction().abs().max(1e-3), "{k}");
+        assert!((state.report.mean_gap - single.mean_gap).abs() < 1e-10);
+        assert_eq!(state.report.contact_cells, single.contact_cells);
+    }
+    let ended = wavy(16).sweep_with(&sweep, |_, _| ControlFlow::Break(())).unwrap();
+    assert_eq!(ended.states().len(), 1);
+    let file = crate::common::Temporary::file("sliding_sweep.csv");
+    table.write_csv(&*file).unwrap();
+    let mut rows = csv::Reader::from_path(&*file).unwrap();
+    let friction: Vec<f64> = rows.records().map(|row| row.unwrap()[5].parse().unwrap()).collect();
+    assert_eq!(friction, table.states().iter().map(|state| state.report.friction()).collect::<Vec<_>>());
+}
+
+/// Heights that jump from one end of a period to the other, and coefficients at cells alone, are refused.
+#[test]
+fn an_edge_at_the_period_is_refused() {
+    let grid = Grid::square(16, 1.0).unwrap();
+    for axis in 0..2 {
+        let slope = FnGeometry::new(move |x1: f64, x2: f64| 0.1 * [x1, x2][axis] + 1e-3 * (TAU * x1).cos());
+        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&slope).material(rubber());
+        let refused = builder.kernel(InfluenceKernel::periodic(&grid).unwrap()).build_sliding().unwrap_err();
+        assert!(refused.to_string().contains("jumps"), "{refused}");
+    }
+    let kernel = InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).unwrap();
+    let ball = Sphere::new(1.0).unwrap();
+    let builder = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(rubber()).kernel(kernel);
+    assert!(matches!(builder.build_sliding(), Err(Error::Sliding(SlidingError::NotCovered { .. }))));
+    // memory: stated before, in proportion to the cells
+    let memory = |cells: usize| {
+        let grid = Grid::square(cells, 1.0).unwrap();
+        ViscoelasticContact::builder(grid).geometry(&ball).material(rubber()).sliding_memory().unwrap() as f64
+    };
+    assert!((memory(512) / memory(256) / 4.0 - 1.0).abs() < 0.05, "{} {}", memory(256), memory(512));
+}

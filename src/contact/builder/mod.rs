@@ -27,7 +27,7 @@ const TEMPERATURES: i32 = 64;
 #[derive(Debug, Clone)]
 #[must_use = "a builder does nothing until it is built"]
 pub struct Builder {
-    pub(super) grid: Grid,
+    pub(crate) grid: Grid,
     /// The gap of each rigid body.
     pub(super) gaps: Vec<LocalGap>,
     /// The waves of all of them.
@@ -37,7 +37,7 @@ pub struct Builder {
     pub(super) times: Option<Times>,
     pub(crate) temperature: Option<TemperatureHistory>,
     pub(crate) attraction: Option<Arc<dyn Attraction>>,
-    pub(super) kernel: Option<Arc<InfluenceKernel>>,
+    pub(crate) kernel: Option<Arc<InfluenceKernel>>,
     pub(crate) settings: Settings,
     pub(crate) ranks: Option<Arc<dyn Ranks>>,
     /// Whether the grid was chosen by a plan, for surfaces that do not attract each other.

@@ -266,7 +266,7 @@ impl ViscoelasticContact {
     }
 
     /// The gap of every cell \[m\].
-    pub(super) fn gap(&self) -> Result<Vec<f64>> {
+    pub(crate) fn gap(&self) -> Result<Vec<f64>> {
         let mut gap = memory::field("the gap", self.pressure().len(), 0.0)?;
         self.gap_into(&mut gap)?;
         Ok(gap)

@@ -20,6 +20,10 @@
 //! with α = 2μ² k₂ + μ (k₁ − 1)(k₂ − 1) + 2 k₁, β = a μ (1 + k₂), γ = 4μ² k₂ + μ (k₁ − 3)(k₂ − 1) + 2 (k₁ − 1): nothing
 //! cancels in D, and in N only as far as γ may be negative, which is less than β makes up for.
 
+use std::ops::{Add, Div, Mul, Sub};
+
+use num_complex::Complex64;
+
 /// Beyond this t the layer responds like a half-space, and e^(−2t) is zero.
 const DEEP: f64 = 380.0;
 /// Below this t the hyperbolic functions less the first terms of their series are summed term by term.
@@ -29,45 +33,43 @@ const SHALLOW: f64 = 0.75;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Response {
     /// Bonded to a base, rigid or a half-space.
-    Bonded(Bonded),
+    Bonded(Bonded<f64>),
     /// Sliding without friction on a rigid base.
     Frictionless,
 }
 
-/// The coefficients of N, D and N − D of a layer bonded to its base, over (1 + μ)².
+/// The coefficients of N and D of a layer bonded to its base, over (1 + μ)²: complex in a steady motion over a base that creeps otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Bonded {
+pub(crate) struct Bonded<T> {
     /// α, β, γ of N and D.
-    sinh: f64,
-    cosh: f64,
-    linear: f64,
+    sinh: T,
+    cosh: T,
+    linear: T,
     /// a², and a (2 + μ (k₂ − 1)).
-    constant: f64,
-    square: f64,
+    constant: T,
+    square: T,
     /// (N − D)/θ = `difference[0]` + `difference[1]` t (1 + t) + `difference[2]` (1 − θ).
-    difference: [f64; 3],
+    difference: [T; 3],
 }
+
+/// A real or a complex number.
+pub(crate) trait Number:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<Output = Self>
+    + From<f64>
+{
+}
+
+impl Number for f64 {}
+impl Number for Complex64 {}
 
 impl Response {
     pub(super) fn bonded(poisson: f64, base_poisson: f64, mu: f64) -> Response {
-        let [k1, k2] = [poisson, base_poisson].map(|nu| 3.0 - 4.0 * nu);
-        let a = 4.0 * (1.0 - poisson);
-        // (1 + μ)², divided by factor by factor so that no product overflows
-        let (unit, ratio) = (1.0 / (1.0 + mu), mu / (1.0 + mu));
-        let [first1, first2] = [2.0 * (1.0 - 2.0 * poisson), 2.0 * (1.0 - 2.0 * base_poisson)];
-        let q = unit + ratio * k2;
-        Response::Bonded(Bonded {
-            sinh: 2.0 * ratio * ratio * k2 + ratio * unit * first1 * first2 + 2.0 * unit * unit * k1,
-            cosh: a * ratio * unit * (1.0 + k2),
-            linear: 4.0 * ratio * ratio * k2 - ratio * unit * 4.0 * poisson * first2 + 2.0 * unit * unit * first1,
-            constant: a * a * unit * unit,
-            square: a * unit * (2.0 * unit + ratio * first2),
-            difference: [
-                a * unit * (ratio * (1.0 + k2) - unit * a),
-                4.0 * (ratio - unit) * q,
-                2.0 * (ratio - unit) * (ratio * k2 - unit * k1),
-            ],
-        })
+        Response::Bonded(Bonded::new(poisson, base_poisson, mu))
     }
 
     /// L(t), right to rounding for every t ≥ 0.
@@ -77,7 +79,7 @@ impl Response {
         }
         let theta = (-2.0 * t).exp();
         match self {
-            Response::Bonded(own) => own.numerator(t, theta) / own.denominator(t, theta),
+            Response::Bonded(own) => own.at(t),
             Response::Frictionless => {
                 let less = -(-2.0 * t).exp_m1();
                 // over θ; 0/0 at 0
@@ -112,17 +114,48 @@ impl Response {
     }
 }
 
-impl Bonded {
+impl<T: Number> Bonded<T> {
+    pub(super) fn new(poisson: f64, base_poisson: f64, mu: T) -> Bonded<T> {
+        let [k1, k2] = [poisson, base_poisson].map(|nu| 3.0 - 4.0 * nu);
+        let a = 4.0 * (1.0 - poisson);
+        // (1 + μ)², divided by factor by factor so that no product overflows
+        let one = T::from(1.0);
+        let (unit, ratio) = (one / (one + mu), mu / (one + mu));
+        let [first1, first2] = [2.0 * (1.0 - 2.0 * poisson), 2.0 * (1.0 - 2.0 * base_poisson)];
+        let q = unit + ratio * k2;
+        Bonded {
+            sinh: ratio * 2.0 * ratio * k2 + ratio * unit * first1 * first2 + unit * 2.0 * unit * k1,
+            cosh: ratio * a * unit * (1.0 + k2),
+            linear: ratio * 4.0 * ratio * k2 - ratio * unit * 4.0 * poisson * first2 + unit * 2.0 * unit * first1,
+            constant: unit * (a * a) * unit,
+            square: unit * a * (unit * 2.0 + ratio * first2),
+            difference: [
+                unit * a * (ratio * (1.0 + k2) - unit * a),
+                (ratio - unit) * 4.0 * q,
+                (ratio - unit) * 2.0 * (ratio * k2 - unit * k1),
+            ],
+        }
+    }
+
+    /// L(t).
+    pub(crate) fn at(&self, t: f64) -> T {
+        if t > DEEP {
+            return T::from(1.0);
+        }
+        let theta = (-2.0 * t).exp();
+        self.numerator(t, theta) / self.denominator(t, theta)
+    }
+
     /// θ N.
-    fn numerator(&self, t: f64, theta: f64) -> f64 {
+    fn numerator(&self, t: f64, theta: f64) -> T {
         self.sinh * sinh_less_first(t, theta) + self.cosh * 0.5 * (1.0 + theta * theta) + self.linear * 2.0 * t * theta
     }
 
     /// θ D.
-    fn denominator(&self, t: f64, theta: f64) -> f64 {
+    fn denominator(&self, t: f64, theta: f64) -> T {
         self.sinh * cosh_less_first(t, theta)
             + self.cosh * -0.5 * (-4.0 * t).exp_m1()
-            + theta * (self.constant + 2.0 * t * t * self.square)
+            + (self.constant + self.square * (2.0 * t * t)) * theta
     }
 }
 

@@ -1,0 +1,144 @@
+//! What a motion passes over: influences of cells and waves, and how they creep.
+
+use std::cell::Cell;
+use std::f64::consts::{FRAC_1_PI, TAU};
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+use num_complex::Complex64;
+
+use super::coefficients::{Row, Rules};
+use super::creep::Creep;
+use super::layer_on_base::LayerOnBase;
+use super::operator::{Coefficients, MovingBodies};
+use crate::error::{Result, SlidingError};
+use crate::kernel::InfluenceKernel;
+
+/// A free dashpot acts as a term with a reach of so many lengths of the grid.
+const ENDLESS: f64 = 1e12;
+/// Euler's constant.
+const EULER: f64 = 0.577_215_664_901_532_9;
+
+/// Bodies, and what is known of them whatever the velocity.
+pub(super) struct Bodies {
+    pub(super) kernel: Arc<InfluenceKernel>,
+    pub(super) creep: Creep,
+    /// A layer on a base that creeps otherwise.
+    pub(super) layer: Option<LayerOnBase>,
+    /// Influences along rows of a motion along either axis.
+    pub(super) rows: [OnceLock<Vec<Row>>; 2],
+}
+
+impl fmt::Debug for Bodies {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.kernel.fmt(f)
+    }
+}
+
+impl Bodies {
+    /// The bodies under a pressure with this velocity \[m/s\].
+    pub(super) fn moving(&self, velocity: [f64; 2]) -> Result<MovingBodies> {
+        let (periodic, cells) = (self.kernel.periodic_axes(), self.kernel.grid().cells());
+        if periodic == [true; 2] {
+            return self.over_period(velocity);
+        }
+        let axis = self.axis(velocity)?;
+        let speed = velocity[axis].abs();
+        let coefficients = if periodic[axis] { self.of_waves(axis, speed) } else { self.of_rows(axis, speed) };
+        Ok(MovingBodies::of_coefficients(cells, periodic, (axis, velocity[axis] < 0.0), &coefficients))
+    }
+
+    /// The axis along which the motion counts.
+    pub(super) fn axis(&self, velocity: [f64; 2]) -> Result<usize> {
+        let (periodic, cells) = (self.kernel.periodic_axes(), self.kernel.grid().cells());
+        // in plane strain a motion along the lines changes nothing
+        if let Some(lines) = (0..2).find(|&axis| periodic[axis] && cells[axis] == 1) {
+            return Ok(1 - lines);
+        }
+        if velocity[0] != 0.0 && velocity[1] != 0.0 {
+            let what = "a motion that follows neither x1 nor x2, over a body that is not periodic along both,";
+            return Err(SlidingError::NotCovered { what, cure: "turn the shape instead" }.into());
+        }
+        Ok(usize::from(velocity[0] == 0.0))
+    }
+
+    fn over_period(&self, velocity: [f64; 2]) -> Result<MovingBodies> {
+        let refused = Cell::new(None);
+        let displaces = |k: [usize; 2], q: [f64; 2]| {
+            let omega = q[0] * velocity[0] + q[1] * velocity[1];
+            let compliance = match &self.layer {
+                Some(layer) if k != [0, 0] => layer.compliance(&self.creep, q[0].hypot(q[1]), omega),
+                _ => self.kernel.of_wave(k) * self.creep.at(omega),
+            };
+            if !(compliance.re > 0.0 && compliance.im.is_finite() || compliance == Complex64::ZERO) {
+                refused.set(Some(omega.abs()));
+            }
+            compliance
+        };
+        let bodies = MovingBodies::periodic(self.kernel.grid(), &displaces);
+        let refuse = |omega: f64| {
+            let compliance = self.creep.at(omega);
+            SlidingError::NotPassive { omega, compliance: [compliance.re, compliance.im] }.into()
+        };
+        refused.get().map_or(Ok(bodies), |omega| Err(refuse(omega)))
+    }
+
+    /// Coefficients of a motion along an axis on which bodies end.
+    fn of_rows(&self, axis: usize, speed: f64) -> Coefficients {
+        let (grid, rules) = (self.kernel.grid(), Rules::new());
+        let [n, aside] = [grid.cells()[axis], grid.cells()[1 - axis]];
+        let rows = self.rows[axis].get_or_init(|| {
+            let own = self.kernel.rows_along(axis, self.layer.as_ref().map(|_| 0.0)).unwrap_or_default();
+            own.into_iter().map(|own| Row::new(own, n, grid.spacing()[axis], &rules)).collect()
+        });
+        let mut reaches = self.creep.reaches(speed);
+        if self.creep.fluidity() > 0.0 {
+            let reach = ENDLESS * grid.lengths()[axis];
+            reaches.push((self.creep.fluidity() * reach / speed, reach));
+        }
+        let mut coefficients = Coefficients::zero(rows.len(), 2 * n - 1);
+        rows.iter().enumerate().for_each(|(j, row)| coefficients.add(j, row, &reaches, &rules));
+        if let Some(layer) = &self.layer {
+            layer.add_along(&self.kernel, (axis, speed), &self.creep, &mut coefficients, &rules);
+        }
+        if self.kernel.periodic_axes()[1 - axis] { coefficients.of_waves_aside(aside) } else { coefficients }
+    }
+
+    /// Coefficients of a motion along a periodic axis, of bodies that end aside of it.
+    fn of_waves(&self, axis: usize, speed: f64) -> Coefficients {
+        let grid = self.kernel.grid();
+        let [n, aside] = [grid.cells()[axis], grid.cells()[1 - axis]];
+        let wave = |k: usize| TAU * k as f64 / grid.lengths()[axis];
+        let waves: Vec<f64> = (0..=n / 2).map(wave).collect();
+        let of = |i: usize, k: usize| {
+            let at = if axis == 0 { [k, i] } else { [i, k] };
+            self.kernel.of_wave(at) * self.creep.at(waves[k] * speed)
+        };
+        let table = match &self.layer {
+            Some(layer) => layer.of_waves(&self.kernel, (axis, speed), &self.creep, &waves),
+            None => (0..aside).map(|i| (0..waves.len()).map(|k| of(i, k)).collect()).collect(),
+        };
+        let mut coefficients = Coefficients::zero(aside, 2 * n - 1);
+        for (i, own) in table.iter().enumerate() {
+            for (k, displaces) in own.iter().enumerate() {
+                // the shortest wave is its own mirror image
+                let both = k > 0 && 2 * k < n;
+                let [re, im] = if both { [2.0 * displaces.re, 2.0 * displaces.im] } else { [displaces.re, 0.0] };
+                for m in 0..2 * n - 1 {
+                    let (sin, cos) = (TAU * (k * (m + 1) % n) as f64 / n as f64).sin_cos();
+                    coefficients.response[i][m] += (re * cos - im * sin) / n as f64;
+                    coefficients.loss[i][m] += waves[k] * (im * cos + re * sin) / n as f64;
+                }
+            }
+        }
+        coefficients
+    }
+
+    /// What the approach of a body that flows exceeds the one after a way of the length of the grid by, under a force:
+    /// φ F/(π v) times the logarithm of the way.
+    pub(super) fn excess(&self, velocity: [f64; 2], force: f64) -> f64 {
+        let speed = velocity[0].abs().max(velocity[1].abs());
+        let per_force = FRAC_1_PI * (ENDLESS.ln() - EULER) * self.creep.fluidity();
+        if per_force > 0.0 { per_force * force / speed } else { 0.0 }
+    }
+}

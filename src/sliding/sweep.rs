@@ -1,0 +1,112 @@
+//! Steady motions at many velocities, loads and temperatures.
+
+use std::ops::ControlFlow;
+
+use super::{SlidingReport, SteadySliding};
+use crate::error::Result;
+use crate::load::Load;
+use crate::rheology::TimeTemperature;
+
+/// Velocities, loads and temperatures of steady motions, for [`SteadySliding::sweep`].
+#[derive(Debug, Clone)]
+pub struct SlidingSweep {
+    velocities: Vec<[f64; 2]>,
+    loads: Vec<Load>,
+    law: Option<(TimeTemperature, Vec<f64>)>,
+}
+
+impl SlidingSweep {
+    /// All velocities \[m/s\] under each of the loads, in this order: neighbours cost least.
+    pub fn new(velocities: impl IntoIterator<Item = [f64; 2]>, loads: impl IntoIterator<Item = Load>) -> SlidingSweep {
+        SlidingSweep { velocities: velocities.into_iter().collect(), loads: loads.into_iter().collect(), law: None }
+    }
+
+    /// At each of these temperatures \[K\]: the material is that at the reference temperature of the law, and passes as many times faster as a_T.
+    pub fn at_temperatures(self, law: TimeTemperature, temperatures: impl IntoIterator<Item = f64>) -> SlidingSweep {
+        SlidingSweep { law: Some((law, temperatures.into_iter().collect())), ..self }
+    }
+}
+
+/// A state of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SweptState {
+    /// Temperature \[K\], of sweeps over temperatures.
+    pub temperature: Option<f64>,
+    /// The load.
+    pub load: Load,
+    /// The state, with the velocity at the temperature.
+    pub report: SlidingReport,
+}
+
+/// The states of a sweep, made by [`SteadySliding::sweep`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SlidingTable(Vec<SweptState>);
+
+impl SteadySliding {
+    /// The states of a sweep, each found from the one before.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    /// use viscocontact::sliding::SlidingSweep;
+    ///
+    /// let grid = Grid::new([256, 1], [4.0e-3, 1.0])?;
+    /// let rubber = GeneralizedMaxwell::new(1.0e6, &[(1.0e7, 1.0e-5), (1.0e7, 1.0e-3), (3.0e6, 0.1)])?;
+    /// let mut roller = ViscoelasticContact::builder(grid.clone())
+    ///     .geometry(&Cylinder::new(10.0e-3)?)
+    ///     .material(Material::incompressible(rubber))
+    ///     .kernel(InfluenceKernel::line(&grid, 1.0)?)
+    ///     .build_sliding()?;
+    /// let speeds = (-4..=2).map(|decade| [10_f64.powi(decade), 0.0]);
+    /// let table = roller.sweep(&SlidingSweep::new(speeds, [Load::force(50.0), Load::force(100.0)]))?;
+    /// assert_eq!(table.states().len(), 14);
+    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-sweep-{}.csv", std::process::id()));
+    /// table.write_csv(&path)?; // with the feature `plot`, `save` draws the friction, too
+    /// # std::fs::remove_file(&path).unwrap();
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`SteadySliding::at`] and [`TimeTemperature::shift_factor`].
+    pub fn sweep(&mut self, sweep: &SlidingSweep) -> Result<SlidingTable> {
+        self.sweep_with(sweep, |_, _| ControlFlow::Continue(()))
+    }
+
+    /// [`SteadySliding::sweep`], calling `progress` after each state with it and the part of the sweep that is done; it may end the sweep early, with the states
+    /// found by then.
+    ///
+    /// # Errors
+    /// As [`SteadySliding::sweep`].
+    pub fn sweep_with(
+        &mut self,
+        sweep: &SlidingSweep,
+        mut progress: impl FnMut(&SweptState, f64) -> ControlFlow<()>,
+    ) -> Result<SlidingTable> {
+        let shift = |law: &TimeTemperature, kelvin: f64| Ok((Some(kelvin), law.shift_factor(kelvin)?));
+        let shifts: Vec<_> = match &sweep.law {
+            Some((law, kelvins)) => kelvins.iter().map(|&kelvin| shift(law, kelvin)).collect::<Result<_>>()?,
+            None => vec![(None, 1.0)],
+        };
+        let count = (shifts.len() * sweep.loads.len() * sweep.velocities.len()) as f64;
+        let mut table = SlidingTable::default();
+        for (temperature, shift) in shifts {
+            for &load in &sweep.loads {
+                for &velocity in &sweep.velocities {
+                    let report = SlidingReport { velocity, ..self.at(velocity.map(|v| v * shift), load)? };
+                    table.0.push(SweptState { temperature, load, report });
+                    if progress(&table.0[table.0.len() - 1], table.0.len() as f64 / count).is_break() {
+                        return Ok(table);
+                    }
+                }
+            }
+        }
+        Ok(table)
+    }
+}
+
+impl SlidingTable {
+    /// The states, in the order of the sweep.
+    pub fn states(&self) -> &[SweptState] {
+        &self.0
+    }
+}
