@@ -23,7 +23,7 @@ pub(in crate::contact) use passes::Passes;
 
 use crate::adhesion::Attraction;
 use crate::contact::scene::Scene;
-use crate::contact::state::State;
+use crate::contact::state::{State, net_sum};
 use crate::contact::step::constraints::converged;
 use crate::contact::step::gap::RigidBodies;
 use crate::contact::step::initial_guess::{begin, fill};
@@ -95,6 +95,7 @@ impl AttractedStep<'_> {
             }
         }
         trial.solution.counts = counts;
+        self.hold_by_spring(trial);
         self.open_gap(window, trial);
         own.report.released = self.area() * (self.energy_at_start(trial) - self.energy_at_end(trial));
         if window.inverse.is_none() {
@@ -181,6 +182,9 @@ impl AttractedStep<'_> {
             (least, change) = (found.energy, found.change);
             exact = (EXACT * self.law.range() / found.displaced).clamp(LEAST_EXACT, 1.0);
             inner = (INNER * exact * change).min(LOOSEST);
+            // the force of the spring, too
+            let scale = (trial.free[0].total * self.area()).max(pulled);
+            trial.solution.residual = trial.solution.residual.max(trial.springs[0].missing / scale);
             if change <= limit && trial.solution.residual <= stop.tolerance {
                 return Ok(counts.convolutions > before);
             }
@@ -259,6 +263,7 @@ impl AttractedStep<'_> {
         let motion = region.modes(trial.free[0]).physical(trial.solution.motions[0]);
         let total = wanted.total + sum;
         trial.free[0] = wanted;
+        trial.springs[0] = TriedSpring::default();
         match self.step.loads[0] {
             Load::Force { .. } => {
                 trial.free[0].total = total;
@@ -269,10 +274,7 @@ impl AttractedStep<'_> {
                 }
             }
             // the search for the force of the wall begins at its present pressure
-            Load::Spring { .. } => {
-                trial.free[0].total = region.rows().sum(&trial.solution.pressure).max(0.0);
-                trial.springs[0] = TriedSpring::default();
-            }
+            Load::Spring { .. } => trial.free[0].total = region.rows().sum(&trial.solution.pressure).max(0.0),
             Load::Approach { .. } => {}
         }
         if wanted.tilts() {
@@ -298,6 +300,13 @@ impl AttractedStep<'_> {
         let step =
             Step { interval: self.step.interval, loads: &loads, indenter, tolerance, cancelled: self.step.cancelled };
         solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
+    }
+
+    /// Lays a body on its spring: what is left of the imbalance becomes an error of the gap, which a stiff spring would multiply.
+    fn hold_by_spring(&self, trial: &mut Trial) {
+        let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
+        let force = self.area() * net_sum(&self.state.region.rows(), &trial.solution);
+        trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
     }
 
     /// Force over Σ p \[m²\].
