@@ -211,7 +211,7 @@ impl ViscoelasticContact {
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
     /// the smallest rectangle that contains all pressed cells.
-    pub(in crate::contact) fn adopt(
+    pub(crate) fn adopt(
         &mut self,
         attempt: Attempt,
         step: Step<'_>,

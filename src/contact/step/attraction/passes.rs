@@ -43,6 +43,17 @@ pub struct PassReport {
 }
 
 impl PassReport {
+    /// The report of a step in two halves of which this is the second.
+    pub(crate) fn after(self, first: PassReport) -> PassReport {
+        PassReport {
+            passes: first.passes + self.passes,
+            rejected: first.rejected + self.rejected,
+            rise: first.rise.max(self.rise),
+            released: first.released + self.released,
+            response: first.response.max(self.response),
+        }
+    }
+
     /// Whether the surfaces snapped together or apart.
     pub(in crate::contact) fn jumped(&self) -> bool {
         self.response > LEAST_OF_JUMP
