@@ -1,7 +1,7 @@
 //! Steps as long as their error allows.
 
-use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::step::Attempt;
+use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
@@ -97,7 +97,9 @@ pub(super) fn adaptive_step(
         let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
         let rule = computed.state.history.exponential_rule();
         match &halves {
-            Some(errors) => errors.iter().for_each(|error| control.past.include(rule, 0.5 * dt, error, motion_is_given)),
+            Some(errors) => {
+                errors.iter().for_each(|error| control.past.include(rule, 0.5 * dt, error, motion_is_given))
+            }
             None => control.past.include(rule, dt, &error, motion_is_given),
         }
         control.accept(step.interval.reduced, loads[0], dt, outlook.is_last, proposal);

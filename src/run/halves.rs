@@ -52,7 +52,8 @@ impl Halves {
     ) -> Result<Divided> {
         self.keep(&contact.computation);
         add_work(wasted, &contact.computation);
-        let (time, from) = (step.interval.time, contact.time());
+        let passes = |contact: &ViscoelasticContact| contact.passes().unwrap_or_default();
+        let (time, from, of_whole) = (step.interval.time, contact.time(), passes(contact));
         self.middle = from + 0.5 * (time - from);
         let loads = [history.checked_before(self.middle, true)?];
         let first = Step { loads: &loads, ..step.clone() };
@@ -60,13 +61,13 @@ impl Halves {
         let attempt = contact.attempt(&first)?;
         let of_first = error_in_time(&contact.scene, &contact.computation, &first, outlook);
         add_work(wasted, &contact.computation);
-        let report = contact.computation.trial.passes.as_ref().map(|passes| passes.report).unwrap_or_default();
+        let of_first_half = passes(contact);
         contact.adopt(attempt, first, of_first.sizes)?;
         step.interval = until(contact, step, time)?;
         let attempt = contact.attempt(step)?;
         let of_second = error_in_time(&contact.scene, &contact.computation, step, outlook);
         if let Some(passes) = contact.computation.trial.passes.as_mut() {
-            passes.report = passes.report.after(report);
+            passes.report = passes.report.after(of_first_half, of_whole);
         }
         let difference = SHARE * self.difference(contact, outlook);
         Ok(Divided { attempt, difference, errors: [of_first, of_second] })

@@ -163,7 +163,7 @@ impl ViscoelasticContact {
     }
 
     /// The load of a body at present, as one of the kind of `other`.
-    fn load_like(&self, body: usize, other: &Load) -> Load {
+    pub(in crate::contact) fn load_like(&self, body: usize, other: &Load) -> Load {
         let load = self.computation.state.loads[body];
         let Some(now) = self.body(body).filter(|_| !load.is_like(other)) else { return load };
         let tilt = [0, 1].map(|axis| match other.tilt()[axis] {

@@ -17,6 +17,7 @@ mod energy;
 mod gap_direction;
 mod near_field;
 mod passes;
+mod split;
 
 pub use passes::PassReport;
 pub(in crate::contact) use passes::Passes;
@@ -97,10 +98,7 @@ impl AttractedStep<'_> {
         trial.solution.counts = counts;
         self.hold_by_spring(trial);
         self.open_gap(window, trial);
-        own.report.released = self.area() * (self.energy_at_start(trial) - self.energy_at_end(trial));
-        if window.inverse.is_none() {
-            own.report.response = self.response(own, trial);
-        }
+        self.report_release(own, trial);
         own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
         Ok(())
     }
@@ -168,10 +166,6 @@ impl AttractedStep<'_> {
                 (plain, wait, penalty) = (true, penalty, penalty.saturating_mul(2));
                 continue;
             };
-            if own.report.passes == 1 {
-                let changed = trial.solution.attraction.iter().zip(&trial.gap);
-                own.first.iter_mut().zip(changed).for_each(|(first, (s, g))| *first = ((g - s) / greatest) as f32);
-            }
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
