@@ -136,7 +136,7 @@ impl Loop {
             .material(material)
             .kernel(kernel)
             .attraction(Arc::clone(&law))
-            .settings(Settings::default().with_edge(Edge::Allow))
+            .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(1e-8))
             .build()
             .unwrap();
         Loop {
@@ -148,7 +148,7 @@ impl Loop {
             stiffness: draws.scale(0.5, 50.0),
             tilt: draws.between(0.02, 0.1),
             down: draws.between(0.2, 0.7),
-            dt: draws.scale(2e-3, 2e-2),
+            dt: draws.scale(1e-2, 1e-1),
         }
     }
 
@@ -170,16 +170,16 @@ impl Loop {
 #[test]
 fn energies_close_under_every_load() {
     let mut errors = [const { Vec::new() }; 2];
-    let mut lossy = 0;
+    let mut snapped = 0;
     for number in 0..from_environment("ADHESION_LOOPS", 8) {
         let scene = Loop::draw(number);
-        let [coarse, fine] = [256, 512].map(|steps| {
+        let [coarse, fine] = [64, 256].map(|steps| {
             let mut contact = scene.contact.clone();
             let mut balance = EnergyBalance::new(&contact).unwrap();
-            let mut worst = 0.0_f64;
+            let (mut worst, mut greatest) = (0.0_f64, 0.0_f64);
             for k in 0..=2 * steps {
                 let report = match contact
-                    .step(scene.dt * 256.0 / f64::from(steps), scene.load(f64::from(k) / f64::from(steps)))
+                    .step(scene.dt * 64.0 / f64::from(steps), scene.load(f64::from(k) / f64::from(steps)))
                 {
                     Ok(report) => report,
                     Err(Error::Adhesion(_)) if scene.kind == 2 => break,
@@ -187,29 +187,24 @@ fn energies_close_under_every_load() {
                     Err(Error::Step(StepError::BeyondFullContact { .. })) => break,
                     Err(error) => panic!("{}: {error}", scene.name),
                 };
-                worst = worst.max(balance.record(&contact, &report).unwrap().imbalance().abs());
+                let energies = balance.record(&contact, &report).unwrap();
+                (worst, greatest) = (worst.max(energies.imbalance().abs()), greatest.max(energies.stored.abs()));
             }
-            let energies = balance.energies();
-            (worst, energies)
+            (worst, balance.energies(), greatest)
         });
-        let Energies { lost, viscous, work, stored, .. } = fine.1;
-        let whole = (lost + viscous).max(0.1 * stored.abs());
+        let Energies { lost, viscous, .. } = fine.1;
+        // what is lost: by bodies that neither creep nor snap, nothing
+        let whole = (lost + viscous).max(0.1 * fine.2);
         let [e0, e1] = [coarse.0 / whole, fine.0 / whole];
-        println!(
-            "{}: {e0:.1e} {e1:.1e}; work {work:.4} stored {stored:.4} lost {lost:.4} viscous {viscous:.4}",
-            scene.name
-        );
-        lossy += usize::from(lost > 0.0);
+        println!("{}: {e0:.1e}, {e1:.1e} of what is lost; {:?}", scene.name, fine.1);
+        snapped += usize::from(lost > 0.0);
         errors[0].push(e0);
         errors[1].push(e1);
     }
-    for errors in &mut errors {
+    let [coarse, fine] = errors.map(|mut errors| {
         errors.sort_by(f64::total_cmp);
-        let beyond = errors.iter().filter(|error| **error > 1e-2).count();
-        println!(
-            "median {:.1e}, worst {:.1e}, beyond 1e-2: {beyond}; {lossy} with jumps",
-            errors[errors.len() / 2],
-            errors[errors.len() - 1]
-        );
-    }
+        [errors[errors.len() / 2], errors[errors.len() - 1]]
+    });
+    println!("median and worst {coarse:?}, {fine:?} in a fourth of the steps; {snapped} with jumps");
+    assert!(snapped > 0 && fine[1] < 1e-2 && fine[0] < coarse[0] / 8.0);
 }

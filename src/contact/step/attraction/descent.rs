@@ -12,7 +12,7 @@
 
 use std::sync::atomic::Ordering;
 
-use super::{AttractedStep, CHANGE, GREATEST_CHANGE, Passes};
+use super::{AttractedStep, GREATEST_CHANGE, Passes};
 use crate::contact::state::State;
 use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
@@ -106,7 +106,7 @@ impl AttractedStep<'_> {
         counts: &mut Counts,
     ) -> Result<()> {
         let AttractedStep { step, stop, .. } = *self;
-        let (limit, time) = (CHANGE * stop.tolerance, step.interval.time);
+        let (limit, time) = (self.limit(), step.interval.time);
         let balance = self.balance(window, inverse);
         self.open_gap(window, trial);
         trial.free[0] = self.wanted;
@@ -128,7 +128,7 @@ impl AttractedStep<'_> {
             }
             let soft = softness.iter().fold(1.0_f64, |least, &soft| least.min(soft));
             if gradient.greatest <= limit * (soft / SOFT).clamp(SMALLEST, 1.0) {
-                trial.solution.residual = gradient.greatest / CHANGE;
+                trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                 self.finish(balance, gradient.multiplier, trial);
                 return Ok(());
             }

@@ -39,8 +39,11 @@ use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop}
 
 /// Greatest number of passes of a round.
 const MAX_PASSES: usize = 2000;
-/// Change of s in a pass, over the greatest traction, that ends a step, in tolerances of the solver.
+/// Change of s in a pass, over the greatest traction, that ends a step: so many tolerances of the solver, but no more than this, or than this
+/// part of the tolerance, by which the force then errs.
 const CHANGE: f64 = 100.0;
+const MOST_CHANGE: f64 = 1e-4;
+const SHARE: f64 = 0.3;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;
 const LOOSEST: f64 = 1e-3;
@@ -124,7 +127,7 @@ impl AttractedStep<'_> {
     /// Passes until one changes s no more, from z, s, K z and K s (or, of the near field, N z and N s) of the trial. Returns whether they changed anything.
     fn descend(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<bool> {
         let AttractedStep { step, wanted, stop, given: [c, _], .. } = *self;
-        let (greatest, limit, before) = (self.law.traction(0.0), CHANGE * stop.tolerance, counts.convolutions);
+        let (greatest, limit, before) = (self.law.traction(0.0), self.limit(), counts.convolutions);
         own.has_last = false;
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
@@ -145,13 +148,15 @@ impl AttractedStep<'_> {
             });
             let pulled = self.add_to_load(trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
-            if !carried && plain {
-                let force = wanted.total * self.area();
-                return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
-            }
             let tolerance = inner.max(exact * stop.tolerance);
             let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
             add(counts, trial.solution.counts);
+            // no wall holds what pulls, or what turns a body off that tilts freely: it peels
+            let peels = matches!(outcome, Outcome::Unbalanced(_)) && wanted.total <= 0.0;
+            if plain && (!carried || peels) {
+                let force = wanted.total * self.area();
+                return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
+            }
             if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
                 trial.solution.counts = *counts;
                 converged(outcome, self.scene, &trial.solution, step)?;
@@ -301,6 +306,12 @@ impl AttractedStep<'_> {
         let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
         let force = self.area() * net_sum(&self.state.region.rows(), &trial.solution);
         trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
+    }
+
+    /// The change of s over the greatest traction that ends a step.
+    fn limit(&self) -> f64 {
+        let tolerance = self.stop.tolerance;
+        (CHANGE * tolerance).min((SHARE * tolerance).max(MOST_CHANGE))
     }
 
     /// Force over Σ p \[m²\].

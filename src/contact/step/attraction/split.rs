@@ -4,7 +4,7 @@
 //! together. So a step that is suspected of a jump is taken again in eight parts, from its start.
 
 use super::{PassReport, add};
-use crate::contact::{Step, ViscoelasticContact};
+use crate::contact::{State, Step, ViscoelasticContact};
 use crate::solver::Counts;
 
 const PARTS: u32 = 8;
@@ -28,12 +28,22 @@ impl ViscoelasticContact {
         (*end).clone_from(state);
         state.roll_back();
         let mut counts = Counts::default();
-        let jumped = self.releases_in_parts(step, LEFT * whole.released, &mut counts);
+        let jumped = self.releases_in_parts(step, LEFT * whole.released, &mut counts) || self.is_elsewhere(&end);
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
         if let Some(own) = self.computation.trial.passes.as_mut() {
             (own.report, own.end) = (PassReport { jumped, ..whole }, Some(end));
         }
+    }
+
+    /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.
+    fn is_elsewhere(&self, end: &State) -> bool {
+        let State { current, previous, .. } = end;
+        let [end, start, now] = [current, previous, &self.computation.state.current].map(|at| &at.solution.potential);
+        let [off, change] = end.iter().zip(start).zip(now).fold([0.0; 2], |[off, change], ((end, start), now)| {
+            [off + (now - end).abs(), change + (start - end).abs()]
+        });
+        off > 0.5 * change
     }
 
     /// Whether the parts of the step release more than this; also if one of them has no solution.
