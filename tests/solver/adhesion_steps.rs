@@ -56,7 +56,7 @@ fn creeping_states_converge_with_the_order_of_the_rule() {
     assert!((errors[0] / errors[3]).log2() / 3.0 > 1.9 && errors[3] < 3e-5, "{errors:?}");
 }
 
-/// Forces are as exact as [`Settings::tolerance`] says, as far as to 1e-4: of a ball that is pressed on and pulled, over the force that pulls it
+/// Forces are as exact as [`Settings::tolerance`] says, as far as to 3e-4: of a ball that is pressed on and pulled, over the force that pulls it
 /// off.
 #[test]
 fn the_tolerance_is_that_of_the_force() {
@@ -76,6 +76,6 @@ fn the_tolerance_is_that_of_the_force() {
         let errors = exact.iter().zip(forces).map(|(exact, force)| (exact - force).abs());
         let error = errors.fold(0.0, f64::max) / (1.5 * std::f64::consts::PI);
         println!("tolerance {tolerance:.0e}: the force errs by {error:.1e}");
-        assert!(error <= tolerance.max(1e-4), "{tolerance}: {error}");
+        assert!(error <= tolerance.max(3e-4), "{tolerance}: {error}");
     }
 }

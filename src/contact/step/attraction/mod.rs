@@ -10,7 +10,8 @@
 //! there, in place of plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state
 //! belongs to.
 //!
-//! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K.
+//! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K. Periodic bodies take [no
+//! passes](descent).
 
 mod descent;
 mod energy;
@@ -148,7 +149,7 @@ impl AttractedStep<'_> {
             });
             let pulled = self.add_to_load(trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
-            let tolerance = inner.max(exact * stop.tolerance);
+            let tolerance = inner.max(exact * stop.tolerance.min(limit / CHANGE));
             let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
             add(counts, trial.solution.counts);
             // no wall holds what pulls, or what turns a body off that tilts freely: it peels
