@@ -19,6 +19,9 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
 
+/// The error of a step with a jump counts so many times: the state after a jump shows little of its moment, and of the energy that is lost.
+const JUMPED: f64 = 10.0;
+
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
 /// error, and accepts it or tries a shorter one.
 pub(super) fn adaptive_step(
@@ -161,6 +164,7 @@ fn try_step(
     }
     control.halves = Some(halves);
     let Divided { attempt, difference, errors } = divided?;
-    error.relative = error.relative.max(difference);
+    let jumped = contact.passes().is_some_and(|passes| passes.jumped);
+    error.relative = error.relative.max(difference) * if jumped { JUMPED } else { 1.0 };
     Ok(Tried { attempt, error, excess, halves: Some(errors) })
 }

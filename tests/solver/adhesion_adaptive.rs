@@ -113,7 +113,7 @@ impl Curve {
             let report = contact.step(time - contact.time(), scene.path.at(time)).unwrap();
             let released = contact.passes().unwrap().released;
             // many times what is released before it: else fast creep leads into the jump
-            let stands_out = released > GREAT.max(10.0 * std::mem::replace(&mut before, released.abs()));
+            let stands_out = released > GREAT.max(30.0 * std::mem::replace(&mut before, released.abs()));
             if report.warnings.contains(Warnings::JUMP) && stands_out {
                 jumps.push((time, released));
             }

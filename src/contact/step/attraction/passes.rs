@@ -4,8 +4,8 @@ use crate::contact::state::State;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
-/// Two halves of a smooth step release half of what the whole does, and a jump does all of it.
-const LEFT_IN_HALVES: f64 = 0.65;
+/// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
+const LEFT_IN_A_HALF: f64 = 0.4;
 
 /// What the passes of a step work in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
@@ -37,7 +37,7 @@ pub struct PassReport {
     /// Where nothing jumps, it is of second order in the length of the step, of either sign.
     pub released: f64,
     /// Whether the surfaces snapped together or apart ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)): `released` stays however the step is
-    /// split, where of a smooth step half is left in two halves.
+    /// split, where each half of a smooth step releases a quarter.
     pub jumped: bool,
     /// Whether this may be so: much is released, and the energy bends up little on the way, or down.
     pub(crate) suspected: bool,
@@ -46,13 +46,12 @@ pub struct PassReport {
 impl PassReport {
     /// The report of a step in two halves, of which this is the second, and of a `whole` that was tried before.
     pub(crate) fn after(self, first: PassReport, whole: PassReport) -> PassReport {
-        let released = first.released + self.released;
         PassReport {
             passes: first.passes + self.passes,
             rejected: first.rejected + self.rejected,
             rise: first.rise.max(self.rise),
-            released,
-            jumped: whole.suspected && released > LEFT_IN_HALVES * whole.released,
+            released: first.released + self.released,
+            jumped: whole.suspected && first.released.max(self.released) > LEFT_IN_A_HALF * whole.released,
             suspected: false,
         }
     }
