@@ -20,7 +20,7 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 const ORDER_OF_KINKS: u32 = 2;
 
 /// The error of a step with a jump counts so many times: the state after a jump shows little of its moment, and of the energy that is lost.
-const JUMPED: f64 = 10.0;
+const JUMPED: f64 = 100.0;
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
 /// error, and accepts it or tries a shorter one.

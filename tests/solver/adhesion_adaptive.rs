@@ -153,7 +153,7 @@ impl Curve {
 /// steps and within them. Every great jump is reported, with the energy that it loses.
 #[test]
 fn adaptive_runs_follow_short_steps() {
-    let [runs, seed, first] = [("ADHESION_RUNS", 6), ("ADHESION_SEED", 1), ("ADHESION_FIRST", 0)]
+    let [runs, seed, first] = [("ADHESION_RUNS", 14), ("ADHESION_SEED", 1), ("ADHESION_FIRST", 0)]
         .map(|(name, default)| from_environment(name, default));
     let (mut ratios, mut jumps, mut equivalents) = ([const { Vec::new() }; 2], 0, [0.0; 2]);
     for number in first..first + runs {
