@@ -1,12 +1,14 @@
 //! Steps as long as their error allows.
 
+use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::error_in_time;
-use crate::contact::{Computation, StepReport, ViscoelasticContact};
+use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
-use crate::hereditary::TimeError;
+use crate::hereditary::{StepContext, TimeError};
 use crate::load::Load;
 use crate::run::driven::Course;
+use crate::run::halves::{Divided, Halves, add_work};
 use crate::run::load_within::stays_away;
 use crate::run::outlook::excess;
 use crate::run::step_control::{Proposal, StepControl};
@@ -16,8 +18,9 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 /// Order in the step length of the error due to cells that join the contact within the step: a shorter step ends sooner
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
-/// Greatest factor by which the response of surfaces that attract each other enlarges the error of a step. It has no bound at a jump.
-const MOST_RESPONSE: f64 = 10.0;
+
+/// The error of a step with a jump counts so many times: the state after a jump shows little of its moment, and of the energy that is lost.
+const JUMPED: f64 = 100.0;
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
 /// error, and accepts it or tries a shorter one.
@@ -54,40 +57,29 @@ pub(super) fn adaptive_step(
         let outlook = control.outlook(scene, state, &step, course, kink)?;
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, &step, &outlook);
-        let attempt = match contact.attempt(&step) {
-            Ok(attempt) => attempt,
-            Err(error) => {
-                let unsolved = matches!(
-                    error,
-                    Error::Step(StepError::NotConverged { .. }) | Error::Adhesion(AdhesionError::NotConverged { .. })
-                );
-                // where the bodies separate within the step, a shorter one shows when
-                let separates = matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }));
-                failures += u32::from(unsolved);
-                if !(unsolved && failures <= MAX_SOLVER_RETRIES
-                    || separates && step.interval.length > outlook.resolution)
-                {
-                    return Err(error);
+        let Tried { attempt, mut error, excess, halves } =
+            match try_step(contact, control, &mut step, (course, &outlook), (straying, parted), &mut wasted) {
+                Ok(tried) => tried,
+                Err(error) => {
+                    let unsolved = matches!(
+                        error,
+                        Error::Step(StepError::NotConverged { .. })
+                            | Error::Adhesion(AdhesionError::NotConverged { .. })
+                    );
+                    // where the bodies separate within the step, a shorter one shows when
+                    let separates = matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }));
+                    failures += u32::from(unsolved);
+                    if !(unsolved && failures <= MAX_SOLVER_RETRIES || separates && time - now > outlook.resolution) {
+                        return Err(error);
+                    }
+                    control.shorten(dt);
+                    continue;
                 }
-                control.shorten(dt);
-                add_work(&mut wasted, &contact.computation);
-                continue;
-            }
-        };
-        let ViscoelasticContact { scene, computation, .. } = &*contact;
-        let computed = attempt.computation(computation);
-        let mut error = error_in_time(scene, computed, &step, &outlook);
-        computed.state.region.rows().intact()?;
-        // the path of bodies that stay apart does not matter
-        if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
-            error.relative = error.relative.max(straying);
-        }
-        let excess = excess(scene, computed, dt);
-        error.relative *=
-            excess * computed.trial.passes.as_ref().map_or(1.0, |passes| passes.report.response.min(MOST_RESPONSE));
+            };
+        let computed = attempt.computation(&contact.computation);
         // a jump takes no time: shorter steps would show nothing but its moment
-        let jumps = scene.attraction.is_some()
-            && step.interval.length <= outlook.resolution
+        let jumps = contact.scene.attraction.is_some()
+            && time - now <= outlook.resolution
             && error.relative > control.tolerance;
         if jumps {
             error.relative = 0.0;
@@ -98,14 +90,26 @@ pub(super) fn adaptive_step(
         // the report gives the error of a step that cannot be shorter
         let unresolved = unresolved && error.relative.is_finite();
         if !control.judge(proposal, dt, error.relative) && !unresolved {
-            events::rejected(time, step.interval.length, error.relative, control.tolerance);
+            events::rejected(time, time - now, error.relative, control.tolerance);
             add_work(&mut wasted, computed);
+            if let Some(divided) = control.halves.as_ref().filter(|_| halves.is_some()) {
+                divided.undo(contact);
+            }
             continue;
         }
         let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
-        control.past.include(computed.state.history.exponential_rule(), dt, &error, motion_is_given);
+        let rule = computed.state.history.exponential_rule();
+        match &halves {
+            Some(errors) => {
+                errors.iter().for_each(|error| control.past.include(rule, 0.5 * dt, error, motion_is_given))
+            }
+            None => control.past.include(rule, dt, &error, motion_is_given),
+        }
         control.accept(step.interval.reduced, loads[0], dt, outlook.is_last, proposal);
         let mut report = contact.accept(attempt, step, error)?;
+        if halves.is_some() {
+            report.dt = time - now;
+        }
         // bodies apart do not respond to a given approach before they touch
         let apart = !matches!(loads[0], Load::Force { .. }) && report.contact_cells == 0 && time < touch;
         if jumps || outlook.is_last && !apart {
@@ -117,8 +121,50 @@ pub(super) fn adaptive_step(
     }
 }
 
-/// Adds the convolutions and preconditioner applications of a rejected step.
-fn add_work(work: &mut [usize; 2], tried: &Computation) {
-    let counts = tried.trial.solution.counts;
-    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
+/// A step that was tried.
+struct Tried {
+    attempt: Attempt,
+    error: TimeError,
+    /// By how much the error exceeds the estimate of the whole step.
+    excess: f64,
+    /// The errors of its [halves](Halves): the first is the state, and the second is the attempt.
+    halves: Option<[TimeError; 2]>,
+}
+
+/// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too much.
+fn try_step(
+    contact: &mut ViscoelasticContact,
+    control: &mut StepControl,
+    step: &mut Step<'_>,
+    (course, outlook): (&Course<'_>, &StepContext),
+    (straying, parted): (f64, bool),
+    wasted: &mut [usize; 2],
+) -> Result<Tried> {
+    let tried = contact.attempt(step);
+    let ViscoelasticContact { scene, computation, .. } = &*contact;
+    let attempt = tried.inspect_err(|_| add_work(wasted, computation))?;
+    let computed = attempt.computation(computation);
+    let mut error = error_in_time(scene, computed, step, outlook);
+    computed.state.region.rows().intact()?;
+    // the path of bodies that stay apart does not matter
+    if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
+        error.relative = error.relative.max(straying);
+    }
+    let excess = excess(scene, computed, step.interval.dt);
+    error.relative *= excess;
+    let resolved = step.interval.length > outlook.resolution;
+    if scene.attraction.is_none() || resolved && error.relative > control.tolerance {
+        return Ok(Tried { attempt, error, excess, halves: None });
+    }
+    let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
+    let divided = halves.divide(contact, step, course.history, outlook, wasted);
+    if divided.is_err() {
+        add_work(wasted, &contact.computation);
+        halves.undo(contact);
+    }
+    control.halves = Some(halves);
+    let Divided { attempt, difference, errors } = divided?;
+    let jumped = contact.passes().is_some_and(|passes| passes.jumped);
+    error.relative = error.relative.max(difference) * if jumped { JUMPED } else { 1.0 };
+    Ok(Tried { attempt, error, excess, halves: Some(errors) })
 }

@@ -12,6 +12,7 @@ use crate::run::Run;
 use crate::run::adaptive_step::adaptive_step;
 use crate::run::driven::{Course, Driven};
 use crate::run::error_budget::ErrorBudget;
+use crate::run::halves::Halves;
 use crate::run::progress::{Progress, Stepping};
 use crate::run::step_control::StepControl;
 
@@ -53,7 +54,9 @@ impl Driven for ViscoelasticContact {
 
     fn within(&self, control: &StepControl, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)> {
         let loads = |_: &_| Ok(vec![history.checked_at(time, self.scene.attraction.is_some())?]);
-        let (contact, reach) = self.advanced_within_step(time, control.solver_tolerance(&self.scene), loads)?;
+        let of_last = |halves: &&Halves| halves.middle == self.computation.state.start.clock.time;
+        let before = control.halves.as_deref().filter(of_last).map(|halves| &halves.start);
+        let (contact, reach) = self.advanced_within_step(time, control.solver_tolerance(&self.scene), before, loads)?;
         let report = contact.report(None, reach);
         Ok((contact, report))
     }

@@ -16,6 +16,7 @@ mod error_budget;
 mod event;
 mod events;
 mod follow;
+mod halves;
 mod in_space;
 mod load_within;
 mod outlook;

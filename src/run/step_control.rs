@@ -6,6 +6,7 @@ use crate::hereditary::TimeError;
 use crate::load::{Load, LoadHistory};
 use crate::observe::MeshError;
 use crate::run::error_budget::StepErrors;
+use crate::run::halves::Halves;
 use crate::run::past_steps::PastSteps;
 use crate::run::progress::Stepping;
 use crate::run::run_scale::RunScale;
@@ -38,6 +39,9 @@ pub struct StepControl {
     pub(super) worst: Option<StepErrors>,
     /// Greatest estimated errors due to the mesh, of the states in contact.
     pub(super) mesh: Option<MeshError>,
+    /// The last step of surfaces that attract each other.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) halves: Option<Box<Halves>>,
 }
 
 /// Bounds of the change of the step length. Beyond 1 + √2 the order of steps with an immediate dashpot is lower.

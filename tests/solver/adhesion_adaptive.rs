@@ -12,7 +12,12 @@ use viscocontact::prelude::*;
 
 const SIDE: f64 = 8.0;
 const SPAN: f64 = 10.0;
-const SHORT_STEPS: usize = 1000;
+const SHORT: f64 = 0.0025;
+/// Loss of a great jump.
+const GREAT: f64 = 0.05;
+/// A jump's time, and that of a separation as fast, is known to so much of the run; the answer changes by so much in a short step.
+const MOMENT: f64 = 1e-3;
+const FAST: f64 = 5e-3;
 
 struct Scene {
     name: String,
@@ -20,6 +25,9 @@ struct Scene {
     material: Material,
     law: Arc<dyn Attraction>,
     cells: usize,
+    kind: usize,
+    /// Times of the corners: pressed, held, pulled, held, pressed again, held.
+    turns: [f64; 7],
     path: PiecewiseLinear,
 }
 
@@ -38,17 +46,28 @@ impl Scene {
             if draws.chance(0.6) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
         let terms: Vec<_> = (0..1 + draws.below(2)).map(|_| (draws.scale(0.1, 2.0), draws.scale(0.1, 5.0))).collect();
         let material = Material::incompressible(GeneralizedMaxwell::new(0.25, &terms).unwrap());
-        let (kind, stiffness) = (draws.below(2), draws.scale(2.0, 30.0));
-        let load = |at: f64| if kind == 0 { Load::approach(at) } else { Load::spring(stiffness, at) };
-        let [down, out] = [draws.between(0.3, 1.0), draws.between(-4.0, -2.0)];
-        let turns = [0.3 * SPAN, 0.3 * SPAN + draws.between(0.1, 2.0)];
-        let path = [(0.0, load(-1.0)), (turns[0], load(down)), (turns[1], load(down)), (SPAN, load(out))];
+        let (kind, stiffness) = (number as usize % 3, draws.scale(2.0, 30.0));
+        let load = |at: f64| match kind {
+            0 => Load::approach(at),
+            1 => Load::spring(stiffness, at),
+            _ => Load::force(if at > 0.0 { 5.0 * at } else { 0.4 * at }),
+        };
+        let [down, out, again] = [draws.between(0.3, 1.0), draws.between(-4.0, -2.0), draws.between(0.1, 0.6)];
+        let at = [-1.0, down, down, out, out, again, again];
+        let mut turns = [0.0; 7];
+        for k in 1..7 {
+            // multiples of the short steps
+            turns[k] = turns[k - 1] + 0.01 * draws.between(30.0, 220.0).round();
+        }
+        let path: Vec<_> = turns.iter().zip(at).map(|(turn, at)| (*turn, load(at))).collect();
         Scene {
             name: format!("scene {number}: μ = {mu:.2}, {law:?}, load {kind}, {} terms", terms.len()),
             shape,
             material,
             law,
             cells: (2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize,
+            kind,
+            turns,
             path: PiecewiseLinear::new(&path).unwrap(),
         }
     }
@@ -62,73 +81,144 @@ impl Scene {
             .build()
             .unwrap()
     }
+
+    /// What the load leaves free.
+    fn answer(&self, report: &StepReport) -> f64 {
+        if self.kind == 2 { report.approach } else { report.force }
+    }
+
+    fn is_held(&self, time: f64) -> bool {
+        (0..3).any(|hold| time > self.turns[2 * hold + 1] && time <= self.turns[2 * hold + 2])
+    }
 }
 
-/// The force stays within three tolerances of the curve in 95 % of the runs and ten in all of short steps, in force or in time: a jump takes no time, so that the force itself has no error
-/// there. Every great jump of the short steps is reported, with the energy that it loses.
+/// What short steps of given length find.
+struct Curve {
+    points: Vec<(f64, f64)>,
+    /// The greatest force, or the greatest change of the approach.
+    scale: f64,
+    /// Time and loss of great jumps.
+    jumps: Vec<(f64, f64)>,
+    /// Times at which the answer moves too fast for the short steps.
+    fast: Vec<f64>,
+}
+
+impl Curve {
+    fn of(scene: &Scene, short: f64) -> Curve {
+        let (mut contact, end) = (scene.build(), scene.turns[6]);
+        let (mut points, mut jumps, mut before) = (Vec::new(), Vec::new(), 0.0);
+        let count = (end / short).round() as usize;
+        for k in 0..=count {
+            let time = end * k as f64 / count as f64;
+            let report = contact.step(time - contact.time(), scene.path.at(time)).unwrap();
+            let released = contact.passes().unwrap().released;
+            // many times what is released before it: else fast creep leads into the jump
+            let stands_out = released > GREAT.max(30.0 * std::mem::replace(&mut before, released.abs()));
+            if report.warnings.contains(Warnings::JUMP) && stands_out {
+                jumps.push((time, released));
+            }
+            points.push((time, scene.answer(&report)));
+        }
+        let [low, high] = [f64::min, f64::max].map(|of| points.iter().map(|point| point.1).reduce(of).unwrap());
+        let scale = if scene.kind == 2 { high - low } else { high.max(-low) };
+        let moves = points.windows(2).filter(|pair| (pair[1].1 - pair[0].1).abs() > FAST * scale);
+        let fast = moves.map(|pair| pair[1].0).collect();
+        Curve { points, scale, jumps, fast }
+    }
+
+    fn at(&self, time: f64) -> f64 {
+        let after = self.points.partition_point(|point| point.0 < time).clamp(1, self.points.len() - 1);
+        let [(t0, a0), (t1, a1)] = [self.points[after - 1], self.points[after]];
+        a0 + (time - t0) / (t1 - t0) * (a1 - a0)
+    }
+
+    /// Errors of an answer: itself, and in answer or time.
+    fn errors(&self, time: f64, answer: f64) -> [f64; 2] {
+        let off = (self.at(time) - answer).abs() / self.scale;
+        let span = self.points[self.points.len() - 1].0;
+        let mut least = off;
+        for pair in self.points.windows(2).filter(|pair| (pair[0].0 - time).abs() < 0.2 * span) {
+            for k in 0..=10 {
+                let share = f64::from(k) / 10.0;
+                let (t, a) = (pair[0].0 + share * (pair[1].0 - pair[0].0), pair[0].1 + share * (pair[1].1 - pair[0].1));
+                least = least.min(((t - time).abs() / span).max((a - answer).abs() / self.scale));
+            }
+        }
+        let is_fast = self.fast.iter().any(|at| (at - time).abs() < MOMENT * span);
+        [if is_fast { least } else { off }, least]
+    }
+}
+
+/// The answer, in itself while the load is held and else in answer or time, since a jump takes no time, is as exact as was asked: at the ends of
+/// steps and within them. Every great jump is reported, with the energy that it loses.
 #[test]
 fn adaptive_runs_follow_short_steps() {
-    let (runs, seed) = (from_environment("ADHESION_RUNS", 3), from_environment("ADHESION_SEED", 1));
-    let (mut worst, mut beyond, mut jumps) = ([0.0f64; 2], 0, 0);
-    for number in 0..runs {
+    let [runs, seed, first] = [("ADHESION_RUNS", 14), ("ADHESION_SEED", 1), ("ADHESION_FIRST", 0)]
+        .map(|(name, default)| from_environment(name, default));
+    let (mut ratios, mut jumps, mut equivalents) = ([const { Vec::new() }; 2], 0, [0.0; 2]);
+    for number in first..first + runs {
         let scene = Scene::draw(number, seed);
-        let (mut contact, dt) = (scene.build(), SPAN / SHORT_STEPS as f64);
-        let mut curve = vec![(0.0, contact.step(0.0, scene.path.at(0.0)).unwrap().force)];
-        let mut great = Vec::new();
-        for k in 1..=SHORT_STEPS {
-            let time = dt * k as f64;
-            let report = contact.step(dt, scene.path.at(time)).unwrap();
-            let passes = contact.passes().unwrap();
-            if passes.response > 50.0 && passes.released > 0.05 {
-                great.push((time, passes.released));
-            }
-            curve.push((time, report.force));
-        }
-        let most = curve.iter().fold(0.0f64, |most, (_, force)| most.max(force.abs()));
+        let curve = Curve::of(&scene, SHORT);
         for (which, tolerance) in [1e-2, 1e-3].into_iter().enumerate() {
             let mut contact = scene.build();
-            let mut run = contact.follow(&scene.path, Stepping::adaptive(tolerance), SPAN);
-            let (mut ratio, mut found, mut steps, mut work) = (0.0f64, Vec::new(), 0, 0.0);
+            let span = scene.turns[6];
+            let mut run = contact.follow(&scene.path, Stepping::adaptive(tolerance), span);
+            let (mut found, mut steps, mut work) = (Vec::new(), 0, 0.0);
+            let (mut looks, mut now) = (Vec::new(), 0.0);
             while let Some(report) = run.next_step().unwrap() {
-                let off = |(time, force): (f64, f64)| {
-                    ((time - report.time).abs() / SPAN).max((force - report.force).abs() / most) / tolerance
-                };
-                let between = |pair: &[(f64, f64)]| {
-                    let at = |share: f64| {
-                        (pair[0].0 + share * (pair[1].0 - pair[0].0), pair[0].1 + share * (pair[1].1 - pair[0].1))
-                    };
-                    (0..=20).map(|k| off(at(f64::from(k) / 20.0))).fold(f64::INFINITY, f64::min)
-                };
-                ratio = ratio.max(curve.windows(2).map(between).fold(f64::INFINITY, f64::min));
+                looks.push((report.time, scene.answer(&report)));
+                for share in [0.3, 0.7] {
+                    let time = now + share * (report.time - now);
+                    if time > now && steps % 4 == 0 {
+                        let within = run.within_step(time).unwrap();
+                        looks.push((time, if scene.kind == 2 { within.approach() } else { within.force() }));
+                    }
+                }
+                now = report.time;
                 if report.warnings.contains(Warnings::JUMP) {
                     found.push((report.time, report.dt, run.contact().passes().unwrap().released));
                 }
                 (steps, work) = (steps + 1, work + report.convolution_equivalents());
             }
-            println!(
-                "{}, {tolerance}: {ratio:.2} tolerances, {steps} steps, {work} equivalents, jumps {found:?}",
-                scene.name
-            );
-            worst[which] = worst[which].max(ratio);
-            beyond += u64::from(ratio > 3.0);
-            assert!(ratio < 10.0, "{}: {ratio} tolerances", scene.name);
-            for (time, released) in &great {
+            let ratio = |curve: &Curve| {
+                let ratios = looks.iter().map(|&(time, answer)| {
+                    let [off, either] = curve.errors(time, answer);
+                    (if scene.is_held(time) { off } else { either }) / tolerance
+                });
+                ratios.fold(0.0, f64::max)
+            };
+            let mut worst = ratio(&curve);
+            if worst > 1.0 {
+                // the short steps may be too long
+                worst = ratio(&Curve::of(&scene, 0.125 * SHORT));
+            }
+            println!("{}, {tolerance}: {worst:.2} tolerances, {steps} steps, {work} equivalents", scene.name);
+            ratios[which].push(worst);
+            equivalents[which] += work;
+            for (time, released) in curve.jumps.iter().filter(|_| which == 1) {
                 jumps += 1;
-                let near = |(at, length, _): &&(f64, f64, f64)| {
-                    *at - length - 10.0 * tolerance * SPAN < *time && at + 10.0 * tolerance * SPAN > *time
-                };
+                let reach = 10.0 * tolerance * span;
+                let near = |(at, length, _): &&(f64, f64, f64)| *at - length - reach < *time && at + reach > *time;
                 let energy: f64 = found.iter().filter(near).map(|(.., energy)| energy).sum();
-                println!("  jump at {time:.3}: {released:.4}, found {energy:.4}");
-                assert!(
-                    which == 0 || (energy - released).abs() < 0.1 * released,
-                    "{}: {released} {energy}",
-                    scene.name
-                );
+                assert!((energy - released).abs() < 0.1 * released, "{}: {released} {energy}", scene.name);
             }
         }
     }
-    assert!(20 * beyond <= 2 * runs, "{beyond} of {} beyond 3 tolerances", 2 * runs);
-    println!("{runs} scenes: worst {worst:.2?} tolerances, {beyond} beyond 3, {jumps} great jumps");
+    for (which, (ratios, tolerance)) in ratios.iter_mut().zip([1e-2, 1e-3]).enumerate() {
+        ratios.sort_by(f64::total_cmp);
+        let beyond = |most: f64| ratios.iter().filter(|ratio| **ratio > most).count();
+        let most = if which == 0 { 2.0 } else { 6.0 };
+        println!(
+            "{tolerance}: of {} runs {} beyond 1, {} beyond 2, {} beyond 6, worst {:.2}; {:.0} equivalents, {jumps} jumps",
+            ratios.len(),
+            beyond(1.0),
+            beyond(2.0),
+            beyond(6.0),
+            ratios[ratios.len() - 1],
+            equivalents[which]
+        );
+        assert!(beyond(most) == 0 && 20 * beyond(2.0) <= ratios.len(), "at {tolerance}");
+    }
 }
 
 /// Under a force that pulls, the moment of separation is known to five tolerances of the time of the run: near it, bodies move fast.

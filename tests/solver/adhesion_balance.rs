@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction};
+use viscocontact::contact::{Energies, EnergyBalance, StepError};
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -103,4 +104,107 @@ fn work_is_stored_or_lost_in_jumps() {
         seen += jumps;
     }
     assert!(seen >= 2, "{seen} jumps");
+}
+
+/// A random scene: pressed on and pulled off by some kind of load, in so many steps each way.
+struct Loop {
+    name: String,
+    contact: ViscoelasticContact,
+    kind: usize,
+    stiffness: f64,
+    tilt: f64,
+    down: f64,
+    dt: f64,
+}
+
+impl Loop {
+    fn draw(number: u64) -> Loop {
+        let mut draws = Draws::new(3000 * from_environment("ADHESION_SEED", 1) + number);
+        let (mu, kind) = (draws.scale(0.5, 1.4), number as usize % 4);
+        let law = super::adhesion_population::law(&mut draws, 1.0 / mu);
+        let (creeping, material) = super::adhesion_population::material(&mut draws, 0.3);
+        let wavy = Wavy::new(draws.between(0.02, 0.3), 8.0 / draws.between(2.5, 4.0)).unwrap();
+        let sphere = Sphere::new(1.0).unwrap();
+        let shape: Box<dyn Geometry> =
+            if draws.chance(0.5) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
+        let grid = Grid::square((2.0 * (2.2 * 8.0 * mu * mu).ceil()).max(24.0) as usize, 8.0).unwrap();
+        let periodic = draws.chance(0.4) && kind != 3;
+        let kernel =
+            if periodic { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) }.unwrap();
+        let contact = ViscoelasticContact::builder(grid)
+            .geometry(&*shape)
+            .material(material)
+            .kernel(kernel)
+            .attraction(Arc::clone(&law))
+            .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(1e-8))
+            .build()
+            .unwrap();
+        Loop {
+            name: format!(
+                "scene {number}: μ = {mu:.2}, load {kind}, {law:?}, creeping {creeping}, periodic {periodic}"
+            ),
+            contact,
+            kind,
+            stiffness: draws.scale(0.5, 50.0),
+            tilt: draws.between(0.02, 0.1),
+            down: draws.between(0.2, 0.7),
+            dt: draws.scale(1e-2, 1e-1),
+        }
+    }
+
+    /// The load at this part of the way, which goes in up to 1 and out up to 2.
+    fn load(&self, way: f64) -> Load {
+        let at = if way < 1.0 { -2.5 + (2.5 + self.down) * way } else { self.down - (3.5 + self.down) * (way - 1.0) };
+        let approach = self.contact.approach() + at;
+        match self.kind {
+            0 => Load::approach(approach),
+            1 => Load::spring(self.stiffness, approach),
+            2 => Load::force(if at > 0.0 { 5.0 * at } else { 0.4 * at }),
+            _ => Load::Approach { approach, tilt: [Tilt::Fixed(self.tilt * way), Tilt::Fixed(-0.5 * self.tilt * way)] },
+        }
+    }
+}
+
+/// The work of every kind of load is stored, dissipated or lost, from bodies far apart on, though the first step takes time: the error falls as the
+/// square of the length of the steps.
+#[test]
+fn energies_close_under_every_load() {
+    let mut errors = [const { Vec::new() }; 2];
+    let mut snapped = 0;
+    for number in 0..from_environment("ADHESION_LOOPS", 8) {
+        let scene = Loop::draw(number);
+        let [coarse, fine] = [64, 256].map(|steps| {
+            let mut contact = scene.contact.clone();
+            let mut balance = EnergyBalance::new(&contact).unwrap();
+            let (mut worst, mut greatest) = (0.0_f64, 0.0_f64);
+            for k in 0..=2 * steps {
+                let report = match contact
+                    .step(scene.dt * 64.0 / f64::from(steps), scene.load(f64::from(k) / f64::from(steps)))
+                {
+                    Ok(report) => report,
+                    Err(Error::Adhesion(_)) if scene.kind == 2 => break,
+                    // full contact of a periodic body has no greater approach
+                    Err(Error::Step(StepError::BeyondFullContact { .. })) => break,
+                    Err(error) => panic!("{}: {error}", scene.name),
+                };
+                let energies = balance.record(&contact, &report).unwrap();
+                (worst, greatest) = (worst.max(energies.imbalance().abs()), greatest.max(energies.stored.abs()));
+            }
+            (worst, balance.energies(), greatest)
+        });
+        let Energies { lost, viscous, .. } = fine.1;
+        // what is lost: by bodies that neither creep nor snap, nothing
+        let whole = (lost + viscous).max(0.1 * fine.2);
+        let [e0, e1] = [coarse.0 / whole, fine.0 / whole];
+        println!("{}: {e0:.1e}, {e1:.1e} of what is lost; {:?}", scene.name, fine.1);
+        snapped += usize::from(lost > 0.0);
+        errors[0].push(e0);
+        errors[1].push(e1);
+    }
+    let [coarse, fine] = errors.map(|mut errors| {
+        errors.sort_by(f64::total_cmp);
+        [errors[errors.len() / 2], errors[errors.len() - 1]]
+    });
+    println!("median and worst {coarse:?}, {fine:?} in a fourth of the steps; {snapped} with jumps");
+    assert!(snapped > 0 && fine[1] < 1e-2 && fine[0] < coarse[0] / 8.0);
 }

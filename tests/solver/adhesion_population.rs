@@ -74,6 +74,13 @@ pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attract
     }
     let force = traction.iter().sum::<f64>() * contact.grid().cell_area();
     assert!((force - contact.force()).abs() < 1e-9 * (greatest * SIDE * SIDE), "{name}: {force} {}", contact.force());
+    if let Load::Spring { stiffness, drive, .. } = contact.load() {
+        let (balance, scale) =
+            (stiffness * (drive - contact.approach()), traction.iter().map(|q| q.abs()).sum::<f64>());
+        let rounding = 1e-14 * stiffness * (drive.abs() + contact.approach().abs());
+        let off = (force - balance).abs();
+        assert!(off < 1e-9 * scale * contact.grid().cell_area() + rounding, "{name}: {force} {balance}");
+    }
     if elastic {
         contact.kernel().convolve(&traction, &mut image, &mut contact.kernel().workspace().unwrap()).unwrap();
         let most = image.iter().fold(0.0f64, |most, v| most.max(v.abs()));
@@ -108,8 +115,9 @@ fn random_scenes() {
             .build();
         let mut contact = built.unwrap();
         let (kind, step) = (draws.below(3), draws.scale(0.05, 5.0));
+        let stiffness = if kind == 1 { draws.scale(0.5, 1e4) } else { 0.0 };
         let name = format!(
-            "scene {scene}: {shape_name}, {cells}², μ = {mu:.2}, {law:?}, load {kind}, {}{}",
+            "scene {scene}: {shape_name}, {cells}², μ = {mu:.2}, {law:?}, load {kind} ({stiffness:.1}), {}{}",
             if creeping { "creeping" } else { "elastic" },
             if periodic { ", periodic" } else { "" }
         );
@@ -119,7 +127,7 @@ fn random_scenes() {
             let down = if course < 0.3 { course / 0.3 } else { 1.0 - 2.5 * (course - 0.3) };
             let load = match kind {
                 0 => Load::approach(touch + 0.8 * down - 0.2),
-                1 => Load::spring(5.0, touch + 1.5 * down - 0.3),
+                1 => Load::spring(stiffness, touch + 1.5 * down - 0.3),
                 _ => Load::force(4.0 * down),
             };
             match contact.step(step, load) {

@@ -2,6 +2,7 @@
 
 use super::adhesion_population::law;
 use crate::common::{Draws, from_environment};
+use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
 use viscocontact::contact::Contact;
 use viscocontact::prelude::*;
 
@@ -65,4 +66,37 @@ fn bodies_without_attraction_are_apart_at_once() {
     assert_eq!(parted(builder.material(body.clone()).build().unwrap()), [false, true, false]);
     let states = ElasticStates::sphere(10.0e-3).unwrap();
     assert_eq!(parted(StatesContact::new(&states, &body).unwrap()), [false, true, false]);
+}
+
+/// A punch that tilts freely peels off under an eccentric pull: at the same force, however long the steps are that lead there.
+#[test]
+fn an_eccentric_pull_peels_at_one_force() {
+    let forces = [0.5, 0.1, 0.02].map(|step| {
+        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0).unwrap())
+            .geometry(&FlatPunch::circular(1.0).unwrap())
+            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
+            .attraction(ExponentialAttraction::new(1.0, 0.8).unwrap())
+            .settings(Settings::default().with_edge(Edge::Allow))
+            .build()
+            .unwrap();
+        let load = |force: f64| Load::eccentric_force(force, [0.2, 0.0]);
+        contact.step(1.0, load(1.0)).unwrap();
+        let (mut force, mut step): (f64, f64) = (1.0, step);
+        let mut pull = |force: &mut f64, step: f64| loop {
+            match contact.step(1.0, load(*force - step)) {
+                Ok(_) => *force -= step,
+                Err(Error::Adhesion(AdhesionError::PulledOff { .. })) => return,
+                Err(error) => panic!("by {step} from {force}: {error}"),
+            }
+        };
+        pull(&mut force, step);
+        // on to the force itself
+        while step > 0.005 {
+            step *= 0.5;
+            pull(&mut force, step);
+        }
+        force
+    });
+    println!("peels at {forces:.3?} N");
+    assert!(forces.iter().all(|force| *force < -0.5 && (force / forces[2] - 1.0).abs() < 0.02), "{forces:?}");
 }

@@ -55,3 +55,27 @@ fn creeping_states_converge_with_the_order_of_the_rule() {
     println!("10 to 80 steps each way: errors {errors:?}, orders {orders:.2?}");
     assert!((errors[0] / errors[3]).log2() / 3.0 > 1.9 && errors[3] < 3e-5, "{errors:?}");
 }
+
+/// Forces are as exact as [`Settings::tolerance`] says, as far as to 3e-4: of a ball that is pressed on and pulled, over the force that pulls it
+/// off.
+#[test]
+fn the_tolerance_is_that_of_the_force() {
+    let path = |tolerance: f64| {
+        let mut contact = ViscoelasticContact::builder(Grid::square(48, 8.0).unwrap())
+            .geometry(&Sphere::new(1.0).unwrap())
+            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
+            .attraction(ExponentialAttraction::new(1.0, 1.0).unwrap())
+            .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance))
+            .build()
+            .unwrap();
+        [0.4, 0.7, 0.2, -0.3, -0.8, -1.2].map(|approach| contact.step(1.0, Load::approach(approach)).unwrap().force)
+    };
+    let exact = path(1e-10);
+    for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        let forces = path(tolerance);
+        let errors = exact.iter().zip(forces).map(|(exact, force)| (exact - force).abs());
+        let error = errors.fold(0.0, f64::max) / (1.5 * std::f64::consts::PI);
+        println!("tolerance {tolerance:.0e}: the force errs by {error:.1e}");
+        assert!(error <= tolerance.max(3e-4), "{tolerance}: {error}");
+    }
+}

@@ -4,6 +4,7 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::{Frame, StepReport, Warnings};
 use crate::error::{Error, Result, count_within};
 use crate::hereditary::BranchEnergies;
+use crate::load::{Load, Tilt};
 
 /// Follows what the load of a contact does, and what the bodies store and dissipate of it.
 ///
@@ -12,7 +13,8 @@ use crate::hereditary::BranchEnergies;
 /// [imbalance](Energies::imbalance) shows the error of the steps: of second order in their length. The work of the load is ∫ F dδ + ∫ M dα, by
 /// the mean of force and moment over each step: steps that are long for ∫ F dδ are divided by
 /// [`Run::stop_at`](crate::run::Run::stop_at). In a step of length zero bodies answer elastically, and its work is what they store and lose.
-/// Where surfaces attract each other, the energy of the attraction is stored too, and steps with
+/// Where surfaces attract each other, the energy of the attraction is stored too; the bodies come from far apart in the first step, whose work is
+/// what becomes of it, too; and steps with
 /// [`Warnings::JUMP`] lose [`PassReport::released`](crate::contact::PassReport::released).
 ///
 /// Two fields for each relaxation time and eight more are kept, 8 bytes a cell each; a step costs as many products, far less than the step of
@@ -51,6 +53,8 @@ pub struct EnergyBalance {
     moved: [f64; 3],
     traction: Vec<f64>,
     gap: Vec<f64>,
+    /// Whether the bodies have yet to come from far apart.
+    far_apart: bool,
 }
 
 /// The work of a load since the bodies were undisturbed, and what became of it \[J\].
@@ -103,7 +107,7 @@ impl EnergyBalance {
             return Err(Error::OutOfRange { field, value, allowed });
         }
         let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series(what))?;
-        let mut balance = EnergyBalance {
+        Ok(EnergyBalance {
             branches: BranchEnergies::new(&creep, cells),
             energies: Energies::default(),
             reduced_time: contact.reduced_time(),
@@ -111,10 +115,8 @@ impl EnergyBalance {
             moved: moved(contact),
             traction: vec![0.0; cells],
             gap: vec![0.0; cells],
-        };
-        balance.energies.stored = balance.attracted(contact)?;
-        balance.energies.work = balance.energies.stored;
-        Ok(balance)
+            far_apart: contact.attraction().is_some(),
+        })
     }
 
     /// Takes in the step taken last: call it once after each.
@@ -130,11 +132,11 @@ impl EnergyBalance {
         let jumped = report.warnings.contains(Warnings::JUMP);
         let lost = contact.passes().filter(|_| jumped).map_or(0.0, |passes| passes.released);
         let (pushed, moved) = (pushed(contact), moved(contact));
-        // a jump is at the end of its step: what is released belongs to the load there
-        let after = if jumped { &self.pushed } else { &pushed };
+        let [before, after] = if jumped { self.ends_of_jump(contact, &pushed) } else { [self.pushed, pushed] };
         let work = match report.dt {
+            _ if std::mem::take(&mut self.far_apart) => stored + dissipated + lost,
             0.0 => stored - self.energies.stored + lost,
-            _ => (0..3).map(|k| 0.5 * (self.pushed[k] + after[k]) * (moved[k] - self.moved[k])).sum(),
+            _ => (0..3).map(|k| 0.5 * (before[k] + after[k]) * (moved[k] - self.moved[k])).sum(),
         };
         let Energies { work: worked, viscous, lost: lost_before, .. } = self.energies;
         let (viscous, lost) = (viscous + dissipated, lost_before + lost);
@@ -146,6 +148,22 @@ impl EnergyBalance {
     /// The energies at the end of the step recorded last.
     pub fn energies(&self) -> Energies {
         self.energies
+    }
+
+    /// Force and moments at the beginning and at the end of the motion in a step with a jump, which is at its end: what is released belongs to
+    /// the load there. So a given motion is over before the jump, and what the load leaves free moves under the load of the end.
+    fn ends_of_jump(&self, contact: &ViscoelasticContact, pushed: &[f64; 3]) -> [[f64; 3]; 2] {
+        let load = contact.load();
+        let is_given = |k: usize| match (k, load) {
+            (0, load) => matches!(load, Load::Approach { .. }),
+            (k, load) => matches!(load.tilt()[k - 1], Tilt::Fixed(_)),
+        };
+        let end = [0, 1, 2].map(|k| if is_given(k) { self.pushed[k] } else { pushed[k] });
+        let held = match load {
+            Load::Spring { stiffness, drive, .. } => stiffness * (drive - self.moved[0]),
+            _ => end[0],
+        };
+        [[held, end[1], end[2]], end]
     }
 
     /// Energy of the attraction \[J\], 0 for bodies far apart.

@@ -67,8 +67,8 @@ bitflags! {
         /// reached: the force of a slow pull-off errs by a percent or more. A fast pull finds a stiffer body, and a longer zone. Refine the mesh,
         /// or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
-        /// Surfaces that attract each other snapped together or apart within the step, or nearly so: its end is known, not the moment within it
-        /// ([`PassReport::response`](crate::contact::PassReport::response)); [`PassReport::released`](crate::contact::PassReport::released) is the
+        /// Surfaces that attract each other snapped together or apart within the step: its end is known, not the moment within it. A jump is what
+        /// stays however a step is split ([`PassReport::jumped`](crate::contact::PassReport::jumped)); [`PassReport::released`](crate::contact::PassReport::released) is the
         /// energy that was lost. Adaptive steps are shortened until the moment no longer matters.
         const JUMP = 1 << 12;
         /// The undeformed bodies are flatter than a slope of 1e-6 everywhere on the grid, a nanometre over a millimetre, but not flat:

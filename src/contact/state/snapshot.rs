@@ -73,10 +73,15 @@ impl ViscoelasticContact {
         if !Arc::ptr_eq(&snapshot.scene, &self.scene) {
             return Err(Error::OtherContact);
         }
-        self.computation.restore(&self.scene, &snapshot.state);
-        self.view.refresh(&self.computation.state);
+        self.go_to(&snapshot.state);
         self.saved_run = None;
         Ok(())
+    }
+
+    /// Goes to a state of this contact.
+    pub(crate) fn go_to(&mut self, state: &State) {
+        self.computation.restore(&self.scene, state);
+        self.view.refresh(&self.computation.state);
     }
 }
 
@@ -112,7 +117,7 @@ impl ViscoelasticContact {
     /// [`ViscoelasticContact::step`]. Only the end of the last step is left after a step that failed, one over the bodies
     /// ([`ViscoelasticContact::step_over`]) or along a path ([`ViscoelasticContact::step_along`]).
     pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
-        self.advanced_within_step(time, self.settings().tolerance, |start| {
+        self.advanced_within_step(time, self.settings().tolerance, None, |start| {
             let share = (time - start.time()) / (self.time() - start.time());
             let ends = self.computation.state.loads.iter().enumerate();
             Ok(ends.map(|(body, end)| start.load_like(body, end).towards(end, share)).collect())
@@ -121,15 +126,18 @@ impl ViscoelasticContact {
     }
 
     /// The contact at a `time` within the last step, under the loads that are found for the contact at its start, and the
-    /// rectangle of its pressed cells if it was advanced.
+    /// rectangle of its pressed cells if it was advanced. Before the last step from there on, if the state `before` is given.
     pub(crate) fn advanced_within_step(
         &self,
         time: f64,
         tolerance: f64,
+        before: Option<&State>,
         loads: impl FnOnce(&ViscoelasticContact) -> Result<Vec<Load>>,
     ) -> Result<(ViscoelasticContact, Option<Extent>)> {
         let state = &self.computation.state;
-        let from = if state.history.start_is_kept() { state.start.clock.time } else { state.clock.time };
+        let start = if state.history.start_is_kept() { state.start.clock.time } else { state.clock.time };
+        let before = before.filter(|_| state.history.start_is_kept() && time < start);
+        let from = before.map_or(start, |before| before.clock.time);
         // the start may come out a little off where it is found from the end
         let inside = time >= from - 1e-12 * state.clock.last_length && time <= state.clock.time;
         within("time within the last step", time, inside, "between its start and its end")?;
@@ -138,7 +146,10 @@ impl ViscoelasticContact {
         if time == state.clock.time {
             return Ok((contact, None));
         }
-        contact.computation.state.roll_back();
+        match before {
+            Some(before) => contact.computation.restore(&self.scene, before),
+            None => contact.computation.state.roll_back(),
+        }
         contact.view.refresh(&contact.computation.state);
         let mut reach = None;
         if time > from {
@@ -152,7 +163,7 @@ impl ViscoelasticContact {
     }
 
     /// The load of a body at present, as one of the kind of `other`.
-    fn load_like(&self, body: usize, other: &Load) -> Load {
+    pub(in crate::contact) fn load_like(&self, body: usize, other: &Load) -> Load {
         let load = self.computation.state.loads[body];
         let Some(now) = self.body(body).filter(|_| !load.is_like(other)) else { return load };
         let tilt = [0, 1].map(|axis| match other.tilt()[axis] {

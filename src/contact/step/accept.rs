@@ -97,7 +97,7 @@ pub(super) fn collect_warnings(
         (Warnings::OTHER_PERIOD, figures.periods.is_some()),
         (Warnings::SHORT_WAVES, figures.cells_in_wave.is_some()),
         (Warnings::LONG_STEP, time_error > Some(LONG_STEP)),
-        (Warnings::JUMP, trial.passes.as_ref().is_some_and(|passes| passes.report.jumped())),
+        (Warnings::JUMP, trial.passes.as_ref().is_some_and(|passes| passes.report.jumped)),
         (Warnings::FLAT, state.indenter.is_too_flat(&scene.grid)),
     ];
     of_material | Warnings::of(&reasons)

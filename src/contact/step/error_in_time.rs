@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::contact::step::spring::share_of_force;
 use crate::contact::window::placement::motion_tried;
-use crate::contact::{Computation, Scene, Step};
+use crate::contact::{Computation, Scene, State, Step};
 use crate::hereditary::{ErrorMeasure, StepContext, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
@@ -69,6 +69,11 @@ pub(crate) const SHORTEST_TOUCH: f64 = 10.0;
 /// Displacements, and v, below this part of the greatest are measured relative to that part.
 const SMALL: [f64; 2] = [0.05, 0.2];
 
+/// The means of displacement and v that errors are relative to at least.
+pub(crate) fn least_sizes(state: &State, outlook: &StepContext) -> [f64; 2] {
+    [0, 1].map(|which| SMALL[which] * outlook.expected[which].max(state.greatest[which]))
+}
+
 /// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in contact, under a
 /// given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is relative to the parts [`SMALL`] of the
 /// greatest of the run, expected ones included.
@@ -79,7 +84,7 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
         return TimeError::default();
     }
     let greatest = [0, 1].map(|which| expected[which].max(state.greatest[which]));
-    let least = [0, 1].map(|which| SMALL[which] * greatest[which]);
+    let least = least_sizes(state, outlook);
     let compliance = |t: f64| scene.material.contact_compliance(t);
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
     if !scene.settings.time_rule.needs_series() {

@@ -166,7 +166,9 @@ impl ViscoelasticContact {
     pub(crate) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
+        let again = self.may_have_snapped().then(|| step.clone());
         let reach = self.adopt(attempt, step, error.sizes)?;
+        again.iter().for_each(|step| self.look_for_jump(step));
         let report = self.report(estimated.then_some(error.relative), reach);
         report.emit();
         Ok(report)
@@ -211,12 +213,7 @@ impl ViscoelasticContact {
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
     /// the smallest rectangle that contains all pressed cells.
-    pub(in crate::contact) fn adopt(
-        &mut self,
-        attempt: Attempt,
-        step: Step<'_>,
-        sizes: [f64; 2],
-    ) -> Result<Option<Extent>> {
+    pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Option<Extent>> {
         // all exchanges with other ranks precede the change of the state
         let (contact_cells, reach) = attempt.computation(&self.computation).pressed();
         self.computation.state.region.rows().intact()?;

@@ -40,6 +40,8 @@ pub(crate) struct TriedSpring {
     pub(super) force: f64,
     /// By how much the body lies deeper than the spring under this force lets it \[m\].
     pub(super) excess: f64,
+    /// By how much the force is to change yet \[N\].
+    pub(super) missing: f64,
     /// The motion in which a body that tilts freely hangs on its spring without contact.
     pub(super) hanging: Option<ModeCoefficients>,
 }

@@ -104,7 +104,7 @@ pub(super) fn solve_with_springs(
         for (body, give, drive) in springs(step) {
             let (force, position) = (trial.free[body].total * area, trial.solution.motions[body].0[0]);
             let before = trial.springs[body];
-            let now = TriedSpring { force, excess: position + give * force - drive, ..before };
+            let now = TriedSpring { force, excess: position + give * force - drive, missing: 0.0, ..before };
             trial.springs[body] = now;
             let change = now.force - before.force;
             estimated += (give + least) * change * change;
@@ -113,7 +113,7 @@ pub(super) fn solve_with_springs(
         let ratio = if tries > 0 && found > 0.0 && estimated > 0.0 { estimated / found } else { 1.0 };
         let mut worst = 0.0f64;
         for (body, give, drive) in springs(step) {
-            let TriedSpring { force, excess, hanging } = trial.springs[body];
+            let TriedSpring { force, excess, hanging, .. } = trial.springs[body];
             let motion = &mut trial.solution.motions[body];
             if force == 0.0 && (excess >= 0.0 || hanging.is_some()) {
                 *motion = hanging.unwrap_or(*motion);
@@ -127,6 +127,7 @@ pub(super) fn solve_with_springs(
                 (next, trial.springs[body].hanging) =
                     if lifts { (0.0, Some(*motion)) } else { (SMALLER * force, None) };
             }
+            trial.springs[body].missing = (next - force).abs();
             worst = worst.max((next - force).abs() / force.max(next));
             trial.free[body].total = next / area;
         }

@@ -12,7 +12,7 @@
 
 use std::sync::atomic::Ordering;
 
-use super::{AttractedStep, CHANGE, GREATEST_CHANGE, Passes};
+use super::{AttractedStep, GREATEST_CHANGE, Passes};
 use crate::contact::state::State;
 use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
@@ -105,8 +105,8 @@ impl AttractedStep<'_> {
         trial: &mut Trial,
         counts: &mut Counts,
     ) -> Result<()> {
-        let AttractedStep { step, stop, law, .. } = *self;
-        let (limit, greatest, time) = (CHANGE * stop.tolerance, law.traction(0.0), step.interval.time);
+        let AttractedStep { step, stop, .. } = *self;
+        let (limit, time) = (self.limit(), step.interval.time);
         let balance = self.balance(window, inverse);
         self.open_gap(window, trial);
         trial.free[0] = self.wanted;
@@ -122,20 +122,14 @@ impl AttractedStep<'_> {
         let mut plain = false;
         for iteration in 0..=MAX_ITERATIONS {
             let gradient = self.gradient(balance, window, trial);
-            if iteration == 0 {
-                let first = own.first.iter_mut().zip(&trial.solution.pressure);
-                first.for_each(|(first, r)| *first = (r / greatest) as f32);
-            }
             if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
                 let what = "the residual of the contact problem";
                 return Err(Error::Step(StepError::Overflow { time, what }));
             }
             let soft = softness.iter().fold(1.0_f64, |least, &soft| least.min(soft));
             if gradient.greatest <= limit * (soft / SOFT).clamp(SMALLEST, 1.0) {
-                trial.solution.residual = gradient.greatest / CHANGE;
+                trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                 self.finish(balance, gradient.multiplier, trial);
-                let still = iteration == 0 || self.state.is_undisturbed();
-                own.report.response = if still { 1.0 } else { self.response_in_gap(balance, own, trial) };
                 return Ok(());
             }
             if stop.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
@@ -238,25 +232,6 @@ impl AttractedStep<'_> {
             return 0.0;
         }
         extrapolation.reach(self.step.interval.dt)
-    }
-
-    /// How the surfaces respond: with the change e of the lift from its guess, e·Me/(−e·r), which is 1/(1 − λ) for a mode that attraction
-    /// softens by the part λ.
-    fn response_in_gap(&self, balance: Balance, own: &mut Passes, trial: &Trial) -> f64 {
-        let (law, gap, rows) = (self.law, &trial.gap, self.state.region.rows());
-        let Passes { far: guess, last: [q, _], first, .. } = own;
-        self.lift(balance, trial.reach, gap, [guess, q]);
-        let motion = trial.solution.motions[0].0[0];
-        let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
-        let [along, attracted] = rows.sum_terms(|k| {
-            let x = balance.compliance * trial.solution.potential[k] - motion;
-            let e = x - guess[k];
-            Some([
-                e * f64::from(first[k]) * law.traction(0.0),
-                e * (traction(gap[k] + x) - traction(gap[k] + guess[k])),
-            ])
-        });
-        if along < 0.0 { (1.0 + attracted / along).max(1.0) } else { 1.0 }
     }
 
     /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.

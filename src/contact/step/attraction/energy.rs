@@ -1,10 +1,17 @@
 //! The energy of a pass, of the state before the step, and how the surfaces respond.
 
 use super::{AttractedStep, Passes};
+use crate::contact::state::Equilibrium;
 use crate::contact::step::request::Trial;
 use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::{RigidMotion, Solution};
+
+/// Jumps release more than this part of the energy, and of the work of separation of so many cells, and the energy bends up on their way by less than this part of what it does without
+/// attraction.
+const LEAST_RELEASED: f64 = 1e-3;
+const CELLS: f64 = 10.0;
+const LEAST_BEND: f64 = 0.4;
 
 /// Sums over the cells of a pass.
 pub(super) struct Found {
@@ -68,27 +75,24 @@ impl AttractedStep<'_> {
         [elastic - attracted - wall + of_load, elastic.abs() + attracted + of_load.abs()]
     }
 
-    /// The energy over the area of a cell of the state before the step, under the load and the creep of its end.
-    pub(super) fn energy_at_start(&self, trial: &Trial) -> f64 {
+    /// The free motion of the state before the step.
+    fn motion_before(&self) -> RigidMotion {
         let (state, step) = (self.state, self.step);
         let (RigidMotion { approach, tilt }, prescribed) = (state.current.motions[0], step.prescribed(0));
         let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
-        let motion = RigidMotion {
+        RigidMotion {
             approach: free(self.wanted.translation, approach - step.indenter.gap().datum - prescribed.approach),
             tilt: [0, 1].map(|axis| free(self.wanted.tilt[axis], tilt[axis] - prescribed.tilt[axis])),
-        };
-        // the wall of the state before holds its cells while the gap changes by what the step begins with
-        self.energy_of(&state.current.solution, motion, &trial.gap)
+        }
     }
 
-    /// The energy over the area of a cell at the end of the step.
-    pub(super) fn energy_at_end(&self, trial: &Trial) -> f64 {
-        let motion = self.state.region.modes(trial.free[0]).physical(trial.solution.motions[0]);
-        self.energy_of(&trial.solution, motion, &trial.gap)
+    fn motion_at_end(&self, trial: &Trial) -> RigidMotion {
+        self.state.region.modes(trial.free[0]).physical(trial.solution.motions[0])
     }
 
-    /// The energy of a state with the potential K (z − s), in the gap before any traction.
-    fn energy_of(&self, solution: &Solution, motion: RigidMotion, gap: &[f64]) -> f64 {
+    /// The energy over the area of a cell, and the sum of its parts, of a state with the potential K (z − s), in the gap before any traction: the
+    /// wall holds its cells while this gap changes by what a step begins with.
+    fn energy_of(&self, solution: &Solution, motion: RigidMotion, gap: &[f64]) -> [f64; 2] {
         let (state, c) = (self.state, self.given[0]);
         let Solution { pressure, attraction, potential, .. } = solution;
         let cell = |k: usize| {
@@ -97,23 +101,54 @@ impl AttractedStep<'_> {
             let [open, wall] = if pressure[k] > 0.0 { [0.0, traction * h] } else { [h.max(0.0), 0.0] };
             [traction, potential[k], open, wall]
         };
-        self.energy(motion, cell)[0]
+        self.energy(motion, cell)
     }
 
-    /// How the surfaces respond: of the change e of s from its guess, a first pass finds r, and e·e/(e·r) is 1/(1 − λ) for the rate λ of the
-    /// passes.
-    pub(super) fn response(&self, own: &Passes, trial: &Trial) -> f64 {
-        let (state, reach, greatest) = (self.state, trial.reach, self.law.traction(0.0));
-        if state.is_undisturbed() {
-            return 1.0;
+    /// Whether the contact was in no state before: without the attraction that its gap has.
+    fn is_first(&self, trial: &Trial) -> bool {
+        let AttractedStep { state, step, law, given: [c, _], .. } = *self;
+        let Equilibrium { sum, ref motions, ref solution, .. } = state.current;
+        let back = step.prescribed(0) + RigidMotion { approach: step.indenter.gap().datum, tilt: [0.0; 2] };
+        let pulls = |k: usize| {
+            let at = state.region.center(k);
+            let h = trial.gap[k] + c * solution.potential[k] + back.at(at) - motions[0].at(at);
+            h.is_finite() && law.traction(h.max(0.0)) > 0.0
+        };
+        sum == 0.0 && (0..trial.gap.len()).any(pulls)
+    }
+
+    /// Whether the surfaces may have snapped. On the straight way from the state before to this one the energy bends up by the part
+    /// 1 + ΣΔs Δh/Σ(Δq cKΔq + k Δω²) of what it would without attraction, in the mean; in a jump by less than in smooth steps, or down.
+    fn is_suspected(&self, released: f64, scale: f64, trial: &Trial) -> bool {
+        if released <= LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0)) || self.is_first(trial) {
+            return false;
         }
-        let [now, before] = [&state.current.solution.attraction, &state.previous.solution.attraction];
-        let [square, first] = state.region.rows().sum_terms(|k| {
-            let change = trial.solution.attraction[k] - (now[k] + reach * (now[k] - before[k]));
-            Some([change * change, change * greatest * f64::from(own.first[k])])
+        let (state, law, c) = (self.state, self.law, self.given[0]);
+        let [start, end] = [self.motion_before(), self.motion_at_end(trial)];
+        let [before, now] = [&state.current.solution, &trial.solution];
+        let [convex, softened] = state.region.rows().sum_terms(|k| {
+            let at = state.region.center(k);
+            let gap =
+                |solution: &Solution, motion: RigidMotion| trial.gap[k] + c * solution.potential[k] - motion.at(at);
+            let [h0, h1] = [gap(before, start), gap(now, end)];
+            let attraction = |h: f64| law.traction(h.max(0.0));
+            let net = |solution: &Solution| solution.pressure[k] - solution.attraction[k];
+            h0.is_finite().then(|| {
+                let displaced = c * (now.potential[k] - before.potential[k]);
+                [(net(now) - net(before)) * displaced, (attraction(h1) - attraction(h0)) * (h1 - h0)]
+            })
         });
-        let ratio = square / first;
-        // no change has no ratio
-        if ratio < 0.0 { f64::INFINITY } else { ratio.max(1.0) }
+        let moved = end.approach - start.approach;
+        let of_spring =
+            if let Load::Spring { stiffness, .. } = self.step.loads[0] { stiffness / self.area() } else { 0.0 };
+        -softened > (1.0 - LEAST_BEND) * (convex + of_spring * moved * moved)
+    }
+
+    /// Writes to the report what the step released, and whether the surfaces may have snapped.
+    pub(super) fn report_release(&self, own: &mut Passes, trial: &Trial) {
+        let [before, _] = self.energy_of(&self.state.current.solution, self.motion_before(), &trial.gap);
+        let [now, scale] = self.energy_of(&trial.solution, self.motion_at_end(trial), &trial.gap);
+        own.report.released = self.area() * (before - now);
+        own.report.suspected = self.is_suspected(before - now, scale, trial);
     }
 }

@@ -10,20 +10,22 @@
 //! there, in place of plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state
 //! belongs to.
 //!
-//! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K.
+//! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K. Periodic bodies take [no
+//! passes](descent).
 
 mod descent;
 mod energy;
 mod gap_direction;
 mod near_field;
 mod passes;
+mod split;
 
 pub use passes::PassReport;
 pub(in crate::contact) use passes::Passes;
 
 use crate::adhesion::Attraction;
 use crate::contact::scene::Scene;
-use crate::contact::state::State;
+use crate::contact::state::{State, net_sum};
 use crate::contact::step::constraints::converged;
 use crate::contact::step::gap::RigidBodies;
 use crate::contact::step::initial_guess::{begin, fill};
@@ -38,8 +40,11 @@ use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop}
 
 /// Greatest number of passes of a round.
 const MAX_PASSES: usize = 2000;
-/// Change of s in a pass, over the greatest traction, that ends a step, in tolerances of the solver.
+/// Change of s in a pass, over the greatest traction, that ends a step: so many tolerances of the solver, but no more than this, or than this
+/// part of the tolerance, by which the force then errs.
 const CHANGE: f64 = 100.0;
+const MOST_CHANGE: f64 = 1e-4;
+const SHARE: f64 = 0.3;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;
 const LOOSEST: f64 = 1e-3;
@@ -95,11 +100,9 @@ impl AttractedStep<'_> {
             }
         }
         trial.solution.counts = counts;
+        self.hold_by_spring(trial);
         self.open_gap(window, trial);
-        own.report.released = self.area() * (self.energy_at_start(trial) - self.energy_at_end(trial));
-        if window.inverse.is_none() {
-            own.report.response = self.response(own, trial);
-        }
+        self.report_release(own, trial);
         own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
         Ok(())
     }
@@ -125,7 +128,7 @@ impl AttractedStep<'_> {
     /// Passes until one changes s no more, from z, s, K z and K s (or, of the near field, N z and N s) of the trial. Returns whether they changed anything.
     fn descend(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<bool> {
         let AttractedStep { step, wanted, stop, given: [c, _], .. } = *self;
-        let (greatest, limit, before) = (self.law.traction(0.0), CHANGE * stop.tolerance, counts.convolutions);
+        let (greatest, limit, before) = (self.law.traction(0.0), self.limit(), counts.convolutions);
         own.has_last = false;
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
@@ -146,13 +149,15 @@ impl AttractedStep<'_> {
             });
             let pulled = self.add_to_load(trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
-            if !carried && plain {
+            let tolerance = inner.max(exact * stop.tolerance.min(limit / CHANGE));
+            let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
+            add(counts, trial.solution.counts);
+            // no wall holds what pulls, or what turns a body off that tilts freely: it peels
+            let peels = matches!(outcome, Outcome::Unbalanced(_)) && wanted.total <= 0.0;
+            if plain && (!carried || peels) {
                 let force = wanted.total * self.area();
                 return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
             }
-            let tolerance = inner.max(exact * stop.tolerance);
-            let outcome = if carried { self.pass(tolerance, pulled, window, trial) } else { Outcome::Stagnated };
-            add(counts, trial.solution.counts);
             if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
                 trial.solution.counts = *counts;
                 converged(outcome, self.scene, &trial.solution, step)?;
@@ -167,10 +172,6 @@ impl AttractedStep<'_> {
                 (plain, wait, penalty) = (true, penalty, penalty.saturating_mul(2));
                 continue;
             };
-            if own.report.passes == 1 {
-                let changed = trial.solution.attraction.iter().zip(&trial.gap);
-                own.first.iter_mut().zip(changed).for_each(|(first, (s, g))| *first = ((g - s) / greatest) as f32);
-            }
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
@@ -181,6 +182,9 @@ impl AttractedStep<'_> {
             (least, change) = (found.energy, found.change);
             exact = (EXACT * self.law.range() / found.displaced).clamp(LEAST_EXACT, 1.0);
             inner = (INNER * exact * change).min(LOOSEST);
+            // the force of the spring, too
+            let scale = (trial.free[0].total * self.area()).max(pulled);
+            trial.solution.residual = trial.solution.residual.max(trial.springs[0].missing / scale);
             if change <= limit && trial.solution.residual <= stop.tolerance {
                 return Ok(counts.convolutions > before);
             }
@@ -259,6 +263,7 @@ impl AttractedStep<'_> {
         let motion = region.modes(trial.free[0]).physical(trial.solution.motions[0]);
         let total = wanted.total + sum;
         trial.free[0] = wanted;
+        trial.springs[0] = TriedSpring::default();
         match self.step.loads[0] {
             Load::Force { .. } => {
                 trial.free[0].total = total;
@@ -269,10 +274,7 @@ impl AttractedStep<'_> {
                 }
             }
             // the search for the force of the wall begins at its present pressure
-            Load::Spring { .. } => {
-                trial.free[0].total = region.rows().sum(&trial.solution.pressure).max(0.0);
-                trial.springs[0] = TriedSpring::default();
-            }
+            Load::Spring { .. } => trial.free[0].total = region.rows().sum(&trial.solution.pressure).max(0.0),
             Load::Approach { .. } => {}
         }
         if wanted.tilts() {
@@ -298,6 +300,19 @@ impl AttractedStep<'_> {
         let step =
             Step { interval: self.step.interval, loads: &loads, indenter, tolerance, cancelled: self.step.cancelled };
         solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
+    }
+
+    /// Lays a body on its spring: what is left of the imbalance becomes an error of the gap, which a stiff spring would multiply.
+    fn hold_by_spring(&self, trial: &mut Trial) {
+        let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
+        let force = self.area() * net_sum(&self.state.region.rows(), &trial.solution);
+        trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
+    }
+
+    /// The change of s over the greatest traction that ends a step.
+    fn limit(&self) -> f64 {
+        let tolerance = self.stop.tolerance;
+        (CHANGE * tolerance).min((SHARE * tolerance).max(MOST_CHANGE))
     }
 
     /// Force over Σ p \[m²\].

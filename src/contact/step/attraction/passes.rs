@@ -4,9 +4,8 @@ use crate::contact::state::State;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
-/// Between the [response](PassReport::response) to a smooth change, on spheres at Tabor's numbers 0.5 to 3 at most 13, and to a jump, at least
-/// 19.
-const LEAST_OF_JUMP: f64 = 15.0;
+/// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
+const LEFT_IN_A_HALF: f64 = 0.4;
 
 /// What the passes of a step work in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
@@ -18,9 +17,9 @@ pub(crate) struct Passes {
     /// s of the last pass that was kept, and s at the gap that it led to.
     pub(super) last: [Vec<f64>; 2],
     pub(super) has_last: bool,
-    /// The change of s in the first pass, over the greatest traction: in single precision, since it is a direction.
-    pub(super) first: Vec<f32>,
     pub(crate) report: PassReport,
+    /// The end of a step that was [split](super::split).
+    pub(super) end: Option<Box<State>>,
 }
 
 /// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at the gap that the one
@@ -37,21 +36,30 @@ pub struct PassReport {
     /// The energy of the state before the step, under the load and the creep of its end, less the energy of the state at its end \[J\]: the loss of a jump.
     /// Where nothing jumps, it is of second order in the length of the step, of either sign.
     pub released: f64,
-    /// By how many times the response of the surfaces enlarges a change of the attraction: 1 where it is weak, above 15 in a jump
-    /// ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)).
-    pub response: f64,
+    /// Whether the surfaces snapped together or apart ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)): `released` stays however the step is
+    /// split, where each half of a smooth step releases a quarter.
+    pub jumped: bool,
+    /// Whether this may be so: much is released, and the energy bends up little on the way, or down.
+    pub(crate) suspected: bool,
 }
 
 impl PassReport {
-    /// Whether the surfaces snapped together or apart.
-    pub(in crate::contact) fn jumped(&self) -> bool {
-        self.response > LEAST_OF_JUMP
+    /// The report of a step in two halves, of which this is the second, and of a `whole` that was tried before.
+    pub(crate) fn after(self, first: PassReport, whole: PassReport) -> PassReport {
+        PassReport {
+            passes: first.passes + self.passes,
+            rejected: first.rejected + self.rejected,
+            rise: first.rise.max(self.rise),
+            released: first.released + self.released,
+            jumped: whole.suspected && first.released.max(self.released) > LEFT_IN_A_HALF * whole.released,
+            suspected: false,
+        }
     }
 }
 
 impl Passes {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5 + 4;
+    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5;
 
     pub(super) fn new(cells: usize) -> Passes {
         let field = || vec![0.0; cells];
@@ -60,8 +68,8 @@ impl Passes {
             far: field(),
             last: [field(), field()],
             has_last: false,
-            first: vec![0.0; cells],
             report: PassReport::default(),
+            end: None,
         }
     }
 

@@ -1,0 +1,117 @@
+//! Steps of surfaces that attract each other, in two halves.
+//!
+//! Next to surfaces that attract each other the displacement leaves every polynomial within a step: the zone at the edge of the contact runs
+//! over cells, and bodies open and close. So the step is taken as a whole and again in two halves, which are kept. A rule of first order, the
+//! least that is left there, errs in the halves by as much as they differ from the whole; of this difference half counts, as most steps are
+//! of second order.
+
+use crate::contact::step::Attempt;
+use crate::contact::step::error_in_time::{error_in_time, least_sizes};
+use crate::contact::{Computation, State, Step, ViscoelasticContact};
+use crate::error::Result;
+use crate::hereditary::{Interval, StepContext, TimeError};
+use crate::load::LoadHistory;
+
+/// The part of the difference that counts.
+const SHARE: f64 = 0.5;
+
+/// The step that was divided last.
+#[derive(Debug, Clone)]
+pub struct Halves {
+    /// The state at its start.
+    pub(super) start: State,
+    /// The time at its middle.
+    pub(super) middle: f64,
+    /// z − s, u and v at the end of the whole step.
+    whole: [Vec<f64>; 3],
+}
+
+/// A step whose first half is the state, and whose second half was tried.
+pub(super) struct Divided {
+    pub(super) attempt: Attempt,
+    /// By how much they differ from the whole step, relative as [`TimeError::relative`].
+    pub(super) difference: f64,
+    /// The errors of each.
+    pub(super) errors: [TimeError; 2],
+}
+
+impl Halves {
+    pub(super) fn new(state: &State) -> Halves {
+        let field = || vec![0.0; state.region.len()];
+        Halves { start: state.clone(), middle: f64::NAN, whole: [field(), field(), field()] }
+    }
+
+    /// Takes the first half of a step that was tried, and tries the second, which takes the place of the `step`.
+    pub(super) fn divide(
+        &mut self,
+        contact: &mut ViscoelasticContact,
+        step: &mut Step<'_>,
+        history: &dyn LoadHistory,
+        outlook: &StepContext,
+        wasted: &mut [usize; 2],
+    ) -> Result<Divided> {
+        self.keep(&contact.computation);
+        add_work(wasted, &contact.computation);
+        let passes = |contact: &ViscoelasticContact| contact.passes().unwrap_or_default();
+        let (time, from, of_whole) = (step.interval.time, contact.time(), passes(contact));
+        self.middle = from + 0.5 * (time - from);
+        let loads = [history.checked_before(self.middle, true)?];
+        let first = Step { loads: &loads, ..step.clone() };
+        let first = Step { interval: until(contact, step, self.middle)?, ..first };
+        let attempt = contact.attempt(&first)?;
+        let of_first = error_in_time(&contact.scene, &contact.computation, &first, outlook);
+        add_work(wasted, &contact.computation);
+        let of_first_half = passes(contact);
+        contact.adopt(attempt, first, of_first.sizes)?;
+        step.interval = until(contact, step, time)?;
+        let attempt = contact.attempt(step)?;
+        let of_second = error_in_time(&contact.scene, &contact.computation, step, outlook);
+        if let Some(passes) = contact.computation.trial.passes.as_mut() {
+            passes.report = passes.report.after(of_first_half, of_whole);
+        }
+        let difference = SHARE * self.difference(contact, outlook);
+        Ok(Divided { attempt, difference, errors: [of_first, of_second] })
+    }
+
+    /// Goes back to the start of the step.
+    pub(super) fn undo(&self, contact: &mut ViscoelasticContact) {
+        contact.go_to(&self.start);
+    }
+
+    fn keep(&mut self, tried: &Computation) {
+        let Computation { state, trial, .. } = tried;
+        self.start.clone_from(state);
+        let [net, displacement, potential] = &mut self.whole;
+        net.clone_from(&trial.solution.pressure);
+        net.iter_mut().zip(&trial.solution.attraction).for_each(|(q, s)| *q -= s);
+        displacement.clear();
+        displacement.extend_from_slice(state.history.trial());
+        potential.clone_from(&trial.solution.potential);
+    }
+
+    /// The mean difference of u or v from the whole step, weighted by |z − s|, over their means.
+    fn difference(&self, contact: &ViscoelasticContact, outlook: &StepContext) -> f64 {
+        let Computation { state, trial, .. } = &contact.computation;
+        let ([net, u_whole, v_whole], solution) = (&self.whole, &trial.solution);
+        let (u, v) = (state.history.trial(), &solution.potential);
+        let [weight, of_u, of_v, off_u, off_v] = state.region.rows().sum_terms(|k| {
+            let w = net[k].abs() + (solution.pressure[k] - solution.attraction[k]).abs();
+            Some([1.0, u[k].abs(), v[k].abs(), (u[k] - u_whole[k]).abs(), (v[k] - v_whole[k]).abs()].map(|x| w * x))
+        });
+        let least = least_sizes(&self.start, outlook);
+        let over = |off: f64, of: f64, least: f64| if off > 0.0 { off / of.max(least * weight) } else { 0.0 };
+        over(off_u, of_u, least[0]).max(over(off_v, of_v, least[1]))
+    }
+}
+
+/// The interval from now to `time` of a part of a step.
+fn until(contact: &ViscoelasticContact, whole: &Step<'_>, time: f64) -> Result<Interval> {
+    let part = contact.request(time, time - contact.time(), whole.loads, whole.tolerance)?;
+    Ok(Interval { interpolant: whole.interval.interpolant, ..part.interval })
+}
+
+/// Adds the convolutions and preconditioner applications of a step that does not count.
+pub(super) fn add_work(work: &mut [usize; 2], tried: &Computation) {
+    let counts = tried.trial.solution.counts;
+    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
+}
