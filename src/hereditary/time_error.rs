@@ -326,7 +326,7 @@ impl Sums {
             None => 0.0,
         };
         let counts = !rule.has_dashpot() || rule.tried.dt > resolution;
-        // the load of cells that leave goes to those that stay
+        // the remaining cells take the load of cells that leave
         let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
         let left = if counts { LEFT * shed * self.left } else { 0.0 };
         let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(LASTING * self.squares.sqrt());

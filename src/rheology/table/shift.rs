@@ -26,8 +26,8 @@ const AROUND: usize = 4;
 const AS_GOOD: f64 = 8.0;
 /// The squared error over the squared error of independent differences: each is counted from both sides, and outliers count less.
 const INFLATION: f64 = 6.0;
-/// Few differences tell their own scatter poorly: three deviations of Student's t with n degrees of freedom exceed those of the normal law, squared,
-/// by about 1 + 6/n. Half of the differences are independent.
+/// Few differences tell their own scatter poorly: three deviations of Student's t with n degrees of freedom, squared, are about 1 + 6/n times as great as
+/// three of the normal law. Half of the differences are independent.
 const FEW: f64 = 12.0;
 /// Shifts that differ by less, in ln a, agree: 0.05 decades.
 const LEAST_DISAGREEMENT: f64 = 0.115;
