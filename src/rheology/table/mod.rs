@@ -12,14 +12,12 @@ pub use master_curve::MasterCurve;
 
 use crate::error::{Place, Result, TableError, positive};
 use crate::input::TakenColumn;
-use crate::rheology::fit::{FitReport, Sample, Search};
+use crate::rheology::fit::{FitReport, MOST_MISFIT, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
 use data::{Deformation, Row, validated, wrong_way};
 
-/// Greatest root mean square misfit of an accepted fit.
-const MOST_MISFIT: f64 = 0.1;
 /// Denser tables are averaged to this many values per decade, ...
 const MEANS_PER_DECADE: f64 = 24.0;
 /// ... or fewer if they span more decades than this.

@@ -95,7 +95,7 @@ fn damaged(layout: &Layout, draw: &mut Draws) -> Option<Damaged> {
             (format!("without {without:?} at {at}"), characters[..at].iter().chain(&characters[at + 1..]).collect())
         }
         2 => {
-            if layout.kind == Kind::Matrix || layout.kind == Kind::Profile {
+            if matches!(layout.kind, Kind::Matrix | Kind::Stated(_) | Kind::Profile) {
                 return None;
             }
             let mut lines = owned();

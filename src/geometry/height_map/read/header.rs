@@ -47,10 +47,14 @@ impl<'a> Header<'a> {
     }
 
     /// Accepts a header whose entry `key` is `allowed`.
-    #[cfg(feature = "x3p")]
     pub(super) fn must_be(&self, key: &'static str, allowed: &'static str) -> Result<()> {
+        self.one_of(key, &[allowed], allowed).map(|_| ())
+    }
+
+    /// The value of an entry, which must be one of `values`.
+    pub(super) fn one_of(&self, key: &'static str, values: &[&str], allowed: &'static str) -> Result<&'a str> {
         let text = self.require(key)?;
-        if text == allowed { Ok(()) } else { Err(self.error(key, text, allowed).into()) }
+        if values.contains(&text) { Ok(text) } else { Err(self.error(key, text, allowed).into()) }
     }
 
     /// A whole number. The grid checks the range of numbers of cells.

@@ -1,6 +1,6 @@
 //! Maps read from files.
 //!
-//! Orientation: x1 is the x of the file, along its rows, and x2 its y, which points up. Image formats (GSF, text
+//! Orientation: x1 is the x of the file, along its rows, and x2 its y, which points up. Image formats (GSF, SUR, text
 //! matrices) begin with the top row, at the largest x2; SDF and X3P begin with the bottom row.
 
 pub(super) mod gsf;
@@ -9,6 +9,7 @@ mod header;
 pub(super) mod npy;
 mod number;
 mod sdf;
+mod sur;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -28,9 +29,9 @@ use number::{Kind, Number};
 
 /// Extensions of the formats that include the lengths of the map.
 #[cfg(feature = "x3p")]
-const KNOWN: &str = "gsf, sdf or x3p";
+const KNOWN: &str = "gsf, sdf, sur, pro or x3p";
 #[cfg(not(feature = "x3p"))]
-const KNOWN: &str = "gsf or sdf (or x3p, with the feature of that name)";
+const KNOWN: &str = "gsf, sdf, sur or pro (or x3p, with the feature of that name)";
 
 /// The first row of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,12 +44,12 @@ enum First {
 
 impl HeightMap {
     /// Reads a file in a format that includes the lengths of the map. The extension determines the format:
-    /// [`gsf`](HeightMap::from_gsf), [`sdf`](HeightMap::from_sdf), or `x3p` with the feature of that name.
+    /// [`gsf`](HeightMap::from_gsf), [`sdf`](HeightMap::from_sdf), [`sur` and `pro`](HeightMap::from_sur), or `x3p` with the feature of that name.
     ///
     /// # Orientation
     ///
     /// x1 is the x of the file, along its rows, and x2 its y, which points up. The cell `[i, j]` of the map has the
-    /// height of point i along x1 and j along x2. Image formats (GSF, text matrices) begin with the top row, at the
+    /// height of point i along x1 and j along x2. Image formats (GSF, SUR, text matrices) begin with the top row, at the
     /// largest x2; SDF and X3P begin with the bottom row. The origin stated in a file is ignored: the map is centred on
     /// its rectangle.
     ///
@@ -62,6 +63,7 @@ impl HeightMap {
         match extension.as_str() {
             "gsf" => HeightMap::from_gsf(input::open(path)?),
             "sdf" => HeightMap::from_sdf(input::open(path)?),
+            "sur" | "pro" => HeightMap::from_sur(input::open(path)?),
             #[cfg(feature = "x3p")]
             "x3p" => HeightMap::from_x3p(input::open(path)?),
             _ => Err(MapError::Extension { file: name(), known: KNOWN }.into()),

@@ -27,7 +27,7 @@ impl Number {
     }
 
     /// The number represented by `bytes`.
-    fn decode(self, bytes: &[u8]) -> f64 {
+    pub(super) fn decode(self, bytes: &[u8]) -> f64 {
         let mut word = [0; 8];
         for (k, &byte) in bytes.iter().enumerate() {
             word[if self.big_endian { self.size - 1 - k } else { k }] = byte;

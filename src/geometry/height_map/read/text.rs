@@ -12,7 +12,7 @@ use crate::input::{Text, TextFormat, TextRow};
 const MISSING: [&str; 6] = ["", "bad", "---", "no data", "nodata", "n/a"];
 /// Numbers that programs write for points without a height, and the least magnitude of others.
 const STAND_INS: [f64; 7] = [-9999.0, 9999.0, -99999.0, 99999.0, -32768.0, 32767.0, 65535.0];
-const NO_HEIGHT: f64 = 1e30;
+pub(super) const NO_HEIGHT: f64 = 1e30;
 /// A stand-in is further from the heights than this multiple of their range.
 const FAR: f64 = 10.0;
 
