@@ -128,15 +128,21 @@ impl FitReport {
         FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
     }
 
-    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, and the
-    /// interval of their creep.
-    pub(crate) fn of_measurements(self, wrong_way: f64, ambiguity: f64, uncertainty: Uncertainty) -> FitReport {
+    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, the interval of
+    /// their creep, and the report of the nearest series, by which they are systematically off.
+    pub(crate) fn of_measurements(
+        self,
+        wrong_way: f64,
+        ambiguity: f64,
+        uncertainty: Uncertainty,
+        nearest: &FitReport,
+    ) -> FitReport {
         let Uncertainty { interval, known_from: until } = uncertainty;
         let (rms, first) = (self.rms_misfit(), interval[0].0);
         let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
             Some(FitWarning::FewSamples { uncertainty: ambiguity })
-        } else if rms > TOLERABLE && self.is_systematic() {
-            Some(FitWarning::Systematic { rms })
+        } else if nearest.rms_misfit() > TOLERABLE && nearest.is_systematic() {
+            Some(FitWarning::Systematic { rms: nearest.rms_misfit() })
         } else {
             (until > first).then_some(FitWarning::BeginsLate { first, until })
         };
