@@ -70,7 +70,7 @@ pub enum MapError {
     /// by [`from_npy`](crate::geometry::HeightMap), [`from_text`](crate::geometry::HeightMap::from_text) and
     /// [`from_xyz`](crate::geometry::HeightMap::from_xyz), which take them as arguments.
     #[error(
-        "{file}: the extension must be {known}; other formats do not store the side lengths of a map: use HeightMap::from_npy, from_text or from_xyz; instrument formats (.ibw, .spm, .tif) are exported as GSF by Gwyddion"
+        "{file}: the extension must be {known}; other formats do not store the side lengths of a map: use HeightMap::from_npy, from_text or from_xyz; instrument formats (.opd, .ibw, .spm, .tif) are exported as GSF by Gwyddion"
     )]
     Extension {
         /// The name of the file.

@@ -233,8 +233,8 @@ const MISTAKES: &[Mistake] = &[
     "there is no published material named \"nylon\"; known are: PMMA, epoxy, adhesive, polyisobutylene, polystyrene rings"),
 ("an image as a height map",
     || HeightMap::read("surface.png").map(drop),
-    "surface.png: the extension must be gsf, sdf, sur or x3p; other formats do not store the side lengths of a map: use \
-     HeightMap::from_npy, from_text or from_xyz; instrument formats (.ibw, .spm, .tif) are exported as GSF by Gwyddion"),
+    "surface.png: the extension must be gsf, sdf, sur, pro or x3p; other formats do not store the side lengths of a map: use \
+     HeightMap::from_npy, from_text or from_xyz; instrument formats (.opd, .ibw, .spm, .tif) are exported as GSF by Gwyddion"),
 ("a map with missing points",
     || builder_of(&HeightMap::new([2, 2], [1e-3; 2], vec![0.0, 1e-6, f64::NAN, 0.0])?, grid(), elastic()).build().map(drop),
     "the initial gap at cell [12, 12], x = (-4.375e-4, -4.375e-4) m, is NaN: it must be finite, or +inf where there is no \

@@ -19,6 +19,7 @@ use crate::numeric::non_negative_least_squares;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
+pub(in crate::rheology) use report::MOST_MISFIT;
 pub use report::{FitReport, FitSample, FitWarning};
 
 use measured::DENSITY;

@@ -26,6 +26,8 @@ impl FitSample {
     }
 }
 
+/// Greatest root mean square misfit of the nearest series to measurements that are accepted.
+pub(crate) const MOST_MISFIT: f64 = 0.1;
 /// Uncertainties and systematic misfits below this need no warning.
 const TOLERABLE: f64 = 5e-3;
 /// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
@@ -126,15 +128,21 @@ impl FitReport {
         FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
     }
 
-    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, and the
-    /// interval of their creep.
-    pub(crate) fn of_measurements(self, wrong_way: f64, ambiguity: f64, uncertainty: Uncertainty) -> FitReport {
+    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, the interval of
+    /// their creep, and the report of the nearest series, by which they are systematically off.
+    pub(crate) fn of_measurements(
+        self,
+        wrong_way: f64,
+        ambiguity: f64,
+        uncertainty: Uncertainty,
+        nearest: &FitReport,
+    ) -> FitReport {
         let Uncertainty { interval, known_from: until } = uncertainty;
         let (rms, first) = (self.rms_misfit(), interval[0].0);
         let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
             Some(FitWarning::FewSamples { uncertainty: ambiguity })
-        } else if rms > TOLERABLE && self.is_systematic() {
-            Some(FitWarning::Systematic { rms })
+        } else if nearest.rms_misfit() > TOLERABLE && nearest.is_systematic() {
+            Some(FitWarning::Systematic { rms: nearest.rms_misfit() })
         } else {
             (until > first).then_some(FitWarning::BeginsLate { first, until })
         };
@@ -230,6 +238,9 @@ impl fmt::Display for FitReport {
         let (rms, most, x, samples) = (self.rms_misfit(), self.max_misfit(), worst.x, self.samples.len());
         write!(f, "{} terms for {samples} samples from {first:.3e} to {last:.3e} {unit}: ", self.terms)?;
         write!(f, "relative misfit {rms:.1e} rms, {most:.1e} at most (at {x:.3e} {unit})")?;
+        if rms > MOST_MISFIT {
+            f.write_str("; the series that is nearest to the samples, less smooth than this one, is within the limit")?;
+        }
         if self.wrong_way > 0.0 {
             write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
         }

@@ -12,14 +12,12 @@ pub use master_curve::MasterCurve;
 
 use crate::error::{Place, Result, TableError, positive};
 use crate::input::TakenColumn;
-use crate::rheology::fit::{FitReport, Sample, Search};
+use crate::rheology::fit::{FitReport, MOST_MISFIT, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
 use data::{Deformation, Row, validated, wrong_way};
 
-/// Greatest root mean square misfit of an accepted fit.
-const MOST_MISFIT: f64 = 0.1;
 /// Denser tables are averaged to this many values per decade, ...
 const MEANS_PER_DECADE: f64 = 24.0;
 /// ... or fewer if they span more decades than this.
@@ -228,13 +226,14 @@ impl Measurements {
         }
         let uncertainty = measured.uncertainty(&search, &averaged, [first, last])?;
         let known_from = uncertainty.known_from;
-        let report =
-            FitReport::new(&measured.series, samples).of_measurements(wrong_way, measured.ambiguity, uncertainty);
-        // a smooth series through few rows of much noise is further from them than the best
-        let best = FitReport::new(&measured.least_squares, samples);
+        // a smooth series through few rows of much noise is further from them than the nearest
+        let [report, nearest] =
+            [&measured.series, &measured.least_squares].map(|series| FitReport::new(series, samples));
+        let nearest = if nearest.rms_misfit() < report.rms_misfit() { nearest } else { report.clone() };
+        let report = report.of_measurements(wrong_way, measured.ambiguity, uncertainty, &nearest);
         let most = self.scatter.map_or(MOST_MISFIT, |scatter| scatter.max(MOST_MISFIT));
-        let rms = best.rms_misfit().min(report.rms_misfit());
-        if let Some(worst) = best.worst().filter(|_| rms > most) {
+        let rms = nearest.rms_misfit();
+        if let Some(worst) = nearest.worst().filter(|_| rms > most) {
             let table = layout.table;
             return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
         }

@@ -18,6 +18,8 @@ const LEAST_OVERLAP: f64 = 0.1;
 const LEAST_SCATTER: f64 = 2e-3;
 /// Mean of ln(1 + z²) of a normal deviate.
 const EXPECTED: f64 = 0.53;
+/// Deviations of an outlier from the lines through its neighbours.
+const OUTLYING: f64 = 5.0;
 /// Price of a decade of the union.
 const PER_DECADE: f64 = 4.0;
 /// Rows on either side of a row through which its slope is taken.
@@ -66,7 +68,8 @@ struct Pair<'a> {
 
 /// The shift of `warmer` relative to `colder`.
 pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: bool) -> Result<Shift> {
-    let (isotherms, columns) = ([colder, warmer], colder.rows[0].values.len());
+    let (cleaned, columns) = ([colder, warmer].map(without_outliers), colder.rows[0].values.len());
+    let isotherms @ [colder, warmer] = cleaned.each_ref();
     let slopes = isotherms.map(|isotherm| (0..columns).map(|column| slopes(isotherm, column)).collect());
     let pair = Pair { isotherms, slopes, columns, is_vertical };
     let temperatures = [colder.temperature(), warmer.temperature()];
@@ -149,15 +152,7 @@ impl Pair<'_> {
 
     /// The scatter of a column about the lines between the neighbours of each row.
     fn scatter(&self, column: usize) -> f64 {
-        let of_isotherm = |isotherm: &&Isotherm| {
-            let about = |rows: &[Row]| {
-                let [a, b, c] = [0, 1, 2].map(|k| (isotherm.log_time(&rows[k]), rows[k].values[column].ln()));
-                let part = (b.0 - a.0) / (c.0 - a.0);
-                (b.1 - a.1 - part * (c.1 - a.1)).abs() / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
-            };
-            deviation(isotherm.rows.windows(3).map(about).collect())
-        };
-        self.isotherms.iter().map(of_isotherm).fold(LEAST_SCATTER, f64::max)
+        self.isotherms.iter().map(|isotherm| scatter(isotherm, column)).fold(LEAST_SCATTER, f64::max)
     }
 
     /// The scatter of the differences of a column at a shift.
@@ -207,6 +202,40 @@ impl Pair<'_> {
         let as_good = near.filter(|&other| self.cost(other, columns, scatter) < least + AS_GOOD);
         as_good.map(|other| (other - shift).abs()).fold(by_slopes, f64::max)
     }
+}
+
+/// The distance of a value from the line through those of two other rows, over its standard deviation for a scatter of one.
+fn off_line(isotherm: &Isotherm, column: usize, row: usize, others: [usize; 2]) -> f64 {
+    let point = |k: usize| (isotherm.log_time(&isotherm.rows[k]), isotherm.rows[k].values[column].ln());
+    let ((x, y), [a, b]) = (point(row), others.map(point));
+    let part = (x - a.0) / (b.0 - a.0);
+    (y - a.1 - part * (b.1 - a.1)) / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
+}
+
+/// The scatter of a column about the lines between the neighbours of each row.
+fn scatter(isotherm: &Isotherm, column: usize) -> f64 {
+    let inner = 1..isotherm.rows.len() - 1;
+    deviation(inner.map(|k| off_line(isotherm, column, k, [k - 1, k + 1]).abs()).collect())
+}
+
+/// The isotherm without single rows that contradict their neighbours: as each would be compared with several rows of the other
+/// isotherm, or with none, the best shift would be the one that compares it with the fewest.
+///
+/// An outlier lies far on the same side of the line between its neighbours and of the lines through the two rows before and
+/// after; in a bend, these lie on different sides.
+fn without_outliers(isotherm: &Isotherm) -> Isotherm {
+    let count = isotherm.rows.len();
+    let is_outlier = |row: usize, column: usize, scatter: f64| {
+        let pairs = [[row.wrapping_sub(1), row + 1], [row.wrapping_sub(2), row.wrapping_sub(1)], [row + 1, row + 2]];
+        let pairs = pairs.into_iter().filter(|pair| pair.iter().all(|&k| k < count));
+        let offs: Vec<f64> = pairs.map(|pair| off_line(isotherm, column, row, pair) / scatter).collect();
+        offs.len() > 1 && (offs.iter().all(|off| *off > OUTLYING) || offs.iter().all(|off| *off < -OUTLYING))
+    };
+    let columns = 0..isotherm.rows[0].values.len();
+    let scatters: Vec<f64> = columns.map(|column| scatter(isotherm, column).max(LEAST_SCATTER)).collect();
+    let is_kept = |row: usize| !scatters.iter().enumerate().any(|(column, &scatter)| is_outlier(row, column, scatter));
+    let rows = (0..count).filter(|&row| is_kept(row)).map(|row| isotherm.rows[row].clone()).collect();
+    Isotherm { rows, ..isotherm.clone() }
 }
 
 /// The row after ln t, and the part of the way to it from the row before.

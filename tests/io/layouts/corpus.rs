@@ -12,6 +12,8 @@ pub enum Kind {
     Isotherms(Experiment),
     Recording,
     Matrix,
+    /// A matrix in which this height is stated to be missing.
+    Stated(f64),
     Points,
     Profile,
 }
@@ -85,6 +87,10 @@ pub fn read(kind: Kind, bytes: &[u8]) -> std::result::Result<Vec<Vec<f64>>, Stri
             Ok(recording.times().iter().enumerate().map(row).collect())
         }
         Kind::Matrix => HeightMap::from_text(bytes, [3e-3, 2e-3], um, format).map(of_map).map_err(|e| e.to_string()),
+        Kind::Stated(height) => {
+            let format = format.with_missing_height(height);
+            HeightMap::from_text(bytes, [3e-3, 2e-3], um, format).map(of_map).map_err(|error| error.to_string())
+        }
         Kind::Points => HeightMap::from_xyz(bytes, mm, um, format).map(of_map).map_err(|error| error.to_string()),
         Kind::Profile => HeightMap::from_profile(bytes, mm, um, format).map(of_map).map_err(|error| error.to_string()),
     }
@@ -392,7 +398,7 @@ pub fn corpus() -> Vec<Layout> {
     let heights = [[1.5, 2.25, 3.5], [4.0, 5.125, 6.75]].map(|row| row.map(|z: f64| z / 1e6));
     let with_hole = [[1.5, f64::NAN, 3.5], [4.0, 5.125, 6.75]].map(|row| row.map(|z: f64| z / 1e6));
     let line = [1.5, 1.25, 2.0, 2.25, 1.75].map(|z: f64| z / 1e6);
-    let maps: [(Kind, &str, &str, Vec<Vec<f64>>); 14] = [
+    let maps: [(Kind, &str, &str, Vec<Vec<f64>>); 16] = [
         (Kind::Matrix, "plain", "1.5 2.25 3.5\n4.0 5.125 6.75\n", heights.map(Vec::from).into()),
         (Kind::Matrix, "tabs at the ends", "1.5\t2.25\t3.5\t\n4.0\t5.125\t6.75\t\n", heights.map(Vec::from).into()),
         (Kind::Matrix, "German", "1,5;2,25;3,5\n4,0;5,125;6,75\n", heights.map(Vec::from).into()),
@@ -421,6 +427,8 @@ pub fn corpus() -> Vec<Layout> {
             "\"\\Exported image units: um\"\nh=2 w=3\n1.5\t2.25\t3.5\n4.0\t5.125\t6.75\n",
             heights.map(Vec::from).into(),
         ),
+        (Kind::Stated(65535.0), "65535", "1.5 65535 3.5\n4.0 5.125 6.75\n", with_hole.map(Vec::from).into()),
+        (Kind::Stated(-9999.0), "-9999, German", "1,5;-9999;3,5\n4,0;5,125;6,75\n", with_hole.map(Vec::from).into()),
         (Kind::Matrix, "Zygo", "# Zygo\n1.5 No Data 3.5\n4.0 5.125 6.75\n", with_hole.map(Vec::from).into()),
         (
             Kind::Points,

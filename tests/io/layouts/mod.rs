@@ -89,13 +89,15 @@ fn damaged(layout: &Layout, draw: &mut Draws) -> Option<Damaged> {
         }
         1 => {
             let without = characters[at];
-            if !" ,;\t\n\r\"".contains(without) || layout.marks.contains(without) {
+            // rows that end in a delimiter become one longer row, another matrix
+            let joins = at > 0 && "\n\r".contains(without) && "\t;,".contains(characters[at - 1]);
+            if !" ,;\t\n\r\"".contains(without) || layout.marks.contains(without) || joins {
                 return None;
             }
             (format!("without {without:?} at {at}"), characters[..at].iter().chain(&characters[at + 1..]).collect())
         }
         2 => {
-            if layout.kind == Kind::Matrix || layout.kind == Kind::Profile {
+            if matches!(layout.kind, Kind::Matrix | Kind::Stated(_) | Kind::Profile) {
                 return None;
             }
             let mut lines = owned();

@@ -162,7 +162,7 @@ fn everything_else_outside_the_model_is_warned_of_or_refused() {
             }),
             Refused("build it by ViscoelasticContact::builder"),
         ),
-        ("a file of a profilometer", extension("scan.sur"), export),
+        ("a file of a profilometer", extension("scan.opd"), export),
         ("a file of a microscope", extension("scan.ibw"), export),
         ("a picture", extension("scan.tif"), export),
     ];

@@ -101,6 +101,11 @@ mod tests {
         assert_eq!(map.heights[..2], [40e-9, 10e-9]);
         assert!(map.heights[2].is_nan());
         assert_eq!(map.heights[3..], [20e-9, 60e-9, 30e-9]);
+        // µm in Latin-1
+        let mut latin = file(&FULL.replace("ZUnits = nm", "ZUnits = ?m"), &[1.0; 6]);
+        let at = latin.iter().position(|&byte| byte == b'?').unwrap();
+        latin[at] = 0xb5;
+        assert_eq!(HeightMap::from_gsf(&latin[..]).unwrap().heights, [1e-6; 6]);
     }
 
     #[test]

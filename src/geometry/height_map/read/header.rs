@@ -48,11 +48,10 @@ impl<'a> Header<'a> {
 
     /// Accepts a header whose entry `key` is `allowed`.
     pub(super) fn must_be(&self, key: &'static str, allowed: &'static str) -> Result<()> {
-        let text = self.require(key)?;
-        if text == allowed { Ok(()) } else { Err(self.error(key, text, allowed).into()) }
+        self.one_of(key, &[allowed], allowed).map(|_| ())
     }
 
-    /// The entry `key`, which has to be one of some `values`.
+    /// The value of an entry, which must be one of `values`.
     pub(super) fn one_of(&self, key: &'static str, values: &[&str], allowed: &'static str) -> Result<&'a str> {
         let text = self.require(key)?;
         if values.contains(&text) { Ok(text) } else { Err(self.error(key, text, allowed).into()) }

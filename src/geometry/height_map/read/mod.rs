@@ -29,9 +29,9 @@ use number::{Kind, Number};
 
 /// Extensions of the formats that include the lengths of the map.
 #[cfg(feature = "x3p")]
-const KNOWN: &str = "gsf, sdf, sur or x3p";
+const KNOWN: &str = "gsf, sdf, sur, pro or x3p";
 #[cfg(not(feature = "x3p"))]
-const KNOWN: &str = "gsf, sdf or sur (or x3p, with the feature of that name)";
+const KNOWN: &str = "gsf, sdf, sur or pro (or x3p, with the feature of that name)";
 
 /// The first row of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,7 @@ enum First {
 
 impl HeightMap {
     /// Reads a file in a format that includes the lengths of the map. The extension determines the format:
-    /// [`gsf`](HeightMap::from_gsf), [`sdf`](HeightMap::from_sdf), [`sur` or `pro`](HeightMap::from_sur), or `x3p` with the feature of that name.
+    /// [`gsf`](HeightMap::from_gsf), [`sdf`](HeightMap::from_sdf), [`sur` and `pro`](HeightMap::from_sur), or `x3p` with the feature of that name.
     ///
     /// # Orientation
     ///

@@ -13,7 +13,7 @@ const FORMAT: &str = "SUR";
 const MAGIC: &str = "DIGITAL SURF";
 const HEADER: usize = 512;
 /// Names, offsets and sizes of the whole numbers in the header.
-const WHOLE: [(&str, usize, usize); 13] = [
+const WHOLE: [(&str, usize, usize); 12] = [
     ("byte order", 12, 2),
     ("number of objects", 14, 2),
     ("type of object", 18, 2),
@@ -23,12 +23,11 @@ const WHOLE: [(&str, usize, usize); 13] = [
     ("greatest height", 104, 4),
     ("points per line", 108, 4),
     ("lines", 112, 4),
-    ("imprint", 288, 2),
     ("inversion", 290, 2),
     ("length of comment", 334, 2),
     ("length of private zone", 336, 2),
 ];
-/// Names and offsets of the spacings along x, y and z. The name of the unit of each lies [`TO_UNIT`] bytes after the first.
+/// Names and offsets of the spacings along x, y and z, and of their units.
 const SPACINGS: [(&str, usize); 3] = [("x spacing", 120), ("y spacing", 124), ("z spacing", 128)];
 const UNITS: [(&str, usize); 3] = [("x unit", 180), ("y unit", 196), ("z unit", 212)];
 
@@ -101,27 +100,21 @@ mod tests {
     use crate::Error;
 
     #[test]
-    fn heights_of_both_sizes_are_read() {
-        let rows = [1, 2, -9, 4, 5, -6];
-        let words = rows.iter().flat_map(|h| (*h as i16).to_le_bytes()).collect::<Vec<_>>();
-        let longs = rows.iter().flat_map(|h: &i32| h.to_le_bytes()).collect::<Vec<_>>();
-        for (bits, data) in [(16, &words), (32, &longs)] {
-            for special in [0, 1] {
-                let map = HeightMap::from_sur(&sur(bits, special, data)[..]).unwrap();
-                assert_eq!(map.cells, [3, 2]);
-                let wanted = [4.0, 1.0, 5.0, 2.0, -6.0, if special == 1 { f64::NAN } else { -9.0 }];
-                for (height, wanted) in map.heights.iter().zip(wanted) {
-                    let same = (height / (2e-9 * wanted) - 1.0).abs() < 1e-6;
-                    assert!(same || height.is_nan() && wanted.is_nan(), "{height} for {wanted}");
-                }
-                assert!((map.spacing[0] / 1e-6 - 1.0).abs() < 1e-6 && (map.spacing[1] / 2.5e-6 - 1.0).abs() < 1e-6);
-            }
+    fn the_first_line_is_the_top_and_points_beyond_the_range_are_missing() {
+        for bits in [16, 32] {
+            let map = HeightMap::from_sur(&sur(bits, &[10, 20, -2, 40, 50, 60])[..]).unwrap();
+            assert_eq!((map.cells, map.spacing), ([3, 2], [0.5e-6, 0.25e-6]));
+            assert_eq!(map.heights[..4], [40e-9, 10e-9, 50e-9, 20e-9].map(|height| height / 2.0));
+            assert!(map.heights[4] == 30e-9 && map.heights[5].is_nan());
+            let mut all = sur(bits, &[10, 20, -2, 40, 50, 60]);
+            all[86] = 0;
+            assert_eq!(HeightMap::from_sur(&all[..]).unwrap().heights[5], -1e-9);
         }
     }
 
     #[test]
-    fn what_is_not_read_is_refused_by_name() {
-        let whole = sur(16, 1, &[0; 12]);
+    fn files_of_another_kind_are_refused_with_the_cure() {
+        let whole = sur(16, &[0; 6]);
         let read = |at: usize, bytes: &[u8]| {
             let mut file = whole.clone();
             file[at..at + bytes.len()].copy_from_slice(bytes);
@@ -130,20 +123,15 @@ mod tests {
         for length in 0..whole.len() {
             assert!(HeightMap::from_sur(&whole[..length]).is_err(), "{length}");
         }
-        let keys = [
-            (12, "byte order"),
-            (14, "number of objects"),
-            (18, "type of object"),
-            (98, "bits per point"),
-            (290, "inversion"),
-        ];
-        for (at, name) in keys {
-            let error = read(at, &[9, 0]);
-            assert!(matches!(error, Error::Map(MapError::Entry { key, .. }) if key == name), "{error}");
+        assert!(read(0, b"DSCOMPRESSED").to_string().contains("export it as GSF by Gwyddion"));
+        assert!(matches!(read(0, b"DIGITAL SURD"), Error::Map(MapError::Magic { .. })));
+        assert!(matches!(read(108, &[4]), Error::Map(MapError::Size { expected: 16, found: 12, .. })));
+        assert!(matches!(read(108, &[255; 4]), Error::Map(MapError::Entry { key: "points per line", .. })));
+        assert!(matches!(read(334, &[255; 2]), Error::Map(MapError::Entry { key: "length of comment", .. })));
+        assert!(matches!(read(212, b"a.u.  "), Error::Map(MapError::Unit { .. })));
+        assert!(matches!(read(128, &[0; 4]), Error::OutOfRange { field: "z spacing", .. }));
+        for (at, name) in [(12, "byte order"), (14, "number of objects"), (18, "type of object"), (290, "inversion")] {
+            assert!(matches!(read(at, &[9]), Error::Map(MapError::Entry { key, .. }) if key == name), "{name}");
         }
-        assert!(read(0, b"DSCOMPRESSED").to_string().contains("GSF by Gwyddion"));
-        assert!(matches!(read(0, b"X"), Error::Map(MapError::Magic { .. })));
-        assert!(matches!(read(180, b"lines\0"), Error::Map(MapError::Unit { .. })));
-        assert!(matches!(read(334, &[9, 0]), Error::Map(MapError::Size { .. })));
     }
 }

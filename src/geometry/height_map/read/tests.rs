@@ -18,7 +18,7 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
     let mut files: Vec<(_, _, Reader)> = vec![
         ("gsf", gsf, |file| HeightMap::from_gsf(file)),
         ("sdf", sdf, |file| HeightMap::from_sdf(file)),
-        ("sur", sur(16, 1, &[1; 12]), |file| HeightMap::from_sur(file)),
+        ("sur", sur(16, &[1, 2, 3, 4, 5, 6]), |file| HeightMap::from_sur(file)),
         ("binary sdf", binary_sdf(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
         ("text", b"# a\n1, 2, 3\n4, bad, 6\n".to_vec(), |file| {
             HeightMap::from_text(file, [1.0; 2], LengthUnit::Metre, TextFormat::default())
@@ -54,25 +54,23 @@ pub(super) fn binary_sdf(data_type: u8, data: &[u8]) -> Vec<u8> {
     file
 }
 
-/// A SUR of 3 × 2 points of this size, measured between −6 and 5, in units of 2 nm.
-pub(super) fn sur(bits: i16, special: i16, data: &[u8]) -> Vec<u8> {
+/// A SUR of 3 × 2 points of 0.5 nm, heights below 0 missing, after a comment of 5 bytes.
+pub(super) fn sur(bits: u8, heights: &[i32]) -> Vec<u8> {
     let mut file = vec![0; 512];
     let mut put = |at: usize, bytes: &[u8]| file[at..at + bytes.len()].copy_from_slice(bytes);
     put(0, b"DIGITAL SURF");
-    for (at, number) in [(14, 1), (18, 2), (86, special), (98, bits), (334, 3), (336, 2)] {
-        put(at, &number.to_le_bytes());
+    for (at, byte) in [(14, 1), (16, 1), (18, 2), (86, 1), (98, bits), (104, 100), (108, 3), (112, 2), (334, 5)] {
+        put(at, &[byte]);
     }
-    for (at, number) in [(100, -6_i32), (104, 5), (108, 3), (112, 2)] {
-        put(at, &number.to_le_bytes());
+    for (at, size) in [(120, 0.5_f32), (124, 250.0), (128, 0.5)] {
+        put(at, &size.to_le_bytes());
     }
-    for (at, number) in [(120, 1.0_f32), (124, 2.5), (128, 2.0)] {
-        put(at, &number.to_le_bytes());
-    }
-    for (at, unit) in [(180, &b"\xb5m"[..]), (196, b"um"), (212, b"nm")] {
+    for (at, unit) in [(180, &b"\xb5m"[..]), (196, b"nm   "), (212, b"nm")] {
         put(at, unit);
     }
-    file.extend(b"abcde");
-    file.extend(data);
+    file.extend(b"gauge");
+    let bytes = usize::from(bits / 8);
+    file.extend(heights.iter().flat_map(|height| height.to_le_bytes()[..bytes].to_vec()));
     file
 }
 
@@ -160,7 +158,7 @@ fn the_extension_determines_the_format() {
     let mut read = Vec::new();
     for (name, file, reader) in files() {
         let path = folder.join(format!("map.{}", if name == "sdf" { "SDF" } else { name }));
-        if ["gsf", "sdf", "x3p"].contains(&name) {
+        if ["gsf", "sdf", "sur", "x3p"].contains(&name) {
             std::fs::write(&path, &file).unwrap();
             read.push((HeightMap::read(&path).unwrap(), reader(&file).unwrap()));
         }
@@ -175,7 +173,7 @@ fn the_extension_determines_the_format() {
         "{absent}"
     );
     std::fs::remove_dir_all(&folder).unwrap();
-    assert_eq!(read.len(), if cfg!(feature = "x3p") { 3 } else { 2 });
+    assert_eq!(read.len(), if cfg!(feature = "x3p") { 4 } else { 3 });
     for (map, expected) in read {
         assert_eq!((map.cells, map.spacing), (expected.cells, expected.spacing));
     }

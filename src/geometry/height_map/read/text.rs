@@ -12,7 +12,7 @@ use crate::input::{Text, TextFormat, TextRow};
 const MISSING: [&str; 6] = ["", "bad", "---", "no data", "nodata", "n/a"];
 /// Numbers that programs write for points without a height, and the least magnitude of others.
 const STAND_INS: [f64; 7] = [-9999.0, 9999.0, -99999.0, 99999.0, -32768.0, 32767.0, 65535.0];
-const NO_HEIGHT: f64 = 1e30;
+pub(super) const NO_HEIGHT: f64 = 1e30;
 /// A stand-in is further from the heights than this multiple of their range.
 const FAR: f64 = 10.0;
 
@@ -47,14 +47,19 @@ impl HeightMap {
         let (mut matrix, mut header) = (text.rows(), Vec::new());
         while let Some(row) = matrix.clone().next().filter(is_header) {
             if row.fields[0].to_lowercase().starts_with("nodata") && row.is_number(1) {
-                missing = missing.or(Some(row.number(1)?));
+                missing = missing.or(Some(row.number(1)?).filter(|stated| !stated.is_nan()));
             }
             header.push(row);
             matrix.next();
         }
         let mut columns = matrix.clone().next().map_or(0, |row| row.fields.len());
         // a row of heights with a fault, or of headings, is no header
-        let is_row = |row: &&TextRow| row.fields.len() == columns && !is_marked(row);
+        let ends_in_heights = |row: &TextRow| {
+            let rest = row.fields.len().saturating_sub(columns.max(3) - 1);
+            let mut last = rest..row.fields.len();
+            rest > 0 && last.clone().any(|k| row.is_number(k)) && last.all(|k| height(row, k).is_ok())
+        };
+        let is_row = |row: &&TextRow| (row.fields.len() == columns || ends_in_heights(row)) && !is_marked(row);
         if let Some(row) = header.iter().find(|row| columns == 0 || is_row(row)) {
             return Err(row.not_numeric(0).into());
         }

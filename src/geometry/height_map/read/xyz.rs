@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::text::{height, mask};
+use super::text::{NO_HEIGHT, height, mask};
 use super::{First, count};
 use crate::error::{MapError, Result, finite, least_length, positive};
 use crate::geometry::{HeightMap, LengthUnit};
@@ -173,7 +173,9 @@ fn points(
         if coordinates.iter().all(|coordinate| coordinate.index() != column) {
             return height(row, column);
         }
-        row.number(column).and_then(|value| if value.is_finite() { Ok(value) } else { Err(row.not_numeric(column)) })
+        // nor is a coordinate a mark of missing data, as −3.4e38
+        row.number(column)
+            .and_then(|value| if value.abs() < NO_HEIGHT { Ok(value) } else { Err(row.not_numeric(column)) })
     })?;
     let mut heights: Vec<f64> = rows.iter_mut().filter_map(|row| row.values.pop()).collect();
     mask(&mut heights, format.missing_height())?;
@@ -352,7 +354,12 @@ mod tests {
     fn malformed_lines_are_reported() {
         let columns = read("0 0 1\n1 0\n").unwrap_err();
         assert!(matches!(columns, Error::Text(TextError::Columns { line: 2, found: 2, expected: 3, .. })), "{columns}");
-        for (line, column, text) in [("one 0 1", 1, "one"), ("1 nan 1", 2, "nan"), ("1 0 inf", 3, "inf")] {
+        for (line, column, text) in [
+            ("one 0 1", 1, "one"),
+            ("-3.4028235e38 0 1", 1, "-3.4028235e38"),
+            ("1 nan 1", 2, "nan"),
+            ("1 0 inf", 3, "inf"),
+        ] {
             let wanted = TextError::NotNumeric { line: 2, column, text: text.into() };
             assert_eq!(read(&format!("0 0 1\n{line}\n")).unwrap_err(), wanted.into());
         }
