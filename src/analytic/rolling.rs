@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{Error, Result, finite, positive};
-use crate::quadrature::GaussLegendre;
+use crate::quadrature::{GaussLegendre, bisect};
 
 /// A cylinder that rolls or slides steadily, without friction of its surface, on a body with one retardation time: C(t) = C₀ + C₁ (1 − e^(−t/τ)), in line
 /// contact (S. C. Hunter, J. Appl. Mech. 28, 1961).
@@ -55,13 +55,11 @@ impl RollingCylinder {
             let c = reach * delayed / relaxed * i / (i + k);
             (c, PI / (4.0 * radius * relaxed) * (w * w + 2.0 * c * w * k))
         };
-        let (mut low, mut high) = (0.0, (4.0 * radius * relaxed * force / PI).sqrt());
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if parts(middle).1 < force { low = middle } else { high = middle }
-        }
-        let (half_width, center) = (low, parts(low).0);
-        let moment = ((reach - center) * PI * low * low / (4.0 * radius) - reach * at_once * force) / relaxed;
+        let slow = (4.0 * radius * relaxed * force / PI).sqrt();
+        let [half_width, _] = bisect(0.0, slow, HALVINGS, |w| parts(w).1 < force);
+        let center = parts(half_width).0;
+        let moment =
+            ((reach - center) * PI * half_width * half_width / (4.0 * radius) - reach * at_once * force) / relaxed;
         let friction = finite("friction of a rolling cylinder", (center + moment / force) / radius)?;
         if half_width == 0.0 {
             return Err(Error::OutOfRange { field: "half width of a contact", value: 0.0, allowed: "> 0" });

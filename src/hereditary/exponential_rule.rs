@@ -132,17 +132,13 @@ impl ExponentialRule {
         }
     }
 
-    /// E_i of each relaxation time.
-    pub(super) fn moduli(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + '_ {
-        self.relaxation.terms().iter().map(|&(modulus, _)| modulus)
-    }
-
-    /// E_i of each relaxation time, and the most by which its strain alone, 1, can ever raise a free surface, about: E_i over the sum of E∞
+    /// E_i of each relaxation time, the longest first, and the most by which its strain alone, 1, can ever raise a free surface, about: E_i over the sum of E∞
     /// and the moduli of times at least as long.
     pub(super) fn influences(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let terms = self.relaxation.terms();
-        let longer = move |tau: f64| terms.iter().filter(|term| term.1 >= tau).map(|term| term.0).sum::<f64>();
-        terms.iter().map(move |&(modulus, tau)| (modulus, modulus / (self.equilibrium() + longer(tau))))
+        self.relaxation.terms().iter().rev().scan(self.equilibrium(), |longer, &(modulus, _)| {
+            *longer += modulus;
+            Some((modulus, modulus / *longer))
+        })
     }
 
     /// Number of relaxation times.

@@ -122,8 +122,8 @@ impl GroupHistory {
     /// a free surface, and what the last step left of older ones.
     pub(crate) fn strains(&self) -> impl Iterator<Item = ([f64; 2], impl Fn(usize) -> f64 + '_)> + '_ {
         let displacements = &self.columns[0];
-        let decays = self.rule.committed.branches.iter().map(|weights| weights[0]);
-        let branches = self.columns[HEAD..].iter().zip(self.rule.influences()).zip(decays);
+        let decays = self.rule.committed.branches.iter().rev().map(|weights| weights[0]);
+        let branches = self.columns[HEAD..].iter().rev().zip(self.rule.influences()).zip(decays);
         let all = branches.map(|((column, (modulus, influence)), decay)| ([influence, decay], Some((column, modulus))));
         std::iter::once(([1.0; 2], None)).chain(all).map(move |(weights, branch)| {
             let strain = move |group: usize| {
@@ -139,15 +139,14 @@ impl GroupHistory {
     pub(crate) fn differ_at_most(&self, a: usize, b: usize, most: f64) -> bool {
         let [displacements, changes, _, stresses @ ..] = &self.columns[..] else { return true };
         let difference = displacements[a] - displacements[b];
-        let (mut longer, mut greatest, mut raised) = (self.rule.equilibrium(), 0.0f64, 0.0);
-        let mut from_longest = stresses.iter().zip(self.rule.moduli()).rev();
+        let (mut greatest, mut raised) = (0.0f64, 0.0);
+        let mut strains = stresses.iter().rev().zip(self.rule.influences());
         difference.abs() <= most
             && (changes[a] - changes[b]).abs() <= most
-            && from_longest.all(|(column, modulus)| {
-                longer += modulus;
+            && strains.all(|(column, (modulus, influence))| {
                 let strain = (difference - (column[a] - column[b]) / modulus).abs();
                 greatest = greatest.max(strain);
-                raised += modulus / longer * strain;
+                raised += influence * strain;
                 greatest.min(raised) <= most
             })
     }

@@ -223,17 +223,18 @@ impl Problem<'_> {
     ) -> Vec<f64> {
         let cells = self.gap.len();
         let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
-        let mut goal = 0.0;
-        for cycle in 0..CYCLES {
+        let (mut goal, mut cycle) = (0.0, 0);
+        loop {
+            cycle += 1;
             scatter(pressure, set, &mut full);
             bodies.response.apply(&full, displacement);
             let mut residual: Vec<f64> = set.iter().map(|&k| -(displacement[k] + self.gap[k])).collect();
             balance.project(&mut residual);
             let left = norm(&residual);
-            if cycle == 0 {
+            if cycle == 1 {
                 goal = allowed.max(part * left);
             }
-            if left <= goal || cycle + 1 == CYCLES {
+            if left <= goal || cycle == CYCLES {
                 return residual;
             }
             gmres(pressure, &residual, goal, |direction| {
@@ -248,7 +249,6 @@ impl Problem<'_> {
                 [better, own]
             });
         }
-        Vec::new()
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps

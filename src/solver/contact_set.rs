@@ -196,8 +196,9 @@ impl ContactSet {
                         value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
                     }
                 }
-                gram.add(&line, weights[0], weights[1], weights[2]);
-                let part = line.sums(pressures[0], pressures[1]);
+                let ([weight, moment, square], [p, p_moment]) = (weights, pressures);
+                gram.add(&line, weight, moment, square);
+                let part = line.sums(p, p_moment);
                 (0..3).for_each(|m| sums[m] += part[m]);
             }
             let [a, b, c] = gram.entries;

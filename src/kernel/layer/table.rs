@@ -17,14 +17,7 @@ impl Table {
     /// The table of `function` for distances from 0 to `last`.
     pub(super) fn new(last: f64, function: impl Fn(f64) -> f64) -> Table {
         let count = if last <= 1.0 { 1 } else { interval(last) + 1 };
-        Table {
-            series: (0..count)
-                .map(|n| {
-                    let [from, to] = ends(n);
-                    chebyshev(from, to, &function)
-                })
-                .collect(),
-        }
+        Table { series: (0..count).map(|n| chebyshev(ends(n), &function)).collect() }
     }
 
     /// The function at the distance `x`, at most the last distance of the table.
@@ -51,7 +44,8 @@ fn ends(interval: usize) -> [f64; 2] {
     if interval == 0 { [0.0, 1.0] } else { [0.5, 1.0].map(|part| part * 2_f64.powi(interval as i32)) }
 }
 
-fn chebyshev(from: f64, to: f64, function: impl Fn(f64) -> f64) -> [f64; NODES] {
+fn chebyshev(interval: [f64; 2], function: impl Fn(f64) -> f64) -> [f64; NODES] {
+    let [from, to] = interval;
     let angle = |k: usize| PI * (k as f64 + 0.5) / NODES as f64;
     let values: [f64; NODES] =
         std::array::from_fn(|k| function(0.5 * (from + to) + 0.5 * (to - from) * angle(k).cos()));

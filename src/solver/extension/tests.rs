@@ -9,14 +9,7 @@ fn noise(seed: &mut u64) -> f64 {
 
 /// E by its definition, cell by cell.
 fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2], attenuation: [f64; 2]) -> Vec<f64> {
-    pull(
-        &member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(),
-        values,
-        cells,
-        periodic,
-        attenuation[0],
-        attenuation[1],
-    )
+    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, attenuation)
 }
 
 /// The extension is attenuated `levels_to_go` levels above this one.
@@ -25,8 +18,7 @@ fn pull(
     mean: &[f64],
     [n1, n2]: [usize; 2],
     periodic: [bool; 2],
-    levels_to_go: f64,
-    remains: f64,
+    [levels_to_go, remains]: [f64; 2],
 ) -> Vec<f64> {
     if [n1, n2] == [1, 1] {
         return mean.to_vec();
@@ -40,7 +32,7 @@ fn pull(
     }
     let means: Vec<f64> = sums.iter().zip(&weights).map(|(s, w)| if *w > 0.0 { s / w } else { 0.0 }).collect();
     let trusts: Vec<f64> = weights.iter().map(|w| TRUST * 0.25 * w / (1.0 + (TRUST - 1.0) * 0.25 * w)).collect();
-    let mut coarse = pull(&trusts, &means, [m1, m2], periodic, levels_to_go - 1.0, remains);
+    let mut coarse = pull(&trusts, &means, [m1, m2], periodic, [levels_to_go - 1.0, remains]);
     if levels_to_go == 0.0 {
         coarse.iter_mut().for_each(|x| *x *= remains);
     }
