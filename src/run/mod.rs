@@ -15,6 +15,7 @@ pub(crate) mod driven;
 mod error_budget;
 mod event;
 mod events;
+mod fields;
 mod follow;
 mod halves;
 mod in_space;
@@ -30,6 +31,7 @@ mod steady;
 mod step_control;
 
 pub use crate::ascending::Times;
+pub use driven::FieldReport;
 pub use error_budget::ErrorBudget;
 pub use event::{Crossing, Event};
 pub use follow::Run;

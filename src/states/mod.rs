@@ -38,6 +38,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
+mod beside;
 mod closed_forms;
 mod contact;
 mod control;
@@ -53,12 +54,15 @@ mod run;
 #[cfg(feature = "checkpoint")]
 mod saved;
 mod sweep;
+mod twin;
 
 pub use crate::error::StatesError;
+pub(crate) use beside::Beside;
 pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
+pub(crate) use fields::accuracy_of_fields;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
 pub(crate) use reach::{Course, as_elastic, greatest};

@@ -8,9 +8,10 @@ use crate::contact::StepReport;
 use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
-use crate::run::driven::{Course, Driven};
+use crate::run::driven::{Course, Driven, FieldReport, FieldRequest, Moment, Prepared};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
+use crate::states::beside::Repeated;
 use crate::states::contact::StatesContact;
 use crate::states::control::{Record, StepControl, load_at};
 #[cfg(feature = "checkpoint")]
@@ -33,6 +34,9 @@ use crate::states::saved::SavedRun;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 pub type StatesRun<'a> = Run<'a, StatesContact>;
+
+/// An error of the level counts about so many times in the pressure.
+const AMPLIFIED: f64 = 10.0;
 
 impl StatesContact {
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
@@ -132,6 +136,18 @@ impl Driven for StatesContact {
         }
         let report = contact.report(time - start, load);
         Ok((contact, report))
+    }
+
+    type Fields = Repeated;
+
+    fn fields(&self, _: &mut StatesControl, request: &FieldRequest<'_>) -> Result<Prepared<Repeated>> {
+        let fields = Repeated::new(self.clone(), request.accuracy, AMPLIFIED);
+        Ok(Prepared { fields, stops: Vec::new(), keeps_starts: false })
+    }
+
+    fn with_field(&self, fields: &Repeated, moment: &Moment<'_, Self>) -> Result<(Option<Self>, FieldReport)> {
+        let found = fields.at(moment.history, self.time(), moment.after)?;
+        Ok((Some(found.contact), FieldReport { error: Some(0.0), ..FieldReport::default() }))
     }
 
     fn rejected(control: &StatesControl) -> u64 {

@@ -308,7 +308,7 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
                 scene.name,
                 contact.groups()
             );
-            let fields = contact.fields().unwrap();
+            let fields = contact.fields(0.0).unwrap();
             let greatest = |a: &[f64], b: &[f64]| {
                 let both = a.iter().zip(b).filter(|(a, b)| a.is_finite() || b.is_finite());
                 both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

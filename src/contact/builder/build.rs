@@ -19,7 +19,7 @@ use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
-use crate::rheology::Material;
+use crate::rheology::{Elastic, Material};
 
 impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
@@ -224,6 +224,40 @@ impl Builder {
             zone_is_resolved(law, &material, &self.grid)?;
         }
         Ok(Parts { settings: self.settings, material, kernel, history, attracts })
+    }
+}
+
+impl ViscoelasticContact {
+    /// The undisturbed contact of an elastic body of unit compliance with the same indenter, solved to `tolerance`.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub(crate) fn of_unit_compliance(&self, tolerance: f64) -> Result<ViscoelasticContact> {
+        let (scene, material) = (&*self.scene, Material::incompressible(Elastic::new(0.25)?));
+        let settings = Settings { tolerance, time_rule: TimeRule::Exponential, ..scene.settings };
+        let history = history_by(&settings, &material, scene.kernel.periodic_axes())?;
+        let indenter = &self.computation.state.indenter;
+        let folded = if settings.symmetry { indenter.even_axes(&scene.grid) } else { [false; 2] };
+        let region = Region::whole(&scene.grid, folded);
+        let parts = Parts { settings, material, kernel: Arc::clone(&scene.kernel), history, attracts: false };
+        parts.footprint(1).check(&region, 0)?;
+        let Parts { settings, material, kernel, history, .. } = parts;
+        let unit = Scene {
+            grid: scene.grid.clone(),
+            limits: Limits::of(&material),
+            #[cfg(feature = "checkpoint")]
+            built: Built::default(),
+            temperature: None,
+            attraction: None,
+            softening: 0.0,
+            steady: false,
+            bodies: 1,
+            kernel,
+            material,
+            settings,
+        };
+        let computation = Computation::new(&unit, State::at_rest(Arc::clone(indenter), region, &history, false));
+        Ok(ViscoelasticContact::new(unit, computation, self.missed))
     }
 }
 
