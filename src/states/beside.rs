@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use crate::contact::ViscoelasticContact;
-use crate::error::Result;
+use crate::error::{Error, Result, StepError};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::run::Stepping;
@@ -21,10 +21,15 @@ use crate::states::twin::Profile;
 /// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
 const FIRST_LEVELS: i32 = 5;
 const RATIO: f64 = 8.0;
-/// Number of even parts of a run at which its load and its level are sampled.
+/// Number of even parts of a run at which its load is sampled.
 const PARTS: u32 = 512;
-/// Parts of the accuracy: error of the level of the repeated run, of the elastic contacts, and of the level on the curve.
-const OF_LEVEL: f64 = 0.03;
+/// Tolerance of the steps that show how long steps of a run may be; its own are parts of these, so many steps at most.
+const COARSE: f64 = 1e-3;
+const PARTS_OF_STEP: usize = 8;
+const MOST_STEPS: usize = 4000;
+/// The shortest step, over the time since the start.
+const SHORTEST: f64 = 1e-7;
+/// Parts of the accuracy: error of the elastic contacts, and of the level on the curve.
 const OF_SOLVER: f64 = 1e-3;
 const OF_CURVE: f64 = 0.05;
 /// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
@@ -35,8 +40,7 @@ const LEAST_FORCE: f64 = 0.01;
 const MOST_ATTEMPTS: u32 = 4;
 /// States of the curve nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-6;
-/// Amplification of bodies without elastic response, and levels of the curve beyond its last one, over that.
-const WITHOUT_RESPONSE: f64 = 10.0;
+/// Levels of the curve beyond its last one, over that.
 const BEYOND: f64 = 16.0;
 /// The last step before a time, over the time since the start.
 const LAST_STEP: f64 = 1e-5;
@@ -47,64 +51,85 @@ pub struct Repeated {
     /// The contact at the start of the run.
     origin: StatesContact,
     accuracy: f64,
-    /// Tolerance of its adaptive steps.
-    tolerance: f64,
+    /// Ends of steps that resolve the load, and what the bodies do under it.
+    schedule: Vec<f64>,
 }
 
 /// A contact on levels at a time, and the times and levels of its steps.
-pub(crate) struct Found {
-    pub(crate) contact: StatesContact,
+pub(super) struct Found {
+    pub(super) contact: StatesContact,
     steps: Vec<(f64, f64)>,
     /// The greatest force so far.
     force: f64,
 }
 
 impl Repeated {
-    /// A run from `origin`, whose level counts so many times in the pressure.
-    pub(crate) fn new(origin: StatesContact, accuracy: f64, amplification: f64) -> Repeated {
-        let tolerance = (OF_LEVEL * accuracy / amplification.max(1.0)).clamp(1e-8, 1e-4);
-        Repeated { origin, accuracy, tolerance }
+    /// A run from `origin`; and its greatest level.
+    pub(super) fn new(
+        origin: StatesContact,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: f64,
+    ) -> Result<(Repeated, f64)> {
+        let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
+        let mut run = contact.follow(history, Stepping::adaptive(COARSE), until);
+        while let Some(report) = run.next_step()? {
+            greatest = greatest.max(run.contact().level());
+            ends.push(report.time);
+        }
+        drop(run);
+        let parts = (MOST_STEPS / ends.len()).clamp(1, PARTS_OF_STEP);
+        let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
+        let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
+        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
+        Ok((Repeated { origin, accuracy, schedule }, greatest))
     }
 
     /// The contact at a time, after a jump of the load there or before it.
-    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
-        let (mut contact, start) = (self.origin.clone(), self.origin.time());
-        let (mut stops, mut left, rest) = (Vec::new(), 1.0, 1.0 - self.accuracy.sqrt());
+    pub(super) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+        let (mut ends, mut left, rest) = (self.schedule.clone(), 1.0, 1.0 - self.accuracy.sqrt());
         while left > LAST_STEP {
             left *= rest;
-            stops.push(time - (time - start) * left);
+            ends.push(time - (time - self.origin.time()) * left);
         }
-        let mut run = contact.follow(history, Stepping::adaptive(self.tolerance), time).stop_at(stops)?;
-        let (mut steps, mut force) = (vec![(start, 0.0)], 0.0);
-        while let Some(report) = run.next_step()? {
-            steps.push((report.time, run.contact().level()));
-            force = report.force.max(force);
-            if report.time >= time && report.dt > 0.0 && !after {
-                break;
-            }
-        }
-        drop(run);
-        Ok(Found { contact, steps, force })
+        ends.sort_by(f64::total_cmp);
+        self.by_steps(history, &ends, (time, after))
     }
 
     /// The contact at a time, by steps with these ends.
-    fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<StatesContact> {
+    fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<Found> {
         let mut contact = self.origin.clone();
-        contact.step_to(contact.time(), 0.0, history.checked_at(contact.time(), false)?)?;
-        for end in ends.iter().copied().filter(|end| *end < time).chain([time]) {
+        let (start, mut force) = (contact.time(), 0.0_f64);
+        let (mut corner, mut steps) = (history.next_breakpoint(start), vec![(start, 0.0)]);
+        let jump = |contact: &mut StatesContact, time: f64| {
+            match contact.step_to(time, 0.0, history.checked_at(time, false)?) {
+                // the run stays as it was
+                Err(Error::Step(StepError::NoElasticResponse { .. })) => Ok(()),
+                other => other.map(drop),
+            }
+        };
+        jump(&mut contact, start)?;
+        let shortest = SHORTEST * (time - start);
+        let inner = ends.iter().copied().filter(|end| *end > start && *end < time - shortest);
+        for end in inner.chain((time > start).then_some(time)) {
             let now = contact.time();
-            if end > now {
-                contact.step_to(end, end - now, history.checked_before(end, false)?)?;
+            if end - now < shortest && corner.is_none_or(|corner| corner > end) {
+                continue;
             }
-            let (jump, before) = (history.checked_at(end, false)?, history.checked_before(end, false)?);
-            if jump != before && (end < time || after) {
-                contact.step_to(end, 0.0, jump)?;
+            let before = history.checked_before(end, false)?;
+            contact.step_to(end, end - now, before)?;
+            force = force.max(contact.force());
+            if (end < time || after) && history.checked_at(end, false)? != before {
+                jump(&mut contact, end)?;
+                force = force.max(contact.force());
             }
-            if history.next_breakpoint(now).is_some_and(|corner| corner <= end) {
+            steps.push((end, contact.level()));
+            while let Some(next) = corner.filter(|corner| *corner <= end) {
                 contact.reset_differences();
+                corner = history.next_breakpoint(next);
             }
         }
-        Ok(contact)
+        Ok(Found { contact, steps, force })
     }
 }
 
@@ -169,7 +194,10 @@ impl Beside {
         let rest = elastic.under(Load::Force { normal: 0.0, tilt })?.approach();
         let mut top = 0.0_f64;
         if by_force {
-            top = course.greatest_level(tilt, interpolant, PARTS)?;
+            let mut states = ElasticStates::sphere(1.0)?;
+            Arc::make_mut(&mut states).tilt = tilt;
+            let origin = undisturbed(course, &states, interpolant, start)?;
+            top = MARGIN * Repeated::new(origin, course.history, course.until, accuracy)?.1;
         } else {
             for load in greatest(&all, course.softest_compliance()?) {
                 top = top.max(MARGIN * elastic.under(load)?.force());
@@ -178,15 +206,9 @@ impl Beside {
         if top == 0.0 {
             return Ok(None);
         }
-        let (glassy, softest) = (course.material.contact_compliance(0.0), course.softest_compliance()?);
-        let amplification = match by_force {
-            true if glassy > 0.0 => softest / glassy,
-            true => WITHOUT_RESPONSE,
-            false => 1.0,
-        };
         let origin = StatesContact::new(&ElasticStates::sphere(1.0)?, course.material)?;
         let mut beside = Beside {
-            repeated: Repeated::new(origin, accuracy, amplification),
+            repeated: Repeated { origin, accuracy, schedule: Vec::new() },
             elastic,
             tilt,
             rows: Vec::new(),
@@ -204,11 +226,8 @@ impl Beside {
             beside.serves &= !shrinks;
             below = Some(next);
         }
-        let mut origin = course.contact(&beside.curve()?, interpolant)?;
-        if start > 0.0 {
-            origin.step_to(start, start, Load::Force { normal: 0.0, tilt })?;
-        }
-        beside.repeated.origin = origin;
+        let origin = undisturbed(course, &beside.curve()?, interpolant, start)?;
+        beside.repeated = Repeated::new(origin, course.history, course.until, accuracy)?.0;
         Ok(Some(beside))
     }
 
@@ -322,8 +341,22 @@ impl Beside {
     ) -> Result<f64> {
         let found = self.repeated.at(history, time, after)?;
         let taken = self.repeated.by_steps(history, ends, (time, after))?;
-        Ok(Profile::new(found.contact.tractions()).distance(&Profile::new(taken.tractions()), found.size()))
+        Ok(Profile::new(found.contact.tractions()).distance(&Profile::new(taken.contact.tractions()), found.size()))
     }
+}
+
+/// An undisturbed contact on these states at the start of a run.
+fn undisturbed(
+    course: &Course<'_>,
+    states: &Arc<ElasticStates>,
+    interpolant: Interpolant,
+    start: f64,
+) -> Result<StatesContact> {
+    let mut contact = course.contact(states, interpolant)?;
+    if start > 0.0 {
+        contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
+    }
+    Ok(contact)
 }
 
 /// An elastic contact at a level.

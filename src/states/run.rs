@@ -35,9 +35,6 @@ use crate::states::saved::SavedRun;
 /// ```
 pub type StatesRun<'a> = Run<'a, StatesContact>;
 
-/// An error of the level counts about so many times in the pressure.
-const AMPLIFIED: f64 = 10.0;
-
 impl StatesContact {
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> StatesRun<'a> {
@@ -141,7 +138,7 @@ impl Driven for StatesContact {
     type Fields = Repeated;
 
     fn fields(&self, _: &mut StatesControl, request: &FieldRequest<'_>) -> Result<Prepared<Repeated>> {
-        let fields = Repeated::new(self.clone(), request.accuracy, AMPLIFIED);
+        let (fields, _) = Repeated::new(self.clone(), request.history, request.until, request.accuracy)?;
         Ok(Prepared { fields, stops: Vec::new(), keeps_starts: false })
     }
 
