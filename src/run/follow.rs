@@ -11,7 +11,7 @@ use crate::load::LoadHistory;
 use crate::run::autosave::Autosave;
 use crate::run::driven::Course;
 use crate::run::event::Event;
-use crate::run::fields::RunFields;
+use crate::run::field::RunFields;
 use crate::run::progress::{Progress, RunProgress, Stepping};
 use crate::run::{OwnedOrBorrowed, RunContact};
 
@@ -86,7 +86,7 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
-    pub(super) fields: Option<RunFields<C>>,
+    pub(super) fields: Option<RunFields<C, C::Fields>>,
     #[cfg(feature = "checkpoint")]
     pub(super) autosave: Option<Autosave>,
 }

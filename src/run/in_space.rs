@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::{Scene, Step, StepReport, ViscoelasticContact};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, count_within};
 use crate::hereditary::{StepContext, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
@@ -13,10 +13,11 @@ use crate::run::Run;
 use crate::run::adaptive_step::adaptive_step;
 use crate::run::driven::{Course, Driven, FieldReport, FieldRequest, Moment, Prepared};
 use crate::run::error_budget::ErrorBudget;
+use crate::run::field::MOST_FIELDS;
 use crate::run::halves::Halves;
 use crate::run::progress::{Progress, Stepping};
 use crate::run::step_control::StepControl;
-use crate::states::{self, Beside, StatesError};
+use crate::states::{self, Beside};
 
 /// The run errs by this part of the accuracy of the fields where its error is amplified as many times.
 const OF_AMPLIFIED: f64 = 1.5;
@@ -86,11 +87,12 @@ impl Driven for ViscoelasticContact {
         let course = states::Course { material, temperature: temperature.as_ref(), history, until };
         let is_alone = self.bodies() == 1 && attraction.is_none() && !self.computation.state.region.is_shared();
         let is_new = start == 0.0 || self.computation.state.is_undisturbed();
-        let interpolant = settings.adaptive_interpolant();
-        let beside = if is_alone && is_new { Beside::new(self, &course, accuracy, interpolant)? } else { None };
-        if let Some(beside) = beside {
+        let kind = (settings.adaptive_interpolant(), start);
+        let beside = (is_alone && is_new).then(|| Beside::new(self, &course, accuracy, kind)).transpose();
+        if let Some(beside) = unless_refused(beside)?.flatten() {
             let (mut stops, mut finest) = (Vec::new(), 1.0_f64);
-            for &time in times.iter().filter(|_| !beside.serves()) {
+            let times = if beside.serves() { &[] } else { few(times)? };
+            for &time in times {
                 let (before, amplification) = beside.stops(history, time)?;
                 finest = finest.min(OF_AMPLIFIED / amplification);
                 stops.extend(before.into_iter().chain([time]));
@@ -102,7 +104,7 @@ impl Driven for ViscoelasticContact {
             return Ok(Prepared { fields, stops, keeps_starts: false });
         }
         let mut stops = Vec::new();
-        for &time in times {
+        for &time in few(times)? {
             let (mut since, mut corner) = (start, history.next_breakpoint(start));
             while let Some(next) = corner.filter(|next| *next > since && *next < time) {
                 (since, corner) = (next, history.next_breakpoint(next));
@@ -134,11 +136,12 @@ impl Driven for ViscoelasticContact {
                         return Ok((Some(contact), report));
                     }
                 }
-                Err(Error::States(StatesError::Shrinks { .. })) => {}
+                Err(Error::States(_) | Error::Step(_)) => {}
                 Err(error) => return Err(error),
             }
         }
-        report.error = Some(beside.error_of_steps(history, ends, (self.time(), after))?);
+        let error = beside.error_of_steps(history, ends, (self.time(), after));
+        report.error = unless_refused(error.map(Some))?;
         Ok((None, report))
     }
 
@@ -155,6 +158,20 @@ impl Driven for ViscoelasticContact {
     fn is_due(&self, due: bool) -> Result<bool> {
         let rows = self.computation.state.region.rows();
         rows.together(|| Ok(rows.any(due)))
+    }
+}
+
+/// Accepts so many times as steps can end for.
+fn few(times: &[f64]) -> Result<&[f64]> {
+    count_within("fields for which steps end", times.len(), times.len() <= MOST_FIELDS, "10 000 at most")?;
+    Ok(times)
+}
+
+/// Nothing where elastic states do not cover a scene.
+fn unless_refused<T>(found: Result<Option<T>>) -> Result<Option<T>> {
+    match found {
+        Err(Error::States(_) | Error::Step(_)) => Ok(None),
+        other => other,
     }
 }
 

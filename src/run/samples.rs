@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
-use crate::run::RunContact;
 use crate::run::FieldReport;
+use crate::run::RunContact;
 use crate::run::follow::{Run, history_of};
 use crate::run::progress::SAME_TIME;
 

@@ -1,7 +1,7 @@
 //! The pressure of a run in space at any time, from elastic contacts beside it.
 //!
-//! The run is repeated on levels, in steps graded towards the time: they cost no contact problem, and c(t) and w(l, t) are as those of the
-//! bodies. Then a few elastic contacts give the pressure ([`twin`](crate::states::twin)). Under a given approach c(t) depends on the shape: the
+//! The run is repeated on levels, in steps graded towards the time: they cost no contact problem, and the bodies have the same
+//! c(t) and w(l, t). Then a few elastic contacts give the pressure ([`twin`](crate::states::twin)). Under a given approach c(t) depends on the shape: the
 //! curve δ(l) goes through a few elastic contacts at first, and through each that is solved for a field from then on.
 
 use std::sync::Arc;
@@ -175,22 +175,20 @@ pub(crate) struct FoundPressure {
 }
 
 impl Beside {
-    /// For a run from the undisturbed contact, with steps of this kind; `None` where elastic contacts give no field: tilts change, the
-    /// material has no series, or a contact shrinks somewhere as its load grows.
+    /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field: tilts change, or are free
+    /// under a given approach, the material has no series, or nothing presses.
     pub(crate) fn new(
         contact: &ViscoelasticContact,
         course: &Course<'_>,
         accuracy: f64,
-        interpolant: Interpolant,
+        (interpolant, start): (Interpolant, f64),
     ) -> Result<Option<Beside>> {
         let all = course.sampled(PARTS)?;
-        let (tilt, start) = (all[0].tilt(), contact.time());
+        let tilt = all[0].tilt();
         let is_force = |load: &Load| matches!(load, Load::Force { .. });
         let (by_force, is_free) = (all.iter().all(is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
-        if course.material.contact_spectrum()?.is_none() || all.iter().any(|load| load.tilt() != tilt) {
-            return Ok(None);
-        }
-        if !by_force && is_free {
+        let is_other = |load: &Load| load.tilt() != tilt;
+        if course.material.contact_spectrum()?.is_none() || all.iter().any(is_other) || !by_force && is_free {
             return Ok(None);
         }
         let tolerance = (OF_SOLVER * accuracy).max(1e-9);
@@ -227,7 +225,7 @@ impl Beside {
             let level = top * RATIO.powi(-k);
             let next = beside.solve(level)?;
             let shrinks = below.is_some_and(|below| beside.check(&below, &next).is_err());
-            beside.serves &= !shrinks && std::env::var("STOPS").is_err();
+            beside.serves &= !shrinks;
             below = Some(next);
         }
         let origin = undisturbed(course, &beside.curve()?, interpolant, start)?;
@@ -238,7 +236,8 @@ impl Beside {
     /// Solves an elastic contact, and adds it to the curve.
     fn solve(&mut self, level: f64) -> Result<Solved> {
         self.spent += 1;
-        let (pressure, approach, area, convolutions) = self.elastic.pressed(Load::Force { normal: level, tilt: self.tilt })?;
+        let load = Load::Force { normal: level, tilt: self.tilt };
+        let (pressure, approach, area, convolutions) = self.elastic.pressed(load)?;
         let depth = if self.by_force { level.powf(2.0 / 3.0) } else { approach - self.rest };
         let at = self.rows.partition_point(|row| row[0] < level);
         let is_new = |row: &[f64; 3]| (row[0] / level - 1.0).abs() > NEAREST && (row[1] > depth) == (row[0] > level);

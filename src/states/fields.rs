@@ -21,7 +21,7 @@ pub struct StatesFields {
 impl StatesContact {
     /// The pressure \[Pa\] from the states that the sweep kept
     /// ([`Sweep::keep_pressures`](crate::states::Sweep::keep_pressures)), linear in the level between them: one value
-    /// for each cell of the grid.
+    /// for each cell of the grid, to the accuracy of the sweep.
     ///
     /// # Errors
     /// [`StatesError::NoPressures`] if none were kept.
@@ -45,14 +45,14 @@ impl StatesContact {
     /// by what the same levels leave of the error on a ball and on a cone, from the smallest to the largest. Measured over random scenes, they
     /// are 7 contacts for 1e-2 and 20 for 1e-3 in the median, each some 5 convolutions from the one before, and five fields of memory. The
     /// L2 error is about twice as large, relative to the field, and the error of the greatest pressure five times. An accuracy of 0 takes
-    /// every group of levels. The steps that were taken count as exact: those of a run have
+    /// every group of levels. The steps that were taken count as exact: a run has
     /// [`Run::fields_to`](crate::run::Run::fields_to).
     ///
     /// # Errors
     /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
     /// [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
     pub fn fields(&self, accuracy: f64) -> Result<StatesFields> {
-        accuracy_of_fields(accuracy, 0.0)?;
+        within("accuracy of the fields", accuracy, (0.0..=0.1).contains(&accuracy), "in [0, 0.1]")?;
         let states = self.states();
         let mut elastic = states.elastic_contact()?;
         let apart = elastic.under(Load::Force { normal: 0.0, tilt: states.tilt })?;
@@ -87,11 +87,6 @@ impl StatesContact {
         fields.gap.iter_mut().for_each(|gap| *gap += self.levels.lift);
         Ok(fields)
     }
-}
-
-/// Accepts an accuracy of fields from `least` on.
-pub(crate) fn accuracy_of_fields(accuracy: f64, least: f64) -> Result<f64> {
-    within("accuracy of the fields", accuracy, (least..=0.1).contains(&accuracy), "in [1e-5, 0.1]")
 }
 
 impl ElasticStates {

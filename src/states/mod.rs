@@ -62,7 +62,6 @@ pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
-pub(crate) use fields::accuracy_of_fields;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
 pub(crate) use reach::{Course, as_elastic, greatest};
