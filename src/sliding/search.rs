@@ -1,0 +1,72 @@
+//! Where the search for a state of contact begins.
+
+use num_complex::Complex64;
+
+use super::contact_problem::{Found, Problem};
+use super::operator::MovingBodies;
+use crate::Grid;
+
+/// Bodies that are periodic along both axes are first solved on half as many cells along each axis, down to so many at least.
+const COARSEST: usize = 128;
+/// Residual allowed there.
+const ROUGHLY: f64 = 1e-3;
+
+impl Problem<'_> {
+    /// The state, from that of a coarser mesh, else from the pressure `before`, else from that of the symmetric part of the response: in slow
+    /// motion a set would grow by one row of cells at a time.
+    pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> Found {
+        let coarse = self.on_coarser(bodies, before);
+        let first = coarse.as_deref().unwrap_or(before);
+        let found = first.iter().any(|&p| p > 0.0).then(|| self.solve(bodies, first)).filter(|found| found.converged);
+        found.unwrap_or_else(|| {
+            let mut symmetric = bodies.symmetric();
+            let first = self.solve(&mut symmetric, before);
+            let found = self.solve(bodies, &first.pressure);
+            bodies.response.pairs += symmetric.transforms();
+            Found { sets: found.sets + first.sets, ..found }
+        })
+    }
+
+    /// The pressure on half as many cells along each axis, spread over the cells of this grid. Its transforms count by their cells.
+    fn on_coarser(&self, bodies: &mut MovingBodies, before: &[f64]) -> Option<Vec<f64>> {
+        let cells @ [_, n2] = self.grid.cells();
+        if cells.iter().any(|n| n % 2 == 1 || n / 2 < COARSEST) {
+            return None;
+        }
+        let mut coarser = bodies.on_half_the_cells()?;
+        let grid = Grid::new(cells.map(|n| n / 2), self.grid.lengths()).ok()?;
+        let coarse_of = |k: usize| k / n2 / 2 * (n2 / 2) + k % n2 / 2;
+        let mean = |field: &[f64]| {
+            let mut coarse = vec![0.0; grid.len()];
+            field.iter().enumerate().for_each(|(k, value)| coarse[coarse_of(k)] += 0.25 * value);
+            coarse
+        };
+        let (gap, tolerance) = (mean(self.gap), self.tolerance.max(ROUGHLY));
+        let free = crate::solver::Freedom { total: 0.25 * self.free.total, ..self.free };
+        let found = Problem { grid: &grid, gap: &gap, free, tolerance }.search(&mut coarser, &mean(before));
+        bodies.response.pairs += coarser.transforms().div_ceil(4);
+        Some((0..before.len()).map(|k| found.pressure[coarse_of(k)]).collect())
+    }
+}
+
+impl MovingBodies {
+    /// The long waves of bodies that are periodic along both axes.
+    fn on_half_the_cells(&self) -> Option<MovingBodies> {
+        let (cells @ [n1, _], periods) = (self.response.cells, self.response.plane.periods());
+        // a body that ends is padded in its response
+        let [m1, m2] = cells.map(|n| n / 2);
+        if periods != cells {
+            return None;
+        }
+        let mut factors = Vec::with_capacity(m1 * (m2 / 2 + 1));
+        for k2 in 0..=m2 / 2 {
+            for k1 in 0..m1 {
+                let factor = self.response.factors[k2 * n1 + if 2 * k1 > m1 { n1 - m1 + k1 } else { k1 }];
+                // a wave of alternating cells moves both ways
+                let both = 2 * k1 == m1 || 2 * k2 == m2;
+                factors.push(if both { Complex64::from(factor.re) } else { factor });
+            }
+        }
+        Some(MovingBodies::of_waves([m1, m2], factors, Default::default()))
+    }
+}
