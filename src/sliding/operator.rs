@@ -127,12 +127,12 @@ impl MovingBodies {
         MovingBodies { response, inverse, loss }
     }
 
-    /// Bodies with the symmetric part of the response: the pressure moves both ways at once.
-    pub(super) fn symmetric(&self) -> MovingBodies {
+    /// Bodies with this part of the skew-symmetric response; without any the pressure moves both ways at once.
+    pub(super) fn with_skew(&self, part: f64) -> MovingBodies {
         let Multiplier { cells, ref plane, ref factors, .. } = self.response;
-        let real = factors.iter().map(|factor| Complex64::from(factor.re)).collect();
+        let factors = factors.iter().map(|factor| Complex64::new(factor.re, part * factor.im)).collect();
         MovingBodies {
-            response: Multiplier::new(cells, plane.periods(), real),
+            response: Multiplier::new(cells, plane.periods(), factors),
             inverse: Multiplier { pairs: 0, ..self.inverse.clone() },
             loss: Default::default(),
         }

@@ -10,21 +10,42 @@ use crate::Grid;
 const COARSEST: usize = 128;
 /// Residual allowed there.
 const ROUGHLY: f64 = 1e-3;
+/// The skew-symmetric part of the response grows by no less than this.
+const LEAST_STEP: f64 = 1e-3;
 
 impl Problem<'_> {
     /// The state, from that of a coarser mesh, else from the pressure `before`, else from that of the symmetric part of the response: in slow
-    /// motion a set would grow by one row of cells at a time.
+    /// motion a set would grow by one row of cells at a time. Where sets come back, the skew-symmetric part grows in steps.
     pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> Found {
         let coarse = self.on_coarser(bodies, before);
         let first = coarse.as_deref().unwrap_or(before);
-        let found = first.iter().any(|&p| p > 0.0).then(|| self.solve(bodies, first)).filter(|found| found.converged);
-        found.unwrap_or_else(|| {
-            let mut symmetric = bodies.symmetric();
-            let first = self.solve(&mut symmetric, before);
-            let found = self.solve(bodies, &first.pressure);
-            bodies.response.pairs += symmetric.transforms();
-            Found { sets: found.sets + first.sets, ..found }
-        })
+        let found = first.iter().any(|&p| p > 0.0).then(|| self.solve(bodies, first));
+        if let Some(found) = found.filter(|found| found.converged) {
+            return found;
+        }
+        let mut solve = |skew: f64, from: &[f64]| {
+            if skew == 1.0 {
+                return self.solve(bodies, from);
+            }
+            let mut less = bodies.with_skew(skew);
+            let found = self.solve(&mut less, from);
+            bodies.response.pairs += less.transforms();
+            found
+        };
+        let (mut last, mut reached, mut step) = (solve(0.0, before), 0.0, 1.0);
+        let mut sets = last.sets;
+        loop {
+            let skew = f64::min(reached + step, 1.0);
+            let found = solve(skew, &last.pressure);
+            sets += found.sets;
+            if found.converged && skew < 1.0 {
+                (last, reached, step) = (found, skew, 2.0 * step);
+            } else if found.converged || step <= LEAST_STEP {
+                return Found { sets, ..found };
+            } else {
+                step *= 0.25;
+            }
+        }
     }
 
     /// The pressure on half as many cells along each axis, spread over the cells of this grid. Its transforms count by their cells.
