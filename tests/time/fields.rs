@@ -5,7 +5,19 @@ use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 use viscocontact::states::{Reach, Sweep};
 
-use crate::common::{Draws, Features, Scene, contact_of, from_environment, maxwell, sphere};
+use crate::common::{Draws, Features, Scene, from_environment};
+
+const RADIUS: f64 = 10.0e-3;
+
+fn rubber() -> Material {
+    Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap())
+}
+
+fn ball() -> ViscoelasticContact {
+    let builder =
+        ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap()).geometry(&Sphere::new(RADIUS).unwrap());
+    builder.material(rubber()).build().unwrap()
+}
 
 /// Ends of given steps: graded after and before each of the knots, and evenly between.
 fn fine_times(scene: &Scene, asked: &[f64], ratio: f64) -> Vec<f64> {
@@ -181,7 +193,7 @@ fn fields_leave_the_steps_as_they_are() {
     let rows = [(0.0, force(0.1)), (1.0, force(0.4)), (1.0, force(0.2)), (2.0, force(0.2)), (2.0, force(0.0))];
     let history = PiecewiseLinear::new(&rows).unwrap();
     let run = |fields: bool| {
-        let mut contact = contact_of(&sphere(), 32, maxwell());
+        let mut contact = ball();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-2), 3.0).sample_at([0.5, 1.0, 2.5]).unwrap();
         run = if fields { run.fields_to(1e-2).unwrap() } else { run };
         let (mut reports, mut sums) = (Vec::new(), Vec::new());
@@ -210,7 +222,7 @@ fn fields_leave_the_steps_as_they_are() {
 fn fields_without_states_are_found_by_graded_steps() {
     let history = FnHistory::new(|t| Load::eccentric_force(0.4, [1.0e-4 * t.sin(), 0.0]));
     let field = |accuracy: Option<f64>| {
-        let mut contact = contact_of(&sphere(), 32, maxwell());
+        let mut contact = ball();
         let stepping = accuracy.map_or(Stepping::fixed(2e-3), Stepping::adaptive);
         let mut run = contact.follow(&history, stepping, 1.5).sample_at([1.5]).unwrap();
         run = if let Some(accuracy) = accuracy { run.fields_to(accuracy).unwrap() } else { run };
@@ -230,18 +242,17 @@ fn fields_without_states_are_found_by_graded_steps() {
 /// A run on states: the pressure in the sphere against the closed form of a growing contact.
 #[test]
 fn fields_of_runs_on_states_are_exact() {
-    let radius = 10.0e-3;
-    let mut contact = StatesContact::new(&ElasticStates::sphere(radius).unwrap(), &maxwell()).unwrap();
+    let mut contact = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &rubber()).unwrap();
     let load = StepLoad::new(Load::force(0.5)).unwrap();
     let run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
     let mut run = run.sample_at([2.0]).unwrap().fields_to(1e-3).unwrap();
     let mut compared = 0;
     while run.next_step().unwrap().is_some() {
         for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-            let (contact, exact) = (sample.contact(), GrowingSphere::step_load(radius, maxwell(), 0.5).unwrap());
+            let (contact, exact) = (sample.contact(), GrowingSphere::step(RADIUS, &rubber(), 0.5).unwrap());
             let edge = (contact.contact_area() / std::f64::consts::PI).sqrt();
             for part in [0.0, 0.3, 0.6, 0.9, 0.98] {
-                let at = |level: f64| Hertz::new(radius, 1.0, level).map_or(0.0, |hertz| hertz.pressure(part * edge));
+                let at = |level: f64| Hertz::new(RADIUS, 1.0, level).map_or(0.0, |hertz| hertz.pressure(part * edge));
                 let (found, exact) = (contact.superposed(at), exact.pressure(part * edge, 2.0));
                 assert!((found / exact - 1.0).abs() < 5e-3, "{part}: {found} {exact}");
                 compared += 1;
