@@ -130,7 +130,7 @@ impl Driven for ViscoelasticContact {
         if beside.serves() {
             match beside.pressure(history, self.time(), after) {
                 Ok(found) => {
-                    (report.elastic_contacts, report.convolutions) = (found.contacts, found.convolutions);
+                    [report.elastic_contacts, report.convolutions] = found.spent;
                     if let Some(contact) = self.with_pressure(&found.pressure) {
                         report.error = Some(found.error);
                         return Ok((Some(contact), report));

@@ -160,8 +160,8 @@ pub struct Beside {
     by_force: bool,
     rest: f64,
     allowed_fall: f64,
-    /// Elastic contacts solved since the last field.
-    spent: usize,
+    /// Elastic contacts solved since the last field, and their convolutions.
+    spent: [usize; 2],
     serves: bool,
 }
 
@@ -170,8 +170,7 @@ pub(crate) struct FoundPressure {
     pub(crate) pressure: Vec<f64>,
     pub(crate) error: f64,
     /// Elastic contacts solved, and convolutions.
-    pub(crate) contacts: usize,
-    pub(crate) convolutions: usize,
+    pub(crate) spent: [usize; 2],
 }
 
 impl Beside {
@@ -217,7 +216,7 @@ impl Beside {
             by_force,
             rest,
             allowed_fall: FALL_OVER_TOLERANCE * tolerance,
-            spent: 0,
+            spent: [0; 2],
             serves: true,
         };
         let mut below: Option<Solved> = None;
@@ -235,9 +234,9 @@ impl Beside {
 
     /// Solves an elastic contact, and adds it to the curve.
     fn solve(&mut self, level: f64) -> Result<Solved> {
-        self.spent += 1;
         let load = Load::Force { normal: level, tilt: self.tilt };
         let (pressure, approach, area, convolutions) = self.elastic.pressed(load)?;
+        self.spent = [self.spent[0] + 1, self.spent[1] + convolutions];
         let depth = if self.by_force { level.powf(2.0 / 3.0) } else { approach - self.rest };
         let at = self.rows.partition_point(|row| row[0] < level);
         let is_new = |row: &[f64; 3]| (row[0] / level - 1.0).abs() > NEAREST && (row[1] > depth) == (row[0] > level);
@@ -245,7 +244,7 @@ impl Beside {
         if fits && depth > 0.0 {
             self.rows.insert(at, [level, depth, area]);
         }
-        Ok(Solved { level, pressure, convolutions })
+        Ok(Solved { level, pressure })
     }
 
     /// Nowhere may the pressure fall while the load grows.
@@ -319,8 +318,7 @@ impl Beside {
             let by_half = off / pressure.iter().sum::<f64>() / OF_HALF;
             error = by_half.clamp(error / MOST_OVERSTATED, error);
         }
-        let convolutions = solved.iter().map(|solved| solved.convolutions).sum();
-        Ok(FoundPressure { pressure, error, contacts: std::mem::take(&mut self.spent), convolutions })
+        Ok(FoundPressure { pressure, error, spent: std::mem::take(&mut self.spent) })
     }
 
     /// Σ w (p_e(l_i) − p_e(l_i−1)) = Σ (w_i − w_i+1) p_e(l_i).
@@ -379,5 +377,4 @@ fn undisturbed(
 struct Solved {
     level: f64,
     pressure: Pressed,
-    convolutions: usize,
 }

@@ -49,7 +49,7 @@ impl StatesContact {
     /// [`Run::fields_to`](crate::run::Run::fields_to).
     ///
     /// # Errors
-    /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
+    /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given as a table; as
     /// [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
     pub fn fields(&self, accuracy: f64) -> Result<StatesFields> {
         within("accuracy of the fields", accuracy, (0.0..=0.1).contains(&accuracy), "in [0, 0.1]")?;

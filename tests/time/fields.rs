@@ -5,7 +5,7 @@ use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 use viscocontact::states::{Reach, Sweep};
 
-use crate::common::{Draws, Features, Scene, from_environment};
+use crate::common::{Draws, Features, Scene, figures, from_environment};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -260,4 +260,49 @@ fn fields_of_runs_on_states_are_exact() {
         }
     }
     assert_eq!(compared, 5);
+}
+
+/// Convolutions of a field at the end over the convolutions of a run for the motions alone, on 64² cells.
+#[test]
+fn a_field_costs_little_over_its_run() {
+    let history = Ramp::new(Load::force(0.05), Load::force(0.5), 0.5).unwrap();
+    let fractional = FractionalZener::relaxing(1.0e6, 1.0e5, 0.1, 0.4).unwrap();
+    let bodies = [
+        ("Maxwell", rubber()),
+        ("Zener", Material::incompressible(Zener::relaxing(1.0e6, 0.1e6, 0.5).unwrap())),
+        (
+            "three relaxation times",
+            Material::incompressible(
+                GeneralizedMaxwell::new(0.1e6, &[(0.4e6, 0.01), (0.3e6, 0.3), (0.2e6, 10.0)]).unwrap(),
+            ),
+        ),
+        ("fractional Zener", Material::incompressible(fractional).fitted(1e-6..=3.0, 1e-3).unwrap()),
+        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::with_time(0.5e6, 1.0).unwrap())),
+    ];
+    let mut table = String::from("| body | 3e-2 | 1e-2 | 3e-3 | 1e-3 |\n|---|---|---|---|---|");
+    for (name, material) in bodies {
+        let jumps = material.contact_compliance(0.0) > 0.0;
+        let slow = Ramp::new(Load::force(0.0), Load::force(0.5), 0.5).unwrap();
+        let history = if jumps { &history } else { &slow };
+        let mut row = Vec::new();
+        for accuracy in [3e-2, 1e-2, 3e-3, 1e-3] {
+            let grid = Grid::square(64, 5.0e-3).unwrap();
+            let builder = ViscoelasticContact::builder(grid).geometry(&Sphere::new(RADIUS).unwrap());
+            let mut contact = builder.material(material.clone()).build().unwrap();
+            let run = contact.follow(history, Stepping::adaptive(accuracy), 2.0);
+            let mut run = run.sample_at([2.0]).unwrap().fields_to(accuracy).unwrap();
+            let (mut of_run, mut of_field) = (0, None);
+            while let Some(report) = run.next_step().unwrap() {
+                of_run += report.convolutions;
+                let last = run.samples().last().unwrap().unwrap();
+                of_field = last.field().map(|field| field.convolutions).or(of_field);
+            }
+            let cost = of_field.unwrap() as f64 / of_run as f64;
+            assert!(cost < 5.0, "{name} {accuracy}: {cost}");
+            row.push(format!("{cost:.1}"));
+        }
+        table += &format!("\n| {name} | {} |", row.join(" | "));
+    }
+    println!("{table}");
+    figures::figure("what a field costs", &table).unwrap();
 }
