@@ -166,7 +166,7 @@ mod sum;
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
 pub use error::{
-    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, TextError, Trend, UserError,
+    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, TextError, Trend, UserError,
 };
 pub use grid::Grid;
 pub use input::{Delimiter, TextFormat};
