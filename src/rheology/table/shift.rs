@@ -16,8 +16,7 @@ const TRIED: usize = 400;
 const LEAST_OVERLAP: f64 = 0.1;
 /// Relative scatter below which values are as good as exact: the line between two rows is no better.
 const LEAST_SCATTER: f64 = 2e-3;
-/// Mean of ln(1 + z²): 0.53 of a normal deviate, and more with an outlier in thirty rows, of which each spoils three differences.
-/// A mean below what is usual would make the isotherms flee from their overlap, where their outliers are compared.
+/// Least mean of ln(1 + z²): 0.53 of a normal deviate, and more with an outlier in thirty rows, of which each spoils three differences.
 const EXPECTED: f64 = 0.75;
 /// Price of a decade of the union.
 const PER_DECADE: f64 = 4.0;
@@ -60,7 +59,8 @@ struct Pair<'a> {
     isotherms: [&'a Isotherm; 2],
     /// Of each isotherm and column, at each row.
     slopes: [Vec<Vec<[f64; 2]>>; 2],
-    columns: usize,
+    /// What a difference of each column costs as a rule. Were it less, isotherms would flee from an overlap that has outliers.
+    usual: Vec<f64>,
     /// Whether values may differ by a factor, the same in all columns.
     is_vertical: bool,
 }
@@ -69,10 +69,16 @@ struct Pair<'a> {
 pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: bool) -> Result<Shift> {
     let (isotherms, columns) = ([colder, warmer], colder.rows[0].values.len());
     let slopes = isotherms.map(|isotherm| (0..columns).map(|column| slopes(isotherm, column)).collect());
-    let pair = Pair { isotherms, slopes, columns, is_vertical };
     let temperatures = [colder.temperature(), warmer.temperature()];
-    let all: Vec<usize> = (0..pair.columns).collect();
-    let scatter: Vec<f64> = all.iter().map(|&column| pair.scatter(column)).collect();
+    let all: Vec<usize> = (0..columns).collect();
+    let scattered = |&column: &usize| {
+        let offs = isotherms.map(|isotherm| off_lines(isotherm, column));
+        let scatter = offs.iter().cloned().map(deviation).fold(LEAST_SCATTER, f64::max);
+        let costs: Vec<f64> = offs.iter().flatten().map(|off| (off / scatter).powi(2).ln_1p()).collect();
+        (scatter, (costs.iter().sum::<f64>() / costs.len().max(1) as f64).max(EXPECTED))
+    };
+    let (scatter, usual): (Vec<f64>, Vec<f64>) = all.iter().map(scattered).unzip();
+    let pair = Pair { isotherms, slopes, usual, is_vertical };
     let is_constant = |isotherm: &Isotherm| {
         let logs = || isotherm.rows.iter().map(|row| row.values[0].ln());
         logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min) < 1e-6
@@ -148,11 +154,6 @@ impl Pair<'_> {
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// The scatter of a column about the lines between the neighbours of each row.
-    fn scatter(&self, column: usize) -> f64 {
-        self.isotherms.iter().map(|isotherm| scatter(isotherm, column)).fold(LEAST_SCATTER, f64::max)
-    }
-
     /// The scatter of the differences of a column at a shift.
     fn residual(&self, shift: f64, column: usize, scatter: f64) -> f64 {
         let (mut values, factor) = (Vec::new(), self.factor(shift, &[column]));
@@ -164,7 +165,7 @@ impl Pair<'_> {
         let (mut sum, factor) = (0.0, self.factor(shift, columns));
         self.differences(shift, columns, |found| {
             let z = (found.value - factor) / scatter[found.column];
-            sum += (z * z / found.variance).ln_1p() - EXPECTED;
+            sum += (z * z / found.variance).ln_1p() - self.usual[found.column];
         });
         sum
     }
@@ -202,16 +203,17 @@ impl Pair<'_> {
     }
 }
 
-/// The scatter of a column about the lines between the neighbours of each row.
-fn scatter(isotherm: &Isotherm, column: usize) -> f64 {
-    let points = isotherm.rows.iter().map(|row| (isotherm.log_time(row), row.values[column].ln()));
-    let points: Vec<(f64, f64)> = points.collect();
+/// The distance of each inner row from the line between its neighbours, over its standard deviation for a scatter of one.
+fn off_lines(isotherm: &Isotherm, column: usize) -> Vec<f64> {
+    let points: Vec<(f64, f64)> =
+        isotherm.rows.iter().map(|row| (isotherm.log_time(row), row.values[column].ln())).collect();
     let off = |own: &[(f64, f64)]| {
-        let [a, point, b] = [own[0], own[1], own[2]];
-        let part = (point.0 - a.0) / (b.0 - a.0);
-        (point.1 - a.1 - part * (b.1 - a.1)).abs() / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
+        let [before, point, after] = [own[0], own[1], own[2]];
+        let part = (point.0 - before.0) / (after.0 - before.0);
+        let line = before.1 + part * (after.1 - before.1);
+        (point.1 - line).abs() / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
     };
-    deviation(points.windows(3).map(off).collect())
+    points.windows(3).map(off).collect()
 }
 
 /// The row after ln t, and the part of the way to it from the row before.

@@ -117,8 +117,10 @@ fn damaged(layout: &Layout, draw: &mut Draws) -> Option<Damaged> {
         }
         1 => {
             let without = characters[at];
-            // rows that end in a delimiter become one longer row, another matrix
-            let joins = at > 0 && "\n\r".contains(without) && "\t;,".contains(characters[at - 1]);
+            // rows that end in a delimiter become one longer row, another matrix; one after a remark becomes part of it
+            let before: String = characters[..at].iter().collect();
+            let remark = before.rsplit(end).next().is_some_and(|line| line.starts_with('#'));
+            let joins = "\n\r".contains(without) && (remark || before.ends_with(['\t', ';', ',']));
             if !" ,;\t\n\r\"".contains(without) || layout.marks.contains(without) || joins {
                 return None;
             }
