@@ -14,6 +14,7 @@ mod creep;
 mod gmres;
 mod layer_on_base;
 mod operator;
+mod search;
 mod sweep;
 
 pub use crate::error::SlidingError;
@@ -90,7 +91,7 @@ pub struct SlidingReport {
     pub residual: f64,
     /// Sets of cells that were tried.
     pub sets: usize,
-    /// Pairs of transforms.
+    /// Pairs of transforms; those on a coarser mesh, where the search begins, count by their cells.
     pub transforms: usize,
 }
 
@@ -324,18 +325,10 @@ impl SteadySliding {
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
         }
         let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
-        let warm = (self.contact.contact_cells() > 0).then(|| problem.solve(&mut bodies, self.contact.pressure()));
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
-        } else if let Some(warm) = warm.filter(|found| found.converged) {
-            warm
         } else {
-            // the symmetric part of the response gives a first contact: in slow motion a set would grow by one row of cells at a time
-            let mut symmetric = bodies.symmetric();
-            let first = problem.solve(&mut symmetric, self.contact.pressure());
-            let found = problem.solve(&mut bodies, &first.pressure);
-            bodies.response.pairs += symmetric.transforms();
-            Found { sets: found.sets + first.sets, ..found }
+            problem.search(&mut bodies, self.contact.pressure())
         };
         let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
         if !converged {
