@@ -102,7 +102,7 @@ impl MasterCurve {
     /// Shifts by a known `law`, to its reference temperature.
     ///
     /// ```
-    /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, TimeTemperature};
+    /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology, TimeTemperature};
     ///
     /// // shift factors as another program found them
     /// let law = TimeTemperature::table(&[(291.15, 1.0), (298.15, 10f64.powf(-1.5))], 291.15)?;

@@ -137,9 +137,9 @@ impl Measurements {
     /// ```
     /// use viscocontact::rheology::{FitWarning, Measurements};
     ///
-    /// let creep = [(0.1, 1.0e-9), (1.0, 1.3e-9), (10.0, 1.1e-9), (100.0, 1.6e-9), (1000.0, 2.1e-9)];
+    /// let creep = [(0.1, 1.0e-9), (1.0, 1.4e-9), (10.0, 1.1e-9), (100.0, 1.6e-9), (1000.0, 2.1e-9)];
     /// let measured = Measurements::creep(&creep)?;
-    /// assert!(measured.fit().is_err()); // 1.1 after 1.3: more than five rows say of their scatter
+    /// assert!(measured.fit().is_err()); // 1.1 after 1.4 is more scatter than is judged from few rows
     /// let report = measured.with_scatter(0.08)?.fit()?.report().clone();
     /// println!("{report}");
     /// match report.warning() {
