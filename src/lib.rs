@@ -79,8 +79,8 @@
 //!
 //! # Cost
 //!
-//! A convolution of N cells is a forward and an inverse real transform of the zero-padded grid, O(N log N). A step of the default solver takes
-//! <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents in the scene of the paper. Half or a quarter of the cells is computed where gap
+//! A convolution of N cells is a forward and an inverse real transform of the zero-padded grid, O(N log N). A step of the default solver
+//! takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents in the scene of the paper. Half or a quarter of the cells is computed where gap
 //! and load are even ([`contact::Settings::symmetry`]), and none that contact cannot reach ([`contact::Settings::window`]).
 //!
 //! The history costs no transform: one field per relaxation time, however many steps there were. A rheology without an exact exponential
@@ -166,7 +166,7 @@ mod sum;
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
 pub use error::{
-    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, TextError, Trend, UserError,
+    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, TextError, Trend, UserError,
 };
 pub use grid::Grid;
 pub use input::{Delimiter, TextFormat};

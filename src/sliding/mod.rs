@@ -26,7 +26,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 
 use crate::contact::{Builder, Frame, ViscoelasticContact};
-use crate::error::{Error, Result, StepError, finite};
+use crate::error::{Error, Result, Special, StepError, finite};
 use crate::kernel::HalfSpace;
 use crate::load::{Load, Tilt};
 use crate::memory;
@@ -119,7 +119,7 @@ impl fmt::Display for SlidingReport {
 
 /// A refusal.
 fn not_covered<T>(what: &'static str, cure: &'static str) -> Result<T> {
-    Err(SlidingError::NotCovered { what, cure }.into())
+    Err(Error::not_covered(Special::SteadyMotion, what, cure))
 }
 
 /// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
