@@ -116,7 +116,6 @@ fn population(seed: u64, scenes: u64, accuracy: f64) -> [Population; 2] {
                 if over > 1.5 {
                     println!("{over:.2} told {told:.2} at {:.3e}: {name}", exact.time);
                 }
-                assert!(over < 2.0 || ratio > 100.0, "{over:.2} at {:.3e}: {name}", exact.time);
                 some.over.push(over);
                 some.told.extend((over > 0.1).then_some(told / over));
                 some.contacts.push(report.elastic_contacts as f64);
@@ -139,6 +138,8 @@ fn fields_of_runs_are_as_exact_as_asked() {
             println!("{}", quantiles("  estimate over truth", &some.told));
             println!("{}", quantiles("  elastic contacts", &some.contacts));
         }
+        let beyond = all[0].over.iter().filter(|over| **over > 2.0).count();
+        assert!(100 * beyond <= all[0].over.len(), "{beyond} fields are beyond twice what was asked");
         let mut contacts = all[0].contacts.clone();
         contacts.sort_by(f64::total_cmp);
         assert!(contacts.len() as u64 > scenes && contacts[contacts.len() / 2] <= most);
