@@ -42,12 +42,21 @@ pub struct FieldRequest<'a> {
     pub times: &'a [f64],
 }
 
-/// What finds fields, the times at which steps end for them, and whether the contacts at the starts of the last steps are kept.
+/// Times at which steps end for fields, the tolerance of adaptive steps, and whether the contacts at the starts of the last steps are kept.
 #[derive(Debug)]
-pub struct Prepared<F> {
-    pub fields: F,
+pub struct Prepared {
     pub stops: Vec<f64>,
+    pub tolerance: f64,
     pub keeps_starts: bool,
+}
+
+/// Finds fields to an accuracy.
+pub trait FieldFinder<C>: Debug + Send + Sync {
+    /// Looks at the run before its first step.
+    fn prepare(&mut self, contact: &C, request: &FieldRequest<'_>) -> Result<Prepared>;
+
+    /// A contact of the last step with its field to the accuracy, where it does not have it itself.
+    fn with_field(&self, contact: &C, moment: &Moment<'_, C>) -> Result<(Option<C>, FieldReport)>;
 }
 
 /// A time of a run at which a field is asked for.
@@ -96,14 +105,8 @@ pub trait Driven: Contact + Debug {
     /// The contact at a time within the last step, under the load of the history, and the report of the step to that time.
     fn within(&self, control: &Self::Control, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)>;
 
-    /// What finds fields to an accuracy.
-    type Fields: Debug;
-
-    /// Prepares fields to an accuracy at the times that `asked` gives, from the one before: also the times at which steps end for them.
-    fn fields(&self, control: &mut Self::Control, request: &FieldRequest<'_>) -> Result<Prepared<Self::Fields>>;
-
-    /// This contact, at the end of a step or within, with its field to the accuracy, where it does not have it itself.
-    fn with_field(&self, fields: &Self::Fields, moment: &Moment<'_, Self>) -> Result<(Option<Self>, FieldReport)>;
+    /// Lowers the tolerance of the adaptive steps.
+    fn tighten(control: &mut Self::Control, tolerance: f64);
 
     /// Number of adaptive steps rejected for their error.
     fn rejected(control: &Self::Control) -> u64;

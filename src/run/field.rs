@@ -3,15 +3,18 @@
 use std::collections::VecDeque;
 use std::sync::Mutex;
 
+use crate::run::driven::FieldFinder;
+
 /// Steps end for so many fields at most.
-pub(super) const MOST_FIELDS: usize = 10_000;
+pub(crate) const MOST_FIELDS: usize = 10_000;
 
 /// The fields that a run is asked for.
 #[derive(Debug)]
-pub(super) struct RunFields<C, F> {
+pub(super) struct RunFields<C> {
     pub(super) accuracy: f64,
-    /// Once the run has begun.
-    pub(super) found: Option<F>,
+    pub(super) finder: Box<dyn FieldFinder<C>>,
+    /// Whether the run has begun.
+    pub(super) is_prepared: bool,
     /// Ends of the steps so far.
     pub(super) ends: Vec<f64>,
     pub(super) keeps_starts: bool,

@@ -86,7 +86,7 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
-    pub(super) fields: Option<RunFields<C, C::Fields>>,
+    pub(super) fields: Option<RunFields<C>>,
     #[cfg(feature = "checkpoint")]
     pub(super) autosave: Option<Autosave>,
 }

@@ -15,7 +15,7 @@ pub(crate) mod driven;
 mod error_budget;
 mod event;
 mod events;
-mod field;
+pub(crate) mod field;
 mod fields;
 mod follow;
 mod halves;

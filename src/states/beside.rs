@@ -51,7 +51,7 @@ const LAST_STEP: f64 = 1e-5;
 
 /// Repeats a run on levels.
 #[derive(Debug, Clone)]
-pub struct Repeated {
+pub(super) struct Repeated {
     /// The contact at the start of the run.
     origin: StatesContact,
     accuracy: f64,
@@ -151,7 +151,7 @@ impl Found {
 
 /// The fields of a run in space.
 #[derive(Debug)]
-pub struct Beside {
+pub(super) struct Beside {
     repeated: Repeated,
     elastic: ElasticContact,
     tilt: [Tilt; 2],

@@ -51,13 +51,13 @@ mod outside;
 mod pressed;
 mod reach;
 mod run;
+mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
 mod sweep;
 mod twin;
 
 pub use crate::error::StatesError;
-pub(crate) use beside::Beside;
 pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};

@@ -8,10 +8,9 @@ use crate::contact::StepReport;
 use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
-use crate::run::driven::{Course, Driven, FieldReport, FieldRequest, Moment, Prepared};
+use crate::run::driven::{Course, Driven};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
-use crate::states::beside::Repeated;
 use crate::states::contact::StatesContact;
 use crate::states::control::{Record, StepControl, load_at};
 #[cfg(feature = "checkpoint")]
@@ -135,17 +134,8 @@ impl Driven for StatesContact {
         Ok((contact, report))
     }
 
-    type Fields = Repeated;
-
-    fn fields(&self, _: &mut StatesControl, request: &FieldRequest<'_>) -> Result<Prepared<Repeated>> {
-        let (fields, _) = Repeated::new(self.clone(), request.history, request.until, request.accuracy)?;
-        Ok(Prepared { fields, stops: Vec::new(), keeps_starts: false })
-    }
-
-    fn with_field(&self, fields: &Repeated, moment: &Moment<'_, Self>) -> Result<(Option<Self>, FieldReport)> {
-        let found = fields.at(moment.history, self.time(), moment.after)?;
-        Ok((Some(found.contact), FieldReport { error: Some(0.0), ..FieldReport::default() }))
-    }
+    // steps on levels are free: fields have a run of their own
+    fn tighten(_: &mut StatesControl, _: f64) {}
 
     fn rejected(control: &StatesControl) -> u64 {
         control.steps.record.rejected
