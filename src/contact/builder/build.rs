@@ -38,7 +38,7 @@ impl Builder {
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
     /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     ///
-    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`]); a scene that
+    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`](crate::parallel::RanksError::Failed)); a scene that
     /// cannot be shared out is refused ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
