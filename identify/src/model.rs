@@ -84,9 +84,9 @@ impl Scale {
 
 /// A sum of exponentials: E(t) = Σ Ek exp(−t ratek). A rate of 0 is the equilibrium modulus.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Prony {
-    pub(crate) moduli: Vec<f64>,
-    pub(crate) rates: Vec<f64>,
+pub(crate) struct Prony<T = f64> {
+    pub(crate) moduli: Vec<T>,
+    pub(crate) rates: Vec<T>,
 }
 
 impl Prony {

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::error::Result;
 use crate::experiment::Experiment;
-use crate::forward::{Drive, Forward, Sample};
+use crate::forward::{Drive, Forward, Real, Response, Roots, Sample, Term};
 use crate::model::{Model, Prony};
 use crate::noise::Whitening;
 use crate::parameters::{Kind, Parameter};
@@ -42,29 +42,20 @@ impl<'a> Part<'a> {
         self.data.len()
     }
 
-    /// Force of the contact, and where the tip is, at each sample. `record` is given the terms of each force, as in [`Forward::respond`].
-    pub(crate) fn respond(
+    /// Force of the contact, and where the tip is, at each sample. `record` is given each with the terms of its force.
+    pub(crate) fn respond<T: Real>(
         &self,
         curve: usize,
-        prony: &Prony,
-        contact_point: f64,
-        stiffness: f64,
-        mut record: impl FnMut(Sample, Option<&[f64]>),
-    ) -> Result<Vec<Sample>> {
+        prony: &Prony<T>,
+        contact_point: T,
+        stiffness: T,
+        roots: &mut Roots,
+        record: impl FnMut(Response<T>, &[Term<T>]),
+    ) -> Result<()> {
         let protocol = &self.experiment.protocol;
-        let drive: Vec<f64> = protocol.drive().iter().map(|z| z - contact_point).collect();
-        let mut samples = Vec::with_capacity(drive.len());
-        self.forward.respond(
-            prony,
-            Drive { times: protocol.times(), drive: &drive },
-            1.0 / stiffness,
-            curve,
-            |s, terms| {
-                samples.push(s);
-                record(s, terms);
-            },
-        )?;
-        Ok(samples)
+        let drive: Vec<T> = protocol.drive().iter().map(|&z| T::from(z) - contact_point).collect();
+        let drive = Drive { times: protocol.times(), drive: &drive };
+        self.forward.respond(prony, drive, T::from(1.0) / stiffness, curve, roots, record)
     }
 }
 
@@ -137,7 +128,11 @@ impl<'a> Problem<'a> {
     /// Response of one curve.
     pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
         let contact_point = self.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
-        self.parts[curve].respond(curve, prony, contact_point, self.stiffness(curve, values), |_, _| {})
+        let mut samples = Vec::with_capacity(self.parts[curve].len());
+        let push = |response: Response<f64>, _: &[Term<f64>]| samples.push(response.into());
+        let stiffness = self.stiffness(curve, values);
+        self.parts[curve].respond(curve, prony, contact_point, stiffness, &mut Roots::default(), push)?;
+        Ok(samples)
     }
 
     /// The force that a curve would measure, from the force of its contact.
