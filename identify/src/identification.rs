@@ -8,7 +8,7 @@ use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
 use crate::noise::{Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Nuisance, Size, parameters};
-use crate::problem::{DIFFERENCE, Part, Problem};
+use crate::problem::{Part, Problem};
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
@@ -140,8 +140,8 @@ impl Identification {
         positive("standard deviation of the noise", sigma)?;
         let problem = self.problem(experiments.iter().map(|experiment| (experiment, None)))?;
         let values = self.given(&problem, values)?;
-        let jacobian = problem.jacobian(&problem.coordinates(&values), DIFFERENCE)?;
-        Bounds::new(&problem, &jacobian, sigma)
+        let jacobian = problem.jacobian(&problem.coordinates(&values))?;
+        Bounds::new(&problem, &values, &jacobian, sigma)
     }
 
     /// The problem of fitted curves with the whitening of the fit.
@@ -180,13 +180,7 @@ impl Identification {
 
     /// Minimum from a start.
     pub(crate) fn minimum(&self, problem: &Problem<'_>, coordinates: Vec<f64>) -> Result<Minimum> {
-        minimise(
-            coordinates,
-            problem.rounding(),
-            DIFFERENCE,
-            |x| problem.residuals(x),
-            |x, difference| problem.jacobian(x, difference),
-        )
+        minimise(coordinates, problem.rounding(), |x| problem.residuals(x), |x| problem.jacobian(x))
     }
 
     /// The problem of some curves, which may have no data yet.

@@ -56,6 +56,7 @@ mod plot;
 mod problem;
 mod protocol;
 mod results;
+mod series;
 mod spectrum;
 mod start;
 mod statistics;

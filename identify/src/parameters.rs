@@ -61,6 +61,22 @@ pub(crate) struct Parameter {
 }
 
 impl Parameter {
+    /// The parameters of a model, of which some are set: value, and whether it is fixed.
+    pub(crate) fn of_material(model: Model, chosen: &[(String, f64, bool)]) -> Vec<Parameter> {
+        let parameter = |(index, name): (usize, String)| {
+            let set = chosen.iter().rev().find(|(set, ..)| *set == name);
+            Parameter {
+                kind: Kind::Material(index),
+                scale: Model::scale(&name),
+                unit: 1.0,
+                is_free: set.is_none_or(|(_, _, fixed)| !fixed),
+                given: set.map(|(_, value, _)| *value),
+                name,
+            }
+        };
+        model.parameters().into_iter().enumerate().map(parameter).collect()
+    }
+
     /// The coordinate of a search.
     pub(crate) fn coordinate(&self, value: f64) -> f64 {
         self.scale.forward(value) / self.unit
@@ -104,21 +120,7 @@ pub(crate) fn parameters(model: Model, chosen: &Chosen, sizes: &[Size]) -> Resul
     if let Some((name, ..)) = chosen.material.iter().find(|(name, ..)| !names.contains(name)) {
         return Err(Error::UnknownParameter { name: name.clone(), names: names.join(", ") });
     }
-    let mut all: Vec<Parameter> = names
-        .iter()
-        .enumerate()
-        .map(|(index, name)| {
-            let set = chosen.material.iter().rev().find(|(set, ..)| set == name);
-            Parameter {
-                name: name.clone(),
-                kind: Kind::Material(index),
-                scale: Model::scale(name),
-                unit: 1.0,
-                is_free: set.is_none_or(|(_, _, fixed)| !fixed),
-                given: set.map(|(_, value, _)| *value),
-            }
-        })
-        .collect();
+    let mut all = Parameter::of_material(model, &chosen.material);
     let mut add = |name: String, kind: Kind, scale: Scale, unit: f64, nuisance: Nuisance| {
         let (is_free, given) = match nuisance {
             Nuisance::Fixed(value) => (false, Some(value)),

@@ -4,13 +4,14 @@ use faer::Mat;
 
 use crate::error::Result;
 use crate::experiment::Experiment;
-use crate::forward::{Drive, Forward, Real, Response, Roots, Sample, Term};
-use crate::model::{Model, Prony};
+use crate::forward::{Drive, Dual, Forward, LANES, Real, Response, Roots, Sample, Term};
+use crate::model::Model;
 use crate::noise::Whitening;
 use crate::parameters::{Kind, Parameter};
+use crate::series::Prony;
 
-/// Step of central differences in coordinates of order 1: the error is its square.
-pub(crate) const DIFFERENCE: f64 = 3e-5;
+/// Least share of a modulus that relaxes.
+const LEAST_SHARE: f64 = 1e-12;
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 
@@ -77,6 +78,25 @@ impl<'a> Problem<'a> {
         Problem { model, parts, parameters, window: [shortest, longest] }
     }
 
+    /// The same problem with a simpler model; `None` where parameters of the material are given.
+    pub(crate) fn with_model(&self, model: Model) -> Option<Problem<'a>> {
+        let is_material = |parameter: &&Parameter| matches!(parameter.kind, Kind::Material(_));
+        if self.parameters.iter().filter(is_material).any(|parameter| parameter.given.is_some()) {
+            return None;
+        }
+        let others = self.parameters.iter().filter(|parameter| !is_material(parameter)).cloned();
+        let parameters = Parameter::of_material(model, &[]).into_iter().chain(others).collect();
+        Some(Problem { model, parameters, ..self.clone() })
+    }
+
+    /// Values of all parameters from those of a contained model.
+    pub(crate) fn of_contained(&self, inner: Model, values: &[f64]) -> Vec<f64> {
+        let (material, others) = values.split_at(inner.parameters().len());
+        let mut all = self.model.of_contained(inner, material, self.window[1]);
+        all.extend_from_slice(others);
+        all
+    }
+
     /// Number of samples of all curves.
     pub(crate) fn len(&self) -> usize {
         self.parts.iter().map(Part::len).sum()
@@ -92,20 +112,61 @@ impl<'a> Problem<'a> {
         self.parameters.iter().filter(|parameter| parameter.is_free)
     }
 
-    /// Values of all parameters from the coordinates of the free ones.
+    /// Whether E0 and Einf are parameters of the material.
+    fn has_equilibrium(&self) -> bool {
+        self.parameters.len() > 1 && self.parameters[1].name == "Einf"
+    }
+
+    /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln(E0 − Einf); that of Einf below a fixed E0 is
+    /// ln(Einf/(E0 − Einf)): every coordinate is allowed.
     pub(crate) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut free = coordinates.iter();
         let value = |parameter: &Parameter| match parameter.is_free {
             true => free.next().map_or(f64::NAN, |&x| parameter.value(x)),
             false => parameter.given.unwrap_or(f64::NAN),
         };
-        self.parameters.iter().map(value).collect()
+        let mut values: Vec<f64> = self.parameters.iter().map(value).collect();
+        if self.has_equilibrium() {
+            if self.parameters[0].is_free {
+                values[0] += values[1];
+            } else if self.parameters[1].is_free {
+                values[1] = values[0] / (1.0 + 1.0 / values[1]);
+            }
+        }
+        values
     }
 
     /// Coordinates of the free parameters of given values.
     pub(crate) fn coordinates(&self, values: &[f64]) -> Vec<f64> {
-        let pairs = self.parameters.iter().zip(values).filter(|(parameter, _)| parameter.is_free);
-        pairs.map(|(parameter, &value)| parameter.coordinate(value)).collect()
+        let mut own = values.to_vec();
+        if self.has_equilibrium() {
+            let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
+            if self.parameters[0].is_free {
+                own[0] = relaxing;
+            } else if self.parameters[1].is_free {
+                own[1] = values[1] / relaxing;
+            }
+        }
+        let pairs = self.parameters.iter().zip(own).filter(|(parameter, _)| parameter.is_free);
+        pairs.map(|(parameter, value)| parameter.coordinate(value)).collect()
+    }
+
+    /// Derivatives of the free parameters, on their scales, by the coordinates.
+    pub(crate) fn scales(&self, values: &[f64]) -> Mat<f64> {
+        let free: Vec<&Parameter> = self.free().collect();
+        let mut scales = Mat::from_fn(free.len(), free.len(), |i, j| if i == j { free[i].unit } else { 0.0 });
+        if self.has_equilibrium() {
+            let share = values[1] / values[0];
+            if self.parameters[0].is_free {
+                scales[(0, 0)] = 1.0 - share;
+                if self.parameters[1].is_free {
+                    scales[(0, 1)] = share;
+                }
+            } else if self.parameters[1].is_free {
+                scales[(0, 0)] = 1.0 - share;
+            }
+        }
+        scales
     }
 
     /// The exponentials of the material of given values.
@@ -176,25 +237,58 @@ impl<'a> Problem<'a> {
         Ok(all)
     }
 
-    /// Derivatives of the residuals by the free coordinates: central differences, or exact where the force is linear.
-    pub(crate) fn jacobian(&self, coordinates: &[f64], difference: f64) -> Result<Mat<f64>> {
+    /// Derivatives of the residuals by the free coordinates.
+    pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
+        let values = self.values(coordinates);
+        let material = self.free().filter(|parameter| matches!(parameter.kind, Kind::Material(_))).count();
+        let count = self.model.parameters().len();
+        let moved = |column: usize, width: f64| {
+            let mut moved = coordinates.to_vec();
+            moved[column] += width;
+            self.values(&moved)[..count].to_vec()
+        };
+        let (prony, slopes) = self.model.derived(&values[..count], self.window, material, moved)?;
         let mut jacobian = Mat::zeros(self.len(), coordinates.len());
-        for (column, parameter) in self.free().enumerate() {
-            let mut row = 0;
-            for (curve, part) in self.parts.iter().enumerate() {
-                if parameter.kind.curve().is_none_or(|only| only == curve) {
-                    let mut slopes = if parameter.kind.is_linear() {
-                        self.linear_slopes(curve, parameter)
-                    } else {
-                        self.differences(curve, coordinates, column, difference)?
-                    };
-                    part.whitening.apply(&mut slopes);
-                    for (k, slope) in slopes.into_iter().enumerate() {
-                        jacobian[(row + k, column)] = slope;
-                    }
-                }
-                row += part.len();
+        let (mut roots, mut row) = (Roots::default(), 0);
+        for (curve, part) in self.parts.iter().enumerate() {
+            let acts = |parameter: &Parameter| parameter.kind.curve().is_none_or(|only| only == curve);
+            let columns = || self.free().enumerate().filter(|(_, parameter)| acts(parameter));
+            let mut put = |column: usize, mut slopes: Vec<f64>| {
+                part.whitening.apply(&mut slopes);
+                slopes.into_iter().enumerate().for_each(|(k, slope)| jacobian[(row + k, column)] = slope);
+            };
+            for (column, parameter) in columns().filter(|(_, parameter)| parameter.kind.is_linear()) {
+                put(column, self.linear_slopes(curve, parameter));
             }
+            let curved: Vec<_> = columns().filter(|(_, parameter)| !parameter.kind.is_linear()).collect();
+            for lanes in curved.chunks(LANES) {
+                let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
+                    Dual::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
+                };
+                let of = |values: &[f64], slope: &dyn Fn(&Prony) -> f64, at: usize| {
+                    dual(values[at], &|column, _| slopes.get(column).map_or(0.0, slope))
+                };
+                let terms = 0..prony.moduli.len();
+                let derived = Prony {
+                    moduli: terms.clone().map(|at| of(&prony.moduli, &|by| by.moduli[at], at)).collect(),
+                    rates: terms.map(|at| of(&prony.rates, &|by| by.rates[at], at)).collect(),
+                };
+                let contact_point = self.value_of(&values, Kind::ContactPoint(curve)).unwrap_or_default();
+                let stiffness = self.stiffness(curve, &values);
+                let shift = dual(contact_point, &|_, parameter| match parameter.kind {
+                    Kind::ContactPoint(_) => parameter.unit,
+                    _ => 0.0,
+                });
+                let spring =
+                    dual(stiffness, &|_, parameter| if parameter.kind == Kind::Stiffness { stiffness } else { 0.0 });
+                part.respond(curve, &prony, contact_point, stiffness, &mut roots, |_, _| {})?;
+                let mut forces = Vec::with_capacity(part.len());
+                part.respond(curve, &derived, shift, spring, &mut roots, |response, _| forces.push(response.force))?;
+                for (lane, &(column, _)) in lanes.iter().enumerate() {
+                    put(column, forces.iter().map(|force| force.slope(lane)).collect());
+                }
+            }
+            row += part.len();
         }
         Ok(jacobian)
     }
@@ -209,23 +303,5 @@ impl<'a> Problem<'a> {
             _ => part.speed[k],
         };
         (0..part.len()).map(|k| parameter.unit * of(k)).collect()
-    }
-
-    /// Derivative by central differences; one-sided at the limits of a model.
-    fn differences(&self, curve: usize, coordinates: &[f64], column: usize, width: f64) -> Result<Vec<f64>> {
-        let at = |shift: f64| {
-            let mut moved = coordinates.to_vec();
-            moved[column] += shift;
-            let values = self.values(&moved);
-            self.prony(&values).and_then(|prony| self.force(curve, &values, &prony))
-        };
-        let (up, down) = (at(width), at(-width));
-        let (upper, lower, width) = match (up, down) {
-            (Ok(up), Ok(down)) => (up, down, 2.0 * width),
-            (Ok(up), Err(_)) => (up, at(0.0)?, width),
-            (Err(_), Ok(down)) => (at(0.0)?, down, width),
-            (Err(error), Err(_)) => return Err(error),
-        };
-        Ok(upper.iter().zip(&lower).map(|(up, down)| (up - down) / width).collect())
     }
 }

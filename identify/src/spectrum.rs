@@ -7,9 +7,9 @@ use viscocontact::numeric::non_negative_least_squares;
 use crate::error::{Error, Result};
 use crate::fit::Fit;
 use crate::forward::{Response, Roots, Term};
-use crate::model::Prony;
 use crate::parameters::Kind;
 use crate::problem::Problem;
+use crate::series::Prony;
 
 /// Relaxation times per decade.
 const PER_DECADE: f64 = 5.0;

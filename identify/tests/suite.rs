@@ -4,6 +4,7 @@ mod bounds;
 mod data;
 mod drainage;
 mod dynamic;
+mod nested;
 mod noise;
 mod protocols;
 mod random;

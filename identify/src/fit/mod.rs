@@ -13,12 +13,19 @@ use crate::experiment::Curve;
 use crate::forward::Sample;
 use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
-use crate::model::{Model, Prony, Scale};
+use crate::model::{Model, Scale};
 use crate::noise::Whitening;
-use crate::parameters::Kind;
+use crate::parameters::{Kind, Parameter};
 use crate::problem::Problem;
+use crate::series::Prony;
 use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
 pub use report::{FitWarning, ranked};
+use search::Found;
+
+/// A parameter is at a limit if its coordinate would have to change by so much for an effect of one standard deviation: by a factor of e¹⁰.
+const NO_EFFECT: f64 = 10.0;
+/// Relative information on a combination of parameters that is rounding.
+const SINGULAR: f64 = 1e-13;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +45,9 @@ pub struct Estimate {
     pub robust_deviation: f64,
     /// Interval of 95 % from the standard deviation.
     pub interval: [f64; 2],
+    /// The limit at which the parameter is, if the data cannot tell it from there: then the model is a simpler one. A parameter that has
+    /// no effect at the limit has an infinite deviation.
+    pub limit: Option<&'static str>,
 }
 
 /// The result of a fit.
@@ -59,10 +69,13 @@ pub struct Fit {
     sum: f64,
     log_weight: f64,
     iterations: usize,
+    /// The least sum of squares of a model that this one contains.
+    contained: Option<(Model, f64)>,
 }
 
 impl Fit {
-    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, minimum: Minimum) -> Result<Fit> {
+    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, found: Found) -> Result<Fit> {
+        let Found { minimum, contained } = found;
         let values = problem.values(&minimum.coordinates);
         let prony = problem.prony(&values)?;
         let count = minimum.coordinates.len();
@@ -73,21 +86,28 @@ impl Fit {
         let sum = square(&minimum.residuals);
         let freedom = (points - count) as f64;
         let sigma = identification.sigma().unwrap_or((sum / freedom).sqrt());
-        let inverse = if count > 0 { inverse_gram(&minimum.jacobian)? } else { Mat::zeros(0, 0) };
+        let free: Vec<Parameter> = problem.free().cloned().collect();
+        let scales = problem.scales(&values);
+        let (inverse, limits) = inverse(&free, &minimum.jacobian, sigma)?;
         let lengths: Vec<usize> = problem.parts.iter().map(|part| part.len()).collect();
-        let sandwich = sandwich(&minimum, &inverse, &lengths);
-        let free: Vec<_> = problem.free().cloned().collect();
+        let sandwich = &scales * sandwich(&minimum, &inverse, &lengths) * scales.transpose();
+        let covariance = &scales * &inverse * scales.transpose();
+        let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
+        let mut at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
         let estimates = free.iter().enumerate().map(|(k, parameter)| {
-            let coordinate = minimum.coordinates[k];
-            let deviation = sigma * inverse[(k, k)].sqrt();
-            let half = deviation * student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
+            // a coordinate at its limit has no deviation; its parameter may have that of another
+            let is_known = (0..count).any(|j| scales[(k, j)] != 0.0 && !limits[j]);
+            let deviation = if is_known { sigma * covariance[(k, k)].sqrt() } else { f64::INFINITY };
+            let value = values[at.next().unwrap_or_default()];
+            let on_scale = parameter.scale.forward(value);
             Estimate {
                 name: parameter.name.clone(),
-                value: parameter.value(coordinate),
+                value,
                 scale: parameter.scale,
-                deviation: deviation * parameter.unit,
-                robust_deviation: sandwich[(k, k)].sqrt() * parameter.unit,
-                interval: [coordinate - half, coordinate + half].map(|x| parameter.value(x)),
+                deviation,
+                robust_deviation: if is_known { sandwich[(k, k)].sqrt() } else { f64::INFINITY },
+                interval: [-quantile, quantile].map(|quantile| parameter.scale.back(on_scale + quantile * deviation)),
+                limit: limits[k].then(|| limit(&parameter.name, value)),
             }
         });
         let estimates = estimates.collect();
@@ -115,9 +135,7 @@ impl Fit {
             values,
             prony,
             estimates,
-            covariance: Mat::from_fn(count, count, |i, j| {
-                sigma * sigma * inverse[(i, j)] * free[i].unit * free[j].unit
-            }),
+            covariance: Mat::from_fn(count, count, |i, j| sigma * sigma * covariance[(i, j)]),
             samples,
             forces,
             residuals,
@@ -127,6 +145,7 @@ impl Fit {
             sum,
             log_weight: problem.parts.iter().map(|part| part.whitening.log_weight()).sum(),
             iterations: minimum.iterations,
+            contained,
         })
     }
 
@@ -294,6 +313,38 @@ impl Fit {
         let name = if self.curves.len() == 1 { "contact point".to_string() } else { format!("contact point {curve}") };
         self.estimate(&name)
             .map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
+    }
+}
+
+/// (JᵀJ)⁻¹ without the coordinates at a limit, and which ones are.
+fn inverse(free: &[Parameter], jacobian: &Mat<f64>, sigma: f64) -> Result<(Mat<f64>, Vec<bool>)> {
+    let is_at_limit = |column: usize| {
+        let norm = jacobian.col(column).norm_l2();
+        free[column].scale != Scale::Linear && sigma > NO_EFFECT * norm
+    };
+    let limits: Vec<bool> = (0..free.len()).map(is_at_limit).collect();
+    let rest: Vec<usize> = (0..free.len()).filter(|&column| !limits[column]).collect();
+    let mut inverse = Mat::zeros(free.len(), free.len());
+    if !rest.is_empty() {
+        let part = Mat::from_fn(jacobian.nrows(), rest.len(), |row, column| jacobian[(row, rest[column])]);
+        let part = inverse_gram(&part, SINGULAR)?;
+        for (i, &row) in rest.iter().enumerate() {
+            rest.iter().enumerate().for_each(|(j, &column)| inverse[(row, column)] = part[(i, j)]);
+        }
+    }
+    Ok((inverse, limits))
+}
+
+/// What the limit of a parameter is.
+fn limit(name: &str, value: f64) -> &'static str {
+    match name {
+        "E0" => "E0 = Einf: no relaxation",
+        "Einf" => "Einf = 0: no equilibrium",
+        "alpha" if value < 0.5 => "alpha = 0: no relaxation",
+        "alpha" => "alpha = 1: one relaxation time",
+        "stiffness" => "a rigid spring",
+        name if name.starts_with("tau") => "a time without effect, or beyond the data",
+        _ => "0",
     }
 }
 

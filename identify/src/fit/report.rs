@@ -7,6 +7,7 @@ use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
 use crate::fit::Fit;
+use crate::model::Model;
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,20 @@ pub enum FitWarning {
     Correlated {
         /// Names of the parameters.
         parameters: [String; 2],
+    },
+    /// A parameter is at a limit of the model, where the model is a simpler one.
+    AtLimit {
+        /// Name of the parameter.
+        parameter: String,
+        /// The limit.
+        limit: &'static str,
+    },
+    /// The search has failed: a simpler model that this one contains fits better.
+    AboveContained {
+        /// The simpler model.
+        model: Model,
+        /// Its sum of squares over that of this fit.
+        ratio: f64,
     },
     /// A time lies outside the times of the data, so that it is extrapolated.
     TimeOutside {
@@ -52,6 +67,13 @@ impl fmt::Display for FitWarning {
             FitWarning::Correlated { parameters: [one, other] } => {
                 write!(f, "only a combination of {one} and {other} is determined: fix one of them")
             }
+            FitWarning::AtLimit { parameter, limit } => write!(f, "{parameter} is at its limit: {limit}"),
+            FitWarning::AboveContained { model, ratio } => {
+                write!(
+                    f,
+                    "the search has failed: {model}, a special case, has {ratio} of the sum of squares: give start values"
+                )
+            }
             FitWarning::TimeOutside { parameter } => {
                 write!(f, "{parameter} lies outside the times of the data: sample faster, or measure longer")
             }
@@ -62,6 +84,8 @@ impl fmt::Display for FitWarning {
 
 /// Probability below which a test of the residuals is a warning; there are two tests.
 const UNLIKELY: f64 = 0.005;
+/// Sums of squares that differ by less than this fraction are of one minimum.
+const SAME_SUM: f64 = 1e-6;
 /// ln 2.
 const FACTOR_OF_TWO: f64 = std::f64::consts::LN_2;
 
@@ -74,8 +98,14 @@ impl Fit {
         {
             warnings.push(FitWarning::Misfit);
         }
+        if let Some((model, sum)) = self.contained.filter(|(_, sum)| *sum < (1.0 - SAME_SUM) * self.sum) {
+            warnings.push(FitWarning::AboveContained { model, ratio: sum / self.sum });
+        }
+        let limits = self.estimates().iter().filter_map(|estimate| Some((estimate, estimate.limit?)));
+        warnings
+            .extend(limits.map(|(estimate, limit)| FitWarning::AtLimit { parameter: estimate.name.clone(), limit }));
         let of_material = self.model().parameters();
-        let material = || self.estimates().iter().filter(|estimate| of_material.contains(&estimate.name));
+        let material = || self.estimates().iter().filter(|e| of_material.contains(&e.name) && e.limit.is_none());
         for estimate in material() {
             let parameter = estimate.name.clone();
             if estimate.deviation > FACTOR_OF_TWO {

@@ -2,7 +2,7 @@
 
 use crate::forward::moments::Moments;
 use crate::forward::real::Real;
-use crate::model::Prony;
+use crate::series::Prony;
 
 /// A column without pressure.
 #[derive(Clone, Copy, Debug)]

@@ -18,7 +18,7 @@ use crate::forward::real::Real;
 use crate::forward::roots::Roots;
 use crate::forward::tip::{Elastic, Tip};
 use crate::forward::{Drive, Response, Stop};
-use crate::model::Prony;
+use crate::series::Prony;
 
 /// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
 const HELD: f64 = 1e-12;

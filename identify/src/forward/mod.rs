@@ -13,7 +13,7 @@ use std::sync::Arc;
 use viscocontact::states::ElasticStates;
 
 use crate::error::{Error, Result};
-use crate::model::Prony;
+use crate::series::Prony;
 use cycle::Cycle;
 pub(crate) use growth::Term;
 pub(crate) use real::{Dual, LANES, Real};

@@ -112,6 +112,7 @@ impl Sub for Dual {
 
 impl Mul for Dual {
     type Output = Dual;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of products")]
     fn mul(self, other: Dual) -> Dual {
         let slope = |k: usize| self.slopes[k] * other.value + self.value * other.slopes[k];
         self.with(self.value * other.value, slope)
@@ -120,6 +121,7 @@ impl Mul for Dual {
 
 impl Div for Dual {
     type Output = Dual;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of quotients")]
     fn div(self, other: Dual) -> Dual {
         let value = self.value / other.value;
         self.with(value, |k| (self.slopes[k] - value * other.slopes[k]) / other.value)

@@ -202,7 +202,14 @@ fn derivatives_agree_with_differences() {
                 let scale = difference.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
                 let mut errors: Vec<f64> =
                     found.iter().zip(&difference).map(|(dual, d)| (dual.slope(lane) - d).abs() / scale).collect();
-                if errors.iter().any(|e| *e > 1e-6) { for (k, e) in errors.iter().enumerate() { if *e > 1e-6 { print!("{k}:{e:.1e} "); } } println!(); }
+                if errors.iter().any(|e| *e > 1e-6) {
+                    for (k, e) in errors.iter().enumerate() {
+                        if *e > 1e-6 {
+                            print!("{k}:{e:.1e} ");
+                        }
+                    }
+                    println!();
+                }
                 errors.sort_by(f64::total_cmp);
                 // at a kink, derivative and difference differ
                 assert!(errors[395] < 1e-6, "give {give}, jitter {jitter}, lane {lane}: {:?}", &errors[390..]);

@@ -59,11 +59,6 @@ impl Tip {
         Tip { states: Arc::clone(states), rest, last_depth: states.approach(last) - rest, power }
     }
 
-    /// Approach at first touch \[m\], from which depths are measured.
-    pub(super) fn rest(&self) -> f64 {
-        self.rest
-    }
-
     /// Depth of the last state \[m\].
     pub(super) fn last_depth(&self) -> f64 {
         self.last_depth
