@@ -11,8 +11,9 @@ const MAX_ITERATIONS: usize = 200;
 const ENOUGH: f64 = 1e-10;
 /// Longest step of a coordinate: a factor of e² in a modulus.
 const LONGEST_STEP: f64 = 2.0;
-/// Shortest step: the search is at a kink of the residuals, where a sample is about to touch or to leave.
-const SHORTEST_STEP: f64 = 1e-9;
+/// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
+const AHEAD: f64 = 0.1;
+const MOST_BENT: f64 = 0.75;
 /// Least damping, and damping at the start.
 const DAMPING: [f64; 2] = [1e-14, 1e-3];
 
@@ -44,28 +45,40 @@ pub(crate) fn minimise(
             if sum <= exact || model.promised(&model.step(0.0)) <= ENOUGH * sum {
                 break true;
             }
-            let step = model.step(damping);
-            let moved: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
+            let mut step = model.step(damping);
+            let promised = model.promised(&step);
+            if let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
+                model.bend(&mut step, damping, &slopes, &r, &ahead);
+            }
+            let moved = along(&x, &step, 1.0);
             let trial = residuals(&moved).ok().map(|r| (square(&r), r)).filter(|(sum, _)| sum.is_finite());
+
             if let Some((reduced, residuals)) = trial.filter(|(reduced, _)| *reduced < sum) {
-                let gain = (sum - reduced) / model.promised(&step);
+                let gain = (sum - reduced) / promised;
+                // at a kink, shorter and shorter steps reduce the sum less and less
+                let is_enough = promised.max(sum - reduced) <= ENOUGH * sum;
                 damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
                 growth = 2.0;
                 (x, r, sum) = (moved, residuals, reduced);
-                break false;
+                break is_enough;
             }
-            if step.iter().all(|s| s.abs() < SHORTEST_STEP) {
+            if promised <= ENOUGH * sum {
                 break true;
             }
             (damping, growth) = (damping * growth, growth * 2.0);
         };
         if done {
-            return Ok(Minimum { coordinates: x, residuals: r, jacobian: slopes, iterations: iteration });
+            let jacobian = jacobian(&x)?;
+            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations: iteration });
         }
     }
     let reason =
         "the sum of squares still falls: give start values, fix parameters, or take a model with fewer of them";
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
+}
+
+fn along(x: &[f64], step: &[f64], share: f64) -> Vec<f64> {
+    x.iter().zip(step).map(|(x, s)| x + share * s).collect()
 }
 
 /// Linearised residuals, in coordinates whose columns have the norm 1.
@@ -113,6 +126,28 @@ impl Linear {
         }
         let shorter = whole.iter().zip(&limits).fold(1.0, |least: f64, (s, limit)| least.min(limit / s.abs()));
         unscaled(&whole).into_iter().map(|s| s * shorter).collect()
+    }
+
+    /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
+    /// second derivative of the residuals is found from those a little `ahead`. A step whose acceleration is great is left.
+    fn bend(&self, step: &mut [f64], damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
+        let linear = slopes * Col::from_fn(step.len(), |j| step[j]);
+        let curvature =
+            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * ((ahead[k] - residuals[k]) / AHEAD - linear[k]));
+        let right = slopes.transpose() * curvature;
+        let bent = Linear {
+            gram: self.gram.clone(),
+            right: (0..step.len()).map(|j| -right[j] / self.scale[j]).collect(),
+            scale: self.scale.clone(),
+        };
+        let acceleration = bent.solve(damping, &vec![None; step.len()]);
+        let size = |of: &mut dyn Iterator<Item = f64>| of.map(|s| s * s).sum::<f64>().sqrt();
+        let length = size(&mut step.iter().zip(&self.scale).map(|(s, scale)| s * scale));
+        if size(&mut acceleration.iter().copied()) <= MOST_BENT * length {
+            for ((s, a), scale) in step.iter_mut().zip(acceleration).zip(&self.scale) {
+                *s += (0.5 * a / scale).clamp(-LONGEST_STEP, LONGEST_STEP);
+            }
+        }
     }
 
     /// The scaled step, some coordinates of which are held.
