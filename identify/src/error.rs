@@ -101,6 +101,10 @@ pub enum Error {
     #[error(transparent)]
     Data(#[from] crate::data::DataError),
 
+    /// Fits of different data are compared.
+    #[error("fits are ranked only if all are of the same curves, and none is robust: fit each model to the same data")]
+    OtherData,
+
     /// A table of results cannot be written.
     #[error("the results cannot be written: {reason}")]
     Unwritable {

@@ -6,7 +6,7 @@ use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
-use crate::noise::{Noise, Whitening};
+use crate::noise::{CurveNoise, Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Nuisance, Size, parameters};
 use crate::problem::{Part, Problem};
 
@@ -38,12 +38,13 @@ pub struct Identification {
     chosen: Chosen,
     noise: Noise,
     sigma: Option<f64>,
+    robust: bool,
 }
 
 impl Identification {
     /// Identifies the parameters of a model; everything else is known until stated otherwise.
     pub fn new(model: Model) -> Identification {
-        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None }
+        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false }
     }
 
     /// Drive at first touch \[m\].
@@ -87,6 +88,17 @@ impl Identification {
     pub fn known_sigma(mut self, sigma: f64) -> Identification {
         self.sigma = Some(sigma);
         self
+    }
+
+    /// Takes the weight of outliers: Tukey's biweight of the residuals made white. Neither known standard deviations nor the criterion of
+    /// Akaike apply then.
+    pub fn robust(mut self) -> Identification {
+        self.robust = true;
+        self
+    }
+
+    pub(crate) fn is_robust(&self) -> bool {
+        self.robust
     }
 
     /// Fixes a parameter of the material.
@@ -135,22 +147,29 @@ impl Identification {
     /// ```
     ///
     /// # Errors
-    /// As [`Identification::respond`].
+    /// As [`Identification::respond`]; if the correlation of the noise is unknown.
     pub fn bounds(&self, experiments: &[Experiment], values: &[(&str, f64)], sigma: f64) -> Result<Bounds> {
         positive("standard deviation of the noise", sigma)?;
+        if self.fits_correlation() {
+            let reason = "bounds need the correlation of the noise: take Noise::AutoregressiveWith";
+            return Err(Error::NotConverged { iterations: 0, reason });
+        }
         let problem = self.problem(experiments.iter().map(|experiment| (experiment, None)))?;
         let values = self.given(&problem, values)?;
         let jacobian = problem.jacobian(&problem.coordinates(&values))?;
         Bounds::new(&problem, &values, &jacobian, sigma)
     }
 
-    /// The problem of fitted curves with the whitening of the fit.
-    pub(crate) fn refit_problem<'a>(&self, curves: &'a [Curve], correlation: Option<f64>) -> Result<Problem<'a>> {
+    /// The problem of fitted curves with the noise of the fit: whitening, scale and weights of each curve.
+    pub(crate) fn refit_problem<'a>(&self, curves: &'a [Curve], noise: &[CurveNoise]) -> Result<Problem<'a>> {
         let mut problem = self.problem(curves.iter().map(|curve| (&curve.experiment, Some(&curve.force))))?;
-        if let Some(phi) = correlation {
-            for part in &mut problem.parts {
+        for (part, noise) in problem.parts.iter_mut().zip(noise) {
+            if let Some(phi) = noise.correlation {
                 part.whitening = Whitening::Autoregressive(phi);
             }
+            part.scale = noise.scale;
+            part.outliers.clone_from(&noise.outliers);
+            part.weights = noise.outliers.iter().map(|weight| noise.scale * weight).collect();
         }
         Ok(problem)
     }
@@ -169,6 +188,8 @@ impl Identification {
     pub(crate) fn sigma(&self) -> Option<f64> {
         match self.noise {
             Noise::Covariance(_) => Some(1.0),
+            // of residuals without outliers it is found
+            _ if self.robust => None,
             _ => self.sigma,
         }
     }

@@ -22,6 +22,10 @@ pub(crate) struct Part<'a> {
     /// The measured forces; zeros where none are measured yet.
     pub(crate) data: Vec<f64>,
     pub(crate) whitening: Whitening,
+    /// Weights of the residuals made white: a scale of the curve, times the weights of outliers.
+    pub(crate) weights: Vec<f64>,
+    pub(crate) scale: f64,
+    pub(crate) outliers: Vec<f64>,
     forward: Forward,
     /// Speed of the drive at each sample \[m/s\].
     speed: Vec<f64>,
@@ -36,11 +40,33 @@ impl<'a> Part<'a> {
             (drive[b] - drive[a]) / (times[b] - times[a])
         };
         let speed = (0..times.len()).map(speed).collect();
-        Part { experiment, data, whitening, forward: Forward::new(&experiment.tip), speed }
+        let weights = vec![1.0; times.len()];
+        let outliers = weights.clone();
+        Part {
+            experiment,
+            data,
+            whitening,
+            weights,
+            scale: 1.0,
+            outliers,
+            forward: Forward::new(&experiment.tip),
+            speed,
+        }
     }
 
     pub(crate) fn len(&self) -> usize {
         self.data.len()
+    }
+
+    /// Makes a column of the data white, with its weights.
+    pub(crate) fn whiten(&self, column: &mut [f64]) {
+        self.whitening.apply(column);
+        column.iter_mut().zip(&self.weights).for_each(|(value, weight)| *value *= weight);
+    }
+
+    /// −ln of the determinant of the covariance, up to the factor σ².
+    pub(crate) fn log_weight(&self) -> f64 {
+        self.whitening.log_weight() + 2.0 * self.len() as f64 * self.scale.ln()
     }
 
     /// Force of the contact, and where the tip is, at each sample. `record` is given each with the terms of its force.
@@ -231,7 +257,7 @@ impl<'a> Problem<'a> {
     pub(crate) fn residuals(&self, coordinates: &[f64]) -> Result<Vec<f64>> {
         let mut all = Vec::with_capacity(self.len());
         for (part, mut deviations) in self.parts.iter().zip(self.all_deviations(&self.values(coordinates))?) {
-            part.whitening.apply(&mut deviations);
+            part.whiten(&mut deviations);
             all.append(&mut deviations);
         }
         Ok(all)
@@ -254,7 +280,7 @@ impl<'a> Problem<'a> {
             let acts = |parameter: &Parameter| parameter.kind.curve().is_none_or(|only| only == curve);
             let columns = || self.free().enumerate().filter(|(_, parameter)| acts(parameter));
             let mut put = |column: usize, mut slopes: Vec<f64>| {
-                part.whitening.apply(&mut slopes);
+                part.whiten(&mut slopes);
                 slopes.into_iter().enumerate().for_each(|(k, slope)| jacobian[(row + k, column)] = slope);
             };
             for (column, parameter) in columns().filter(|(_, parameter)| parameter.kind.is_linear()) {

@@ -82,7 +82,7 @@ impl Fit {
             let mut row = 0;
             for (part, values) in problem.parts.iter().zip(values) {
                 let mut values = values.clone();
-                part.whitening.apply(&mut values);
+                part.whiten(&mut values);
                 for value in values {
                     columns[(row, column)] = value;
                     row += 1;
@@ -162,7 +162,7 @@ impl Fit {
                 let share = 1.0 / terms.len() as f64;
                 let mut sum: Vec<f64> =
                     (0..part.len()).map(|k| terms.iter().map(|&t| of(t)[curve][k] * share).sum()).collect();
-                part.whitening.apply(&mut sum);
+                part.whiten(&mut sum);
                 all.append(&mut sum);
             }
             all

@@ -1,6 +1,7 @@
 //! Tests of the public interface.
 
 mod bounds;
+mod coverage;
 mod data;
 mod drainage;
 mod dynamic;

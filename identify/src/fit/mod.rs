@@ -1,31 +1,28 @@
 //! What was identified.
 
+mod deviations;
 mod intervals;
 mod report;
+mod reweigh;
 mod search;
 
 use faer::Mat;
 use viscocontact::rheology::Material;
 
-use crate::bounds::inverse_gram;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::forward::Sample;
 use crate::identification::Identification;
-use crate::least_squares::{Minimum, square};
+use crate::least_squares::square;
 use crate::model::{Model, Scale};
-use crate::noise::Whitening;
+use crate::noise::CurveNoise;
 use crate::parameters::{Kind, Parameter};
 use crate::problem::Problem;
 use crate::series::Prony;
 use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
+use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
-
-/// A parameter is at a limit if its coordinate would have to change by so much for an effect of one standard deviation: by a factor of e¹⁰.
-const NO_EFFECT: f64 = 10.0;
-/// Relative information on a combination of parameters that is rounding.
-const SINGULAR: f64 = 1e-13;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +62,7 @@ pub struct Fit {
     residuals: Vec<Vec<f64>>,
     white: Vec<Vec<f64>>,
     sigma: f64,
-    correlation: Option<f64>,
+    noise: Vec<CurveNoise>,
     sum: f64,
     log_weight: f64,
     iterations: usize,
@@ -85,7 +82,11 @@ impl Fit {
         }
         let sum = square(&minimum.residuals);
         let freedom = (points - count) as f64;
-        let sigma = identification.sigma().unwrap_or((sum / freedom).sqrt());
+        let sigma = match identification.sigma() {
+            Some(sigma) => sigma,
+            None if identification.is_robust() => robust_deviation(&problem, &minimum.residuals, freedom),
+            None => (sum / freedom).sqrt(),
+        };
         let free: Vec<Parameter> = problem.free().cloned().collect();
         let scales = problem.scales(&values);
         let (inverse, limits) = inverse(&free, &minimum.jacobian, sigma)?;
@@ -117,16 +118,18 @@ impl Fit {
             let force = problem.measured(curve, &values, response.iter().map(|sample| sample.force));
             let residual: Vec<f64> = part.data.iter().zip(&force).map(|(data, force)| data - force).collect();
             let mut of_curve = residual.clone();
-            part.whitening.apply(&mut of_curve);
+            part.whiten(&mut of_curve);
             samples.push(response);
             forces.push(force);
             residuals.push(residual);
             white.push(of_curve);
         }
-        let correlation = match problem.parts[0].whitening {
-            Whitening::Autoregressive(phi) if phi != 0.0 => Some(phi),
-            _ => None,
-        };
+        let noise = problem.parts.iter().map(|part| CurveNoise {
+            correlation: part.whitening.correlation(),
+            scale: part.scale,
+            outliers: part.outliers.clone(),
+        });
+        let noise = noise.collect();
         let curve =
             |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
         Ok(Fit {
@@ -141,9 +144,9 @@ impl Fit {
             residuals,
             white,
             sigma,
-            correlation,
+            noise,
             sum,
-            log_weight: problem.parts.iter().map(|part| part.whitening.log_weight()).sum(),
+            log_weight: problem.parts.iter().map(|part| part.log_weight()).sum(),
             iterations: minimum.iterations,
             contained,
         })
@@ -244,13 +247,24 @@ impl Fit {
     }
 
     /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
+    /// Of several curves, the geometric mean; [`Fit::sigma_of`] is that of one.
     pub fn sigma(&self) -> f64 {
         self.sigma
     }
 
-    /// The autoregressive coefficient, if the noise has one.
+    /// Standard deviation of the noise of a curve \[N\].
+    pub fn sigma_of(&self, curve: usize) -> f64 {
+        self.sigma / self.noise.get(curve).map_or(1.0, |noise| noise.scale)
+    }
+
+    /// The autoregressive coefficient of the first curve, if the noise has one; [`Fit::autoregression_of`] is that of another curve.
     pub fn autoregression(&self) -> Option<f64> {
-        self.correlation
+        self.autoregression_of(0)
+    }
+
+    /// The autoregressive coefficient of the noise of a curve, if it has one.
+    pub fn autoregression_of(&self, curve: usize) -> Option<f64> {
+        self.noise.get(curve)?.correlation
     }
 
     /// Iterations of the search.
@@ -270,26 +284,26 @@ impl Fit {
 
     /// Correlation of residuals: a small probability means that the model is wrong, of the material or of the noise.
     pub fn correlations(&self) -> ResidualTest {
-        correlation_test(&self.white, usize::from(self.correlation.is_some()))
+        correlation_test(&self.white, self.noise.iter().filter(|noise| noise.correlation.is_some()).count())
     }
 
     /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better.
     pub fn aicc(&self) -> f64 {
         let points = self.white.iter().map(Vec::len).sum::<usize>() as f64;
         let known = self.identification.sigma();
-        let fitted =
-            self.estimates.len() + usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
-        let count = fitted as f64;
+        // of each curve
+        let of_noise = usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
+        let count = (self.estimates.len() + of_noise * self.curves.len()) as f64;
         let misfit = match known {
             Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
-            None => points * (self.sum / points).ln(),
+            None => points * ((self.sum / points).ln() + 1.0),
         };
         misfit - self.log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
     }
 
     /// The problem that was solved.
     pub(crate) fn problem(&self) -> Result<Problem<'_>> {
-        self.identification.refit_problem(&self.curves, self.correlation)
+        self.identification.refit_problem(&self.curves, &self.noise)
     }
 
     /// Values of all parameters.
@@ -314,59 +328,4 @@ impl Fit {
         self.estimate(&name)
             .map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
     }
-}
-
-/// (JᵀJ)⁻¹ without the coordinates at a limit, and which ones are.
-fn inverse(free: &[Parameter], jacobian: &Mat<f64>, sigma: f64) -> Result<(Mat<f64>, Vec<bool>)> {
-    let is_at_limit = |column: usize| {
-        let norm = jacobian.col(column).norm_l2();
-        free[column].scale != Scale::Linear && sigma > NO_EFFECT * norm
-    };
-    let limits: Vec<bool> = (0..free.len()).map(is_at_limit).collect();
-    let rest: Vec<usize> = (0..free.len()).filter(|&column| !limits[column]).collect();
-    let mut inverse = Mat::zeros(free.len(), free.len());
-    if !rest.is_empty() {
-        let part = Mat::from_fn(jacobian.nrows(), rest.len(), |row, column| jacobian[(row, rest[column])]);
-        let part = inverse_gram(&part, SINGULAR)?;
-        for (i, &row) in rest.iter().enumerate() {
-            rest.iter().enumerate().for_each(|(j, &column)| inverse[(row, column)] = part[(i, j)]);
-        }
-    }
-    Ok((inverse, limits))
-}
-
-/// What the limit of a parameter is.
-fn limit(name: &str, value: f64) -> &'static str {
-    match name {
-        "E0" => "E0 = Einf: no relaxation",
-        "Einf" => "Einf = 0: no equilibrium",
-        "alpha" if value < 0.5 => "alpha = 0: no relaxation",
-        "alpha" => "alpha = 1: one relaxation time",
-        "stiffness" => "a rigid spring",
-        name if name.starts_with("tau") => "a time without effect, or beyond the data",
-        _ => "0",
-    }
-}
-
-/// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ, correlations of neighbours with falling weights included.
-fn sandwich(minimum: &Minimum, inverse: &Mat<f64>, lengths: &[usize]) -> Mat<f64> {
-    let count = inverse.nrows();
-    let mut middle = Mat::<f64>::zeros(count, count);
-    let mut first = 0;
-    for &len in lengths {
-        let score = |k: usize, j: usize| minimum.jacobian[(first + k, j)] * minimum.residuals[first + k];
-        let lags = (4.0 * (len as f64 / 100.0).powf(2.0 / 9.0)) as usize;
-        for lag in 0..=lags.min(len.saturating_sub(1)) {
-            let weight = (1.0 - lag as f64 / (lags + 1) as f64) * if lag == 0 { 0.5 } else { 1.0 };
-            for i in 0..count {
-                for j in 0..count {
-                    let sum: f64 = (lag..len).map(|k| score(k, i) * score(k - lag, j)).sum();
-                    middle[(i, j)] += weight * sum;
-                    middle[(j, i)] += weight * sum;
-                }
-            }
-        }
-        first += len;
-    }
-    inverse * &middle * inverse
 }

@@ -6,8 +6,10 @@ use viscocontact::contact::StepReport;
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
+use crate::error::{Error, Result};
 use crate::fit::Fit;
 use crate::model::Model;
+use crate::noise::CurveNoise;
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +41,11 @@ pub enum FitWarning {
         model: Model,
         /// Its sum of squares over that of this fit.
         ratio: f64,
+    },
+    /// The autoregressive coefficient of a curve is as great as the search allows: a model that is wrong leaves such residuals.
+    Correlation {
+        /// Index of the curve.
+        curve: usize,
     },
     /// A time lies outside the times of the data, so that it is extrapolated.
     TimeOutside {
@@ -74,6 +81,10 @@ impl fmt::Display for FitWarning {
                     "the search has failed: {model}, a special case, has {ratio} of the sum of squares: give start values"
                 )
             }
+            FitWarning::Correlation { curve } => write!(
+                f,
+                "curve {curve}: the correlation of the residuals is at its bound: the model of the material or the tip is likely wrong"
+            ),
             FitWarning::TimeOutside { parameter } => {
                 write!(f, "{parameter} lies outside the times of the data: sample faster, or measure longer")
             }
@@ -84,6 +95,8 @@ impl fmt::Display for FitWarning {
 
 /// Probability below which a test of the residuals is a warning; there are two tests.
 const UNLIKELY: f64 = 0.005;
+/// Correlation of neighbours that is warned of.
+const GREAT_CORRELATION: f64 = 0.98;
 /// Sums of squares that differ by less than this fraction are of one minimum.
 const SAME_SUM: f64 = 1e-6;
 /// ln 2.
@@ -101,6 +114,13 @@ impl Fit {
         if let Some((model, sum)) = self.contained.filter(|(_, sum)| *sum < (1.0 - SAME_SUM) * self.sum) {
             warnings.push(FitWarning::AboveContained { model, ratio: sum / self.sum });
         }
+        let is_bound = |noise: &CurveNoise| noise.correlation.is_some_and(|phi| phi > GREAT_CORRELATION);
+        let bound = self
+            .noise
+            .iter()
+            .enumerate()
+            .filter(|(_, noise)| self.identification.fits_correlation() && is_bound(noise));
+        warnings.extend(bound.map(|(curve, _)| FitWarning::Correlation { curve }));
         let limits = self.estimates().iter().filter_map(|estimate| Some((estimate, estimate.limit?)));
         warnings
             .extend(limits.map(|(estimate, limit)| FitWarning::AtLimit { parameter: estimate.name.clone(), limit }));
@@ -140,16 +160,30 @@ impl Fit {
     }
 }
 
-/// Fits of the same curves, best first, each with its difference of Akaike's criterion from the best and its weight: the share of the
-/// evidence among the candidates.
-pub fn ranked(fits: Vec<Fit>) -> Vec<(Fit, f64, f64)> {
-    let mut fits = fits;
+/// Fits of the same curves, best first, each with its difference of Akaike's criterion from the best and its weight exp(−difference/2) among
+/// the candidates. Candidates that failed are left out. The criterion takes residuals as independent but for the fitted correlation.
+///
+/// # Errors
+/// [`Error::OtherData`] if fits are of different curves, or some are robust; the error of the last candidate if all failed.
+pub fn ranked(candidates: impl IntoIterator<Item = Result<Fit>>) -> Result<Vec<(Fit, f64, f64)>> {
+    let (mut fits, mut failure) = (Vec::<Fit>::new(), None);
+    for candidate in candidates {
+        match candidate {
+            Ok(fit) => fits.push(fit),
+            Err(error) => failure = Some(error),
+        }
+    }
     fits.sort_by(|a, b| a.aicc().total_cmp(&b.aicc()));
-    let best = fits.first().map_or(0.0, Fit::aicc);
-    let total: f64 = fits.iter().map(|fit| (-0.5 * (fit.aicc() - best)).exp()).sum();
+    let Some(best) = fits.first() else { return failure.map_or(Ok(Vec::new()), Err) };
+    let of_best = best.aicc();
+    let is_same = |fit: &Fit| !fit.identification.is_robust() && fit.curves == best.curves;
+    if fits.len() > 1 && !fits.iter().all(is_same) {
+        return Err(Error::OtherData);
+    }
+    let total: f64 = fits.iter().map(|fit| (-0.5 * (fit.aicc() - of_best)).exp()).sum();
     let of = |fit: Fit| {
-        let difference = fit.aicc() - best;
+        let difference = fit.aicc() - of_best;
         (fit, difference, (-0.5 * difference).exp() / total)
     };
-    fits.into_iter().map(of).collect()
+    Ok(fits.into_iter().map(of).collect())
 }

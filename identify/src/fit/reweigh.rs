@@ -41,7 +41,8 @@ impl Identification {
             }
         }
         let (residuals, jacobian) = (bare.residuals(&minimum.coordinates)?, bare.jacobian(&minimum.coordinates)?);
-        let inverse = inverse_gram(&minimum.jacobian, 1e-13).unwrap_or_else(|_| Mat::zeros(jacobian.ncols(), jacobian.ncols()));
+        let inverse =
+            inverse_gram(&minimum.jacobian, 1e-13).unwrap_or_else(|_| Mat::zeros(jacobian.ncols(), jacobian.ncols()));
         let (mut first, mut is_found) = (0, true);
         let mut deviations = Vec::new();
         for part in &mut problem.parts {
@@ -83,7 +84,11 @@ impl Identification {
         // relative to their geometric mean
         let mean = deviations.iter().map(|s| s.ln()).sum::<f64>() / deviations.len() as f64;
         for (part, deviation) in problem.parts.iter_mut().zip(&deviations) {
-            let scale = if self.finds_deviations_of(deviations.len()) && mean.is_finite() { mean.exp() / deviation } else { 1.0 };
+            let scale = if self.finds_deviations_of(deviations.len()) && mean.is_finite() {
+                mean.exp() / deviation
+            } else {
+                1.0
+            };
             is_found &= (scale / part.scale).ln().abs() < FOUND;
             part.scale = scale;
             part.weights = part.outliers.iter().map(|weight| scale * weight).collect();
@@ -119,9 +124,7 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
         };
         let (residual, columns) = (white(residuals), columns.iter().map(|c| white(c)).collect::<Vec<_>>());
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let gram = Mat::from_fn(count, count, |i, j| {
-            dot(&columns[i], &columns[j]) + if i == j { 1e-12 } else { 0.0 }
-        });
+        let gram = Mat::from_fn(count, count, |i, j| dot(&columns[i], &columns[j]) + if i == j { 1e-12 } else { 0.0 });
         let Ok(factor) = gram.llt(Side::Lower) else { return f64::INFINITY };
         let right = Col::from_fn(count, |i| dot(&columns[i], &residual));
         let solved = factor.solve(&right);

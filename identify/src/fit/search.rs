@@ -6,12 +6,11 @@ use crate::fit::Fit;
 use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
 use crate::model::Model;
-use crate::noise::{Whitening, autoregression};
 use crate::problem::Problem;
 use crate::start::starts;
 
-/// Rounds of the estimate of an autoregressive coefficient.
-const MAX_ROUNDS: usize = 8;
+/// Rounds of fits, each with the noise of the one before.
+const MAX_ROUNDS: usize = 12;
 /// Relative difference of the sums of squares of one minimum.
 const AGREED: f64 = 1e-7;
 
@@ -33,20 +32,15 @@ impl Identification {
         let mut problem = self.problem(pairs)?;
         let free = problem.free().count();
         let mut found = self.global_minimum(&problem)?;
-        if self.fits_correlation() {
-            let mut last = 0.0;
+        if self.finds_noise(&problem) {
             for _ in 0..MAX_ROUNDS {
-                let deviations = problem.all_deviations(&problem.values(&found.minimum.coordinates))?;
-                let phi = autoregression(deviations.iter().map(Vec::as_slice));
-                for part in &mut problem.parts {
-                    part.whitening = Whitening::Autoregressive(phi);
-                }
-                found.minimum = self.minimum(&problem, found.minimum.coordinates)?;
-                found.contained = None;
-                if (phi - last).abs() < 1e-4 {
+                let is_found = self.reweigh(&mut problem, &found.minimum)?;
+                if is_found {
                     break;
                 }
-                last = phi;
+                found.minimum = self.minimum(&problem, found.minimum.coordinates)?;
+                // sums of squares of other weights cannot be compared
+                found.contained = None;
             }
         }
         let fit = Fit::new(self, problem, found)?;
