@@ -7,13 +7,13 @@ use crate::forward::Sample;
 use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
 use crate::noise::{CurveNoise, Noise, Whitening};
-use crate::parameters::{Chosen, Kind, Nuisance, Size, parameters};
+use crate::parameters::{Chosen, Kind, Nuisance, PerCurve, Size, parameters};
 use crate::problem::{Part, Problem};
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
 /// All curves of one fit have the same material. The contact point is the drive at which the tip first touches. Each curve has its own contact
-/// point, offset, drift and drag; the stiffness of the spring is common. All are known to be 0 unless stated (and the stiffness the stiffness
+/// point, offset, drift, tilt and drag; the stiffness of the spring is common. All are known to be 0 unless stated (and the stiffness the stiffness
 /// of the experiment).
 ///
 /// ```
@@ -48,26 +48,32 @@ impl Identification {
     }
 
     /// Drive at first touch \[m\].
-    pub fn contact_point(mut self, contact_point: Nuisance) -> Identification {
-        self.chosen.contact_point = contact_point;
+    pub fn contact_point(mut self, contact_point: impl Into<PerCurve>) -> Identification {
+        self.chosen.contact_point = contact_point.into();
         self
     }
 
     /// Force without contact \[N\].
-    pub fn offset(mut self, offset: Nuisance) -> Identification {
-        self.chosen.offset = offset;
+    pub fn offset(mut self, offset: impl Into<PerCurve>) -> Identification {
+        self.chosen.offset = offset.into();
         self
     }
 
     /// Growth of the force without contact \[N/s\].
-    pub fn drift(mut self, drift: Nuisance) -> Identification {
-        self.chosen.drift = drift;
+    pub fn drift(mut self, drift: impl Into<PerCurve>) -> Identification {
+        self.chosen.drift = drift.into();
+        self
+    }
+
+    /// Growth of the force without contact with the drive \[N/m\]: interference of the light on the cantilever, or an actuator that is not straight.
+    pub fn tilt(mut self, tilt: impl Into<PerCurve>) -> Identification {
+        self.chosen.tilt = tilt.into();
         self
     }
 
     /// Force over the speed of the drive \[N s/m\]: a cantilever in a liquid.
-    pub fn drag(mut self, drag: Nuisance) -> Identification {
-        self.chosen.drag = drag;
+    pub fn drag(mut self, drag: impl Into<PerCurve>) -> Identification {
+        self.chosen.drag = drag.into();
         self
     }
 
@@ -176,11 +182,14 @@ impl Identification {
 
     /// The value of a known property of a curve.
     pub(crate) fn known(&self, kind: Kind) -> f64 {
+        let chosen = &self.chosen;
         let nuisance = match kind {
-            Kind::ContactPoint(_) => self.chosen.contact_point,
-            Kind::Offset(_) => self.chosen.offset,
-            Kind::Drift(_) => self.chosen.drift,
-            _ => self.chosen.drag,
+            Kind::ContactPoint(curve) => chosen.contact_point.of(curve),
+            Kind::Offset(curve) => chosen.offset.of(curve),
+            Kind::Drift(curve) => chosen.drift.of(curve),
+            Kind::Tilt(curve) => chosen.tilt.of(curve),
+            Kind::Drag(curve) => chosen.drag.of(curve),
+            Kind::Material(_) | Kind::Stiffness => return 0.0,
         };
         if let Nuisance::Fixed(value) = nuisance { value } else { 0.0 }
     }
@@ -216,12 +225,12 @@ impl Identification {
         for (curve, (experiment, force)) in curves.enumerate() {
             let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
             let data = force.cloned().unwrap_or_else(|| vec![0.0; times.len()]);
-            let range = |values: &[f64]| {
-                let [low, high] =
-                    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-                if high > low { high - low } else { 1.0 }
+            let ends = |values: &[f64]| {
+                values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)])
             };
-            sizes.push(Size { depth: range(drive), force: range(&data), time: times[times.len() - 1] - times[0] });
+            let range = |[low, high]: [f64; 2]| if high > low { high - low } else { 1.0 };
+            let time = times[times.len() - 1] - times[0];
+            sizes.push(Size { depth: range(ends(drive)), drive: ends(drive), force: range(ends(&data)), time });
             let whitening = Whitening::of(&self.noise, curve, times.len())?;
             parts.push(Part::new(experiment, data, whitening));
         }

@@ -225,10 +225,13 @@ impl<'a> Problem<'a> {
     /// The force that a curve would measure, from the force of its contact.
     pub(crate) fn measured(&self, curve: usize, values: &[f64], contact: impl Iterator<Item = f64>) -> Vec<f64> {
         let value = |kind: Kind| self.value_of(values, kind).unwrap_or_default();
-        let [offset, drift, drag] = [Kind::Offset(curve), Kind::Drift(curve), Kind::Drag(curve)].map(value);
+        let [offset, drift, tilt, drag] =
+            [Kind::Offset(curve), Kind::Drift(curve), Kind::Tilt(curve), Kind::Drag(curve)].map(value);
         let part = &self.parts[curve];
-        let times = part.experiment.protocol.times();
-        let of = |(k, force): (usize, f64)| force + offset + drift * (times[k] - times[0]) + drag * part.speed[k];
+        let (times, drive) = (part.experiment.protocol.times(), part.experiment.protocol.drive());
+        let of = |(k, force): (usize, f64)| {
+            force + offset + drift * (times[k] - times[0]) + tilt * (drive[k] - drive[0]) + drag * part.speed[k]
+        };
         contact.enumerate().map(of).collect()
     }
 
@@ -322,10 +325,11 @@ impl<'a> Problem<'a> {
     /// Derivative by a parameter in which the force is linear.
     fn linear_slopes(&self, curve: usize, parameter: &Parameter) -> Vec<f64> {
         let part = &self.parts[curve];
-        let times = part.experiment.protocol.times();
+        let (times, drive) = (part.experiment.protocol.times(), part.experiment.protocol.drive());
         let of = |k: usize| match parameter.kind {
             Kind::Offset(_) => 1.0,
             Kind::Drift(_) => times[k] - times[0],
+            Kind::Tilt(_) => drive[k] - drive[0],
             _ => part.speed[k],
         };
         (0..part.len()).map(|k| parameter.unit * of(k)).collect()

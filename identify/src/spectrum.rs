@@ -184,7 +184,7 @@ impl Fit {
             let prony = self.prony();
             let inside =
                 prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| (low..high).contains(&(1.0 / **rate)));
-            inside.map(|(modulus, _)| modulus).sum::<f64>()
+            inside.fold(0.0, |sum, (modulus, _)| sum + modulus)
         };
         let decade = |(k, times): (usize, [f64; 2])| {
             let deviation = total * inverse[(k + 1, k + 1)].sqrt();

@@ -5,6 +5,7 @@ mod intervals;
 mod report;
 mod reweigh;
 mod search;
+mod variants;
 
 use faer::Mat;
 use viscocontact::rheology::Material;
@@ -23,6 +24,7 @@ use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
+pub use variants::Variant;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq)]

@@ -17,7 +17,19 @@ use crate::noise::CurveNoise;
 #[non_exhaustive]
 pub enum FitWarning {
     /// The residuals are not independent at the level of 1 %: the model of the material, of the tip or of the noise is wrong.
-    Misfit,
+    Misfit {
+        /// Standard deviation of the residuals over that of the noise, from second differences of the force: 1 if the model is right.
+        over_noise: f64,
+        /// Standard deviation of the residuals over the greatest force.
+        over_force: f64,
+    },
+    /// A curve has a pull-off: the model has none, and [`Curve::until_release`](crate::Curve::until_release) leaves it out.
+    PullOff {
+        /// Index of the curve.
+        curve: usize,
+        /// Force below the base line \[N\].
+        force: f64,
+    },
     /// The data determine a parameter by no better than a factor of two.
     Undetermined {
         /// Name of the parameter.
@@ -65,9 +77,17 @@ pub enum FitWarning {
 impl fmt::Display for FitWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            FitWarning::Misfit => f.write_str(
-                "the residuals are not independent: try another model of the material, the tip or the noise",
+            FitWarning::Misfit { over_noise, over_force } => write!(
+                f,
+                "the residuals are not independent: {over_noise:.2} times the noise, {:.2} % of the greatest force; see Fit::variants for what this does to the modulus",
+                100.0 * over_force
             ),
+            FitWarning::PullOff { curve, force } => {
+                write!(
+                    f,
+                    "curve {curve}: a pull-off of {force:.2e} N, which the model has not: use Curve::until_release"
+                )
+            }
             FitWarning::Undetermined { parameter } => {
                 write!(f, "{parameter} is uncertain by more than a factor of two: fix it, or measure where it matters")
             }
@@ -109,7 +129,8 @@ impl Fit {
         if self.runs().probability < UNLIKELY && self.runs().statistic < 0.0
             || self.correlations().probability < UNLIKELY
         {
-            warnings.push(FitWarning::Misfit);
+            let [over_noise, over_force] = self.misfit();
+            warnings.push(FitWarning::Misfit { over_noise, over_force });
         }
         if let Some((model, sum)) = self.contained.filter(|(_, sum)| *sum < (1.0 - SAME_SUM) * self.sum) {
             warnings.push(FitWarning::AboveContained { model, ratio: sum / self.sum });
@@ -121,6 +142,8 @@ impl Fit {
             .enumerate()
             .filter(|(_, noise)| self.identification.fits_correlation() && is_bound(noise));
         warnings.extend(bound.map(|(curve, _)| FitWarning::Correlation { curve }));
+        let pulled = self.curves().iter().enumerate();
+        warnings.extend(pulled.filter_map(|(curve, of)| Some(FitWarning::PullOff { curve, force: of.pull_off()? })));
         let limits = self.estimates().iter().filter_map(|estimate| Some((estimate, estimate.limit?)));
         warnings
             .extend(limits.map(|(estimate, limit)| FitWarning::AtLimit { parameter: estimate.name.clone(), limit }));
