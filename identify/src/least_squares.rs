@@ -9,6 +9,10 @@ use crate::error::{Error, Result};
 const MAX_ITERATIONS: usize = 200;
 /// A search ends where the linearised residuals promise less than this fraction of the sum of squares.
 const ENOUGH: f64 = 1e-10;
+/// The same where steps are damped so much that the linearised residuals hold nowhere: at kinks, where samples are about to touch or to leave.
+const AT_KINK: f64 = 1e-9;
+/// A search that reduces the sum of squares by less than this fraction in its last iteration has not failed.
+const SLOW: f64 = 1e-6;
 /// Longest step of a coordinate: a factor of e² in a modulus.
 const LONGEST_STEP: f64 = 2.0;
 /// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
@@ -37,7 +41,7 @@ pub(crate) fn minimise(
     let mut x = start;
     let mut r = residuals(&x)?;
     let mut sum = square(&r);
-    let (mut damping, mut growth) = (DAMPING[1], 2.0);
+    let (mut damping, mut growth, mut is_slow) = (DAMPING[1], 2.0, false);
     for iteration in 1..=MAX_ITERATIONS {
         let slopes = jacobian(&x)?;
         let model = Linear::new(&slopes, &r);
@@ -56,7 +60,9 @@ pub(crate) fn minimise(
             if let Some((reduced, residuals)) = trial.filter(|(reduced, _)| *reduced < sum) {
                 let gain = (sum - reduced) / promised;
                 // at a kink, shorter and shorter steps reduce the sum less and less
-                let is_enough = promised.max(sum - reduced) <= ENOUGH * sum;
+                let reduction = promised.max(sum - reduced);
+                let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK } else { ENOUGH };
+                is_slow = reduction <= SLOW * sum;
                 damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
                 growth = 2.0;
                 (x, r, sum) = (moved, residuals, reduced);
@@ -67,7 +73,7 @@ pub(crate) fn minimise(
             }
             (damping, growth) = (damping * growth, growth * 2.0);
         };
-        if done {
+        if done || is_slow && iteration == MAX_ITERATIONS {
             let jacobian = jacobian(&x)?;
             return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations: iteration });
         }

@@ -5,6 +5,7 @@ mod coverage;
 mod data;
 mod drainage;
 mod dynamic;
+mod instruments;
 mod nested;
 mod noise;
 mod protocols;
