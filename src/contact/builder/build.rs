@@ -14,7 +14,7 @@ use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
-use crate::error::{AdhesionError, Error, KernelError, RanksError, Result, StepError, count_within, length, positive};
+use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, count_within, length, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
@@ -39,7 +39,7 @@ impl Builder {
     /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     ///
     /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`]); a scene that
-    /// cannot be shared out is refused ([`RanksError::NotShared`]).
+    /// cannot be shared out is refused ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
             self.validate()?;
@@ -108,7 +108,7 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
-        self.special().map_or(Ok(()), |[what, _]| Err(RanksError::NotShared { what }.into()))
+        self.special().map_or(Ok(()), |[what, _]| Err(Error::not_shared(what)))
     }
 
     /// What neither ranks nor surfaces that attract each other cover, and what to do.
@@ -192,7 +192,7 @@ impl Builder {
         let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
         let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
         let refused = self.special().or(shared).or(planned);
-        refused.map_or(Ok(()), |[what, cure]| Err(AdhesionError::NotCovered { what, cure }.into()))
+        refused.map_or(Ok(()), |[what, cure]| Err(Error::not_covered(Special::Attraction, what, cure)))
     }
 
     /// Material, kernel and history.
@@ -234,7 +234,7 @@ fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     match has {
         has if *has == (0..n1) => Ok(&gap[own.start * n2..own.end * n2]),
         has if *has == own => Ok(gap),
-        _ => Err(RanksError::NotShared { what: "a geometry that was given for other ranks" }.into()),
+        _ => Err(Error::not_shared("a geometry that was given for other ranks")),
     }
 }
 
