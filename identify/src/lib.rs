@@ -2,8 +2,8 @@
 //! nanoindenter or a load cell.
 //!
 //! A tip is pressed into a body, held, and drawn back; force and drive are measured over time. The crate finds the contact
-//! modulus over time, E*(t), with its uncertainty. The force of every model is computed exactly, for any tip, layer and
-//! history, retraction included ([`viscocontact::states`]).
+//! modulus over time, E*(t), with its uncertainty. The force of every model is computed for any tip, layer and history,
+//! retraction and renewed contact included, as on elastic states ([`viscocontact::states`]).
 //!
 //! | task | start at |
 //! |---|---|
@@ -13,6 +13,8 @@
 //! | fit each curve of a force map, on several threads | [`Identification::fit_each`] |
 //! | find a spectrum without a model, and the decades that the data determine | [`Fit::free_spectrum`], [`Fit::decades`] |
 //! | compare models | [`ranked`] |
+//! | see what a misfit does to the modulus | [`Fit::variants`] |
+//! | cut a curve | [`Curve::within`], [`Curve::until_release`] |
 //! | check a fit by the stepper in space | [`Fit::verify`] |
 //! | tables and pictures | [`Summary`], `Fit::picture` with the feature `plot` |
 //! | the complex modulus of a small oscillation | [`Curve::complex_modulus`] |
