@@ -84,7 +84,7 @@ fn curves_of_unequal_noise_are_weighed() {
     let (mut joint, mut alone) = (Vec::new(), Vec::new());
     for seed in 0..seeds() {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);
-        let curves = [noisy(&experiments[0], 0.004, 0.0, rng), noisy(&experiments[1], 0.08, 0.0, rng)];
+        let curves = [noisy(&experiments[0], 0.002, 0.0, rng), noisy(&experiments[1], 0.04, 0.0, rng)];
         alone.push(fitting.fit(&curves[..1]).unwrap());
         joint.push(fitting.fit(&curves).unwrap());
     }
