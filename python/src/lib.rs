@@ -1,0 +1,71 @@
+//! viscocontact for Python: arrays in, arrays out. The GIL is free while Rust computes; nothing is computed here.
+
+mod arrays;
+mod attraction;
+mod checkpoint;
+mod contact;
+mod errors;
+mod fields;
+mod grid;
+mod interrupt;
+mod kernels;
+mod loads;
+mod maps;
+mod materials;
+mod measured;
+mod observe;
+mod recipe;
+mod reports;
+mod run;
+mod scene;
+mod scratch;
+mod shapes;
+mod states;
+mod temperature;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
+    #[pymodule_export]
+    use crate::attraction::Attraction;
+    #[pymodule_export]
+    use crate::contact::{Snapshot, ViscoelasticContact};
+    #[pymodule_export]
+    use crate::errors::{Cancelled, ConvergenceError};
+    #[pymodule_export]
+    use crate::grid::Grid;
+    #[pymodule_export]
+    use crate::kernels::{InfluenceKernel, Layer};
+    #[pymodule_export]
+    use crate::loads::{Load, LoadHistory};
+    #[pymodule_export]
+    use crate::maps::HeightMap;
+    #[pymodule_export]
+    use crate::materials::{Material, Rheology, Tension, published_materials};
+    #[pymodule_export]
+    use crate::measured::{MasterCurve, Measurements};
+    #[pymodule_export]
+    use crate::recipe::again;
+    #[pymodule_export]
+    use crate::observe::SubsurfaceStress;
+    #[pymodule_export]
+    use crate::reports::{BodyState, StepReport};
+    #[pymodule_export]
+    use crate::run::{Run, Sample, Times};
+    #[pymodule_export]
+    use crate::scene::memory;
+    #[pymodule_export]
+    use crate::states::{ElasticStates, StatesContact};
+    #[pymodule_export]
+    use crate::shapes::Shape;
+    #[pymodule_export]
+    use crate::temperature::{TemperatureHistory, TimeTemperature};
+}
