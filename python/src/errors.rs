@@ -45,7 +45,7 @@ impl<T> OrRaise<T> for Result<T, IdentifyError> {
 
 /// The exception of an error: that of the user's own function, if it raised one; else by kind.
 pub fn raise(error: &Error) -> PyErr {
-    if let Some(raised) = Raised::take().or_else(|| raised_by_user(error)) {
+    if let Some(raised) = raised().or_else(|| raised_by_user(error)) {
         return raised;
     }
     let text = with_causes(error);
@@ -91,21 +91,17 @@ fn raised_by_user(error: &Error) -> Option<PyErr> {
 
 /// The last exception of a Python function for which the crate has no way to return an error; the function then gives NaN, which the
 /// crate refuses.
-pub struct Raised;
+pub fn raised_number<T>(result: PyResult<T>, nan: T) -> T {
+    result.unwrap_or_else(|error| {
+        *RAISED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+        nan
+    })
+}
 
 static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
 
-impl Raised {
-    pub fn or_nan(result: PyResult<f64>) -> f64 {
-        result.unwrap_or_else(|error| {
-            *RAISED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-            f64::NAN
-        })
-    }
-
-    fn take() -> Option<PyErr> {
-        RAISED.lock().unwrap_or_else(PoisonError::into_inner).take()
-    }
+fn raised() -> Option<PyErr> {
+    RAISED.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 /// The option of this name, or an error that lists the names.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use numpy::Complex64;
+use numpy::{Complex64, IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -216,12 +216,7 @@ impl Rheology {
     fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let spectrum = self.spectrum()?;
         let (values, shape) = values("omega", omega)?;
-        let moduli: Vec<Complex64> = values
-            .into_iter()
-            .map(|omega| spectrum.complex_modulus(omega))
-            .map(|modulus| Complex64::new(modulus.re, modulus.im))
-            .collect();
-        use numpy::{IntoPyArray, PyArrayMethods};
+        let moduli: Vec<Complex64> = values.into_iter().map(|omega| spectrum.complex_modulus(omega)).collect();
         Ok(moduli.into_pyarray(py).reshape(shape)?.into_any())
     }
 
@@ -297,6 +292,12 @@ impl Tension {
 pub struct Material {
     pub material: rh::Material,
     recipe: Recipe,
+}
+
+impl Material {
+    pub fn by(recipe: Recipe, material: rh::Material) -> Material {
+        Material { material, recipe }
+    }
 }
 
 #[pymethods]

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use viscocontact::rheology as rh;
 
 use crate::arrays::{mapped, pairs};
-use crate::errors::{OrRaise, Raised};
+use crate::errors::{OrRaise, raised_number};
 use crate::materials::Rheology;
 use crate::recipe::{Recipe, Reduced};
 
@@ -94,7 +94,7 @@ impl TemperatureHistory {
             rh::TemperatureHistory::constant(given, constant)
         } else if temperature.is_callable() {
             let function = temperature.clone().unbind();
-            let at = move |t: f64| Raised::or_nan(Python::attach(|py| function.call1(py, (t,))?.extract::<f64>(py)));
+            let at = move |t: f64| raised_number(Python::attach(|py| function.call1(py, (t,))?.extract(py)), f64::NAN);
             rh::TemperatureHistory::function(given, at, &corners)
         } else {
             rh::TemperatureHistory::table(given, &pairs("temperature", &temperature)?)
