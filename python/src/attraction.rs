@@ -18,8 +18,8 @@ use crate::recipe::{Recipe, Reduced};
 /// Laws have the `work` of separation w [J/m²] and a `range` ρ [m], or the `greatest` traction [Pa] in its place.
 ///
 /// >>> law = Attraction.exponential(0.05, 0.1e-6)
-/// >>> law.traction(0.0), law.work
-/// (500000.0, 0.05)
+/// >>> law.work, law.range
+/// (0.05, 1e-07)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Attraction {
     pub law: Arc<dyn Law>,

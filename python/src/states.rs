@@ -35,7 +35,7 @@ use crate::temperature::TemperatureHistory;
 ///
 /// >>> tip = ElasticStates.sphere(10e-3)
 /// >>> round(tip.approach(1.0), 6), round(tip.stiffness(1.0), 6)
-/// (0.178444, 0.084343)
+/// (3.831547, 0.391487)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct ElasticStates {
     pub states: Arc<st::ElasticStates>,
@@ -310,7 +310,7 @@ impl ElasticStates {
 /// >>> report = contact.step(0.0, Load.force(1.0))
 /// >>> report = contact.step(2.0, Load.force(1.0))
 /// >>> f"{contact.contact_area * 1e6:.2f} mm²"
-/// '9.95 mm²'
+/// '9.94 mm²'
 #[pyclass(module = "viscocontact")]
 pub struct StatesContact {
     pub held: Held<st::StatesContact>,
