@@ -162,7 +162,8 @@ struct OwnLaw {
 impl OwnLaw {
     fn call(&self, function: &Py<PyAny>, gap: f64) -> f64 {
         Python::attach(|py| function.call1(py, (gap,))?.extract(py)).unwrap_or_else(|error: PyErr| {
-            *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(UserError::new("the attraction", error));
+            *self.failure.lock().unwrap_or_else(PoisonError::into_inner) =
+                Some(UserError::new("the attraction", error));
             f64::NAN
         })
     }

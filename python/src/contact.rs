@@ -157,7 +157,13 @@ impl ViscoelasticContact {
     }
 
     /// A step in which the indenter and the grid move over the bodies by whole cells along x1 and x2. Needs frame="indenter".
-    fn step_over(&mut self, py: Python<'_>, cells: [isize; 2], dt: f64, load: &Bound<'_, PyAny>) -> PyResult<StepReport> {
+    fn step_over(
+        &mut self,
+        py: Python<'_>,
+        cells: [isize; 2],
+        dt: f64,
+        load: &Bound<'_, PyAny>,
+    ) -> PyResult<StepReport> {
         let loads = loads(load)?;
         self.compute(py, |contact, _| contact.step_over(cells, dt, &loads)).map(StepReport)
     }

@@ -31,7 +31,10 @@ pub struct Experiment(pub id::Experiment);
 impl Experiment {
     fn of(protocol: id::Protocol, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Experiment> {
         let experiment = id::Experiment::new(protocol, Arc::clone(&tip.states));
-        stiffness.map_or(Ok(experiment.clone()), |stiffness| experiment.with_spring(stiffness)).or_raise().map(Experiment)
+        stiffness
+            .map_or(Ok(experiment.clone()), |stiffness| experiment.with_spring(stiffness))
+            .or_raise()
+            .map(Experiment)
     }
 }
 
@@ -39,7 +42,12 @@ impl Experiment {
 impl Experiment {
     #[new]
     #[pyo3(signature = (times, drive, tip, *, stiffness=None))]
-    fn new(times: &Bound<'_, PyAny>, drive: &Bound<'_, PyAny>, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Experiment> {
+    fn new(
+        times: &Bound<'_, PyAny>,
+        drive: &Bound<'_, PyAny>,
+        tip: &ElasticStates,
+        stiffness: Option<f64>,
+    ) -> PyResult<Experiment> {
         let protocol = id::Protocol::new(column("times", times)?, column("drive", drive)?).or_raise()?;
         Experiment::of(protocol, tip, stiffness)
     }
@@ -47,7 +55,13 @@ impl Experiment {
     /// From 0 to `depth` [m], held there, and back, within the `durations` of rise, hold and fall [s], sampled at `interval` [s].
     #[staticmethod]
     #[pyo3(signature = (depth, durations, interval, tip, *, stiffness=None))]
-    fn trapezoid(depth: f64, durations: [f64; 3], interval: f64, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Experiment> {
+    fn trapezoid(
+        depth: f64,
+        durations: [f64; 3],
+        interval: f64,
+        tip: &ElasticStates,
+        stiffness: Option<f64>,
+    ) -> PyResult<Experiment> {
         Experiment::of(id::Protocol::trapezoid(depth, durations, interval).or_raise()?, tip, stiffness)
     }
 
@@ -98,7 +112,12 @@ impl Curve {
 
     /// The complex contact modulus of an oscillation of the drive at `frequency` [Hz] in a window of times [s], with its drive at first
     /// touch [m]: E′ + iE″ [Pa] and the standard errors of both.
-    fn complex_modulus(&self, frequency: f64, window: (f64, f64), contact_point: f64) -> PyResult<(numpy::Complex64, (f64, f64))> {
+    fn complex_modulus(
+        &self,
+        frequency: f64,
+        window: (f64, f64),
+        contact_point: f64,
+    ) -> PyResult<(numpy::Complex64, (f64, f64))> {
         let of = self.0.complex_modulus(frequency, window.0..window.1, contact_point).or_raise()?;
         Ok((numpy::Complex64::new(of.storage, of.loss), (of.storage_error, of.loss_error)))
     }
@@ -117,9 +136,15 @@ impl Curve {
     /// The relaxation of a hold as E∞ + E₁ exp(−t/τ), with the `correction` of its ramp ("step", "half_ramp" or "factor"): "equilibrium",
     /// "relaxing" [Pa], "time" [s].
     #[pyo3(signature = (contact_point=0.0, correction="factor"))]
-    fn hold_relaxation<'py>(&self, py: Python<'py>, contact_point: f64, correction: &str) -> PyResult<Bound<'py, PyDict>> {
+    fn hold_relaxation<'py>(
+        &self,
+        py: Python<'py>,
+        contact_point: f64,
+        correction: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
         use id::usual::RampCorrection::{Factor, HalfRamp, Step};
-        let correction = choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
+        let correction =
+            choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
         let of = py.detach(|| id::usual::hold_relaxation(&self.0, contact_point, correction)).or_raise()?;
         let all = PyDict::new(py);
         all.set_item("equilibrium", of.equilibrium)?;
@@ -160,7 +185,11 @@ impl Recording {
         let given = |name: &str, values: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Vec<f64>>> {
             let Some(values) = values.map(|values| column(name, values)).transpose()? else { return Ok(None) };
             let m = values.len();
-            if m == n { Ok(Some(values)) } else { Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time"))) }
+            if m == n {
+                Ok(Some(values))
+            } else {
+                Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")))
+            }
         };
         let mut recording = id::Recording::new(times);
         if let Some(force) = given("force", force)? {

@@ -13,7 +13,12 @@ use pyo3::prelude::*;
 use viscocontact::{Error, ErrorKind};
 use viscocontact_identify::Error as IdentifyError;
 
-create_exception!(viscocontact, Cancelled, PyException, "The call was ended by its caller: a report of progress returned False.");
+create_exception!(
+    viscocontact,
+    Cancelled,
+    PyException,
+    "The call was ended by its caller: a report of progress returned False."
+);
 create_exception!(
     viscocontact,
     ConvergenceError,

@@ -24,7 +24,9 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
     match given.extract::<(String, f64)>() {
         Ok((word, start)) if word == "from" => Ok(Some(id::Nuisance::FittedFrom(start))),
-        _ => Err(PyTypeError::new_err(format!("{name}: a number (known), True (fitted) or (\"from\", start) is needed"))),
+        _ => {
+            Err(PyTypeError::new_err(format!("{name}: a number (known), True (fitted) or (\"from\", start) is needed")))
+        }
     }
 }
 
@@ -89,7 +91,11 @@ impl Identification {
                 (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
                 (_, Ok("white")) => id::Noise::White,
                 (_, Ok("autoregressive")) => id::Noise::Autoregressive,
-                _ => return Err(PyTypeError::new_err("noise: \"white\", \"autoregressive\" or its coefficient is needed")),
+                _ => {
+                    return Err(PyTypeError::new_err(
+                        "noise: \"white\", \"autoregressive\" or its coefficient is needed",
+                    ));
+                }
             });
         }
         if let Some(sigma) = known_sigma {
@@ -155,7 +161,8 @@ impl Identification {
     ) -> PyResult<std::collections::BTreeMap<String, f64>> {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
-        let experiments: Vec<id::Experiment> = experiments.iter().map(|experiment| experiment.get().0.clone()).collect();
+        let experiments: Vec<id::Experiment> =
+            experiments.iter().map(|experiment| experiment.get().0.clone()).collect();
         let bounds = py.detach(|| self.0.bounds(&experiments, &named, sigma)).or_raise()?;
         Ok(bounds.names.iter().filter_map(|name| Some((name.clone(), bounds.deviation(name)?))).collect())
     }
@@ -211,7 +218,10 @@ impl Estimate {
     }
 
     fn __repr__(&self) -> String {
-        format!("Estimate({}={:e}, 95 %: {:e} to {:e})", self.0.name, self.0.value, self.0.interval[0], self.0.interval[1])
+        format!(
+            "Estimate({}={:e}, 95 %: {:e} to {:e})",
+            self.0.name, self.0.value, self.0.interval[0], self.0.interval[1]
+        )
     }
 }
 
@@ -309,7 +319,8 @@ impl Fit {
     }
 
     fn __repr__(&self) -> String {
-        let all: Vec<String> = self.0.estimates().iter().map(|of| format!("{}={:e} ± {:.1e}", of.name, of.value, of.deviation)).collect();
+        let all: Vec<String> =
+            self.0.estimates().iter().map(|of| format!("{}={:e} ± {:.1e}", of.name, of.value, of.deviation)).collect();
         format!("Fit({})", all.join(", "))
     }
 }

@@ -16,7 +16,10 @@ use crate::recipe::{Recipe, Reduced};
 
 /// The axis of an index, 0 or 1.
 pub fn axis(index: usize) -> PyResult<Axis> {
-    Axis::BOTH.get(index).copied().ok_or_else(|| PyValueError::new_err(format!("axis = {index} is not allowed: it must be 0 (x1) or 1 (x2)")))
+    Axis::BOTH
+        .get(index)
+        .copied()
+        .ok_or_else(|| PyValueError::new_err(format!("axis = {index} is not allowed: it must be 0 (x1) or 1 (x2)")))
 }
 
 /// A layer on a base.
@@ -47,14 +50,25 @@ impl Layer {
 
     /// A layer bonded to a half-space of the same creep function: `shear_ratio` is the layer's shear modulus over the base's.
     #[staticmethod]
-    fn bonded_to_half_space(py: Python<'_>, thickness: f64, nu: f64, shear_ratio: f64, base_nu: f64) -> PyResult<Layer> {
+    fn bonded_to_half_space(
+        py: Python<'_>,
+        thickness: f64,
+        nu: f64,
+        shear_ratio: f64,
+        base_nu: f64,
+    ) -> PyResult<Layer> {
         let layer = vc::Layer::bonded_to_half_space(thickness, nu, shear_ratio, base_nu).or_raise()?;
         Ok(Layer { layer, recipe: Recipe::new(py, "bonded_to_half_space", (thickness, nu, shear_ratio, base_nu))? })
     }
 
     /// A layer of one material bonded to a half-space of another: for `SteadySliding` with `base`.
     #[staticmethod]
-    fn bonded_to_material(py: Python<'_>, thickness: f64, layer: Bound<'_, Material>, base: Bound<'_, Material>) -> PyResult<Layer> {
+    fn bonded_to_material(
+        py: Python<'_>,
+        thickness: f64,
+        layer: Bound<'_, Material>,
+        base: Bound<'_, Material>,
+    ) -> PyResult<Layer> {
         let made = vc::Layer::bonded_to_material(thickness, &layer.get().material, &base.get().material).or_raise()?;
         Ok(Layer { layer: made, recipe: Recipe::new(py, "bonded_to_material", (thickness, layer, base))? })
     }
@@ -127,7 +141,9 @@ impl InfluenceKernel {
     #[staticmethod]
     fn periodic_along(py: Python<'_>, grid: Bound<'_, Grid>, along: usize, datum: f64) -> PyResult<InfluenceKernel> {
         let (on, axis) = (&grid.get().0.clone(), axis(along)?);
-        InfluenceKernel::made(py, "periodic_along", (grid, along, datum), || vc::InfluenceKernel::periodic_along(on, axis, datum))
+        InfluenceKernel::made(py, "periodic_along", (grid, along, datum), || {
+            vc::InfluenceKernel::periodic_along(on, axis, datum)
+        })
     }
 
     /// A line contact in plane strain, on a grid of n × 1 cells; displacements are measured from the surface at the distance `datum` [m].
@@ -154,7 +170,12 @@ impl InfluenceKernel {
     /// A layer in line contact, on a grid of n × 1 cells; on a half-space, with a `datum` [m].
     #[staticmethod]
     #[pyo3(signature = (grid, layer, datum=None))]
-    fn layer_line(py: Python<'_>, grid: Bound<'_, Grid>, layer: Bound<'_, Layer>, datum: Option<f64>) -> PyResult<InfluenceKernel> {
+    fn layer_line(
+        py: Python<'_>,
+        grid: Bound<'_, Grid>,
+        layer: Bound<'_, Layer>,
+        datum: Option<f64>,
+    ) -> PyResult<InfluenceKernel> {
         let (on, of) = (&grid.get().0.clone(), layer.get().layer.clone());
         InfluenceKernel::made(py, "layer_line", (grid, layer, datum), || vc::InfluenceKernel::layer_line(on, of, datum))
     }
@@ -181,8 +202,11 @@ impl InfluenceKernel {
     fn from_coefficients(py: Python<'_>, grid: Bound<'_, Grid>, coefficient: Py<PyAny>) -> PyResult<InfluenceKernel> {
         let (on, kept) = (&grid.get().0.clone(), coefficient.clone_ref(py));
         let raised = Mutex::new(None);
-        let call = |i: isize, j: isize| caught(&raised, || Python::attach(|py| coefficient.call1(py, (i, j))?.extract(py)));
-        let kernel = InfluenceKernel::made(py, "from_coefficients", (grid, kept), || vc::InfluenceKernel::from_coefficients(on, call));
+        let call =
+            |i: isize, j: isize| caught(&raised, || Python::attach(|py| coefficient.call1(py, (i, j))?.extract(py)));
+        let kernel = InfluenceKernel::made(py, "from_coefficients", (grid, kept), || {
+            vc::InfluenceKernel::from_coefficients(on, call)
+        });
         raised_or(raised, kernel)
     }
 
@@ -192,8 +216,10 @@ impl InfluenceKernel {
     fn from_spectrum(py: Python<'_>, grid: Bound<'_, Grid>, compliance: Py<PyAny>) -> PyResult<InfluenceKernel> {
         let (on, kept) = (&grid.get().0.clone(), compliance.clone_ref(py));
         let raised = Mutex::new(None);
-        let call = |q1: f64, q2: f64| caught(&raised, || Python::attach(|py| compliance.call1(py, (q1, q2))?.extract(py)));
-        let kernel = InfluenceKernel::made(py, "from_spectrum", (grid, kept), || vc::InfluenceKernel::from_spectrum(on, call));
+        let call =
+            |q1: f64, q2: f64| caught(&raised, || Python::attach(|py| compliance.call1(py, (q1, q2))?.extract(py)));
+        let kernel =
+            InfluenceKernel::made(py, "from_spectrum", (grid, kept), || vc::InfluenceKernel::from_spectrum(on, call));
         raised_or(raised, kernel)
     }
 
@@ -208,22 +234,38 @@ impl InfluenceKernel {
     /// With `out`, an array of float64 of the shape of the grid, into it: no array is made.
     /// Raises ValueError if the shape is another, a value is NaN, or `out` is read-only.
     #[pyo3(signature = (pressure, out=None))]
-    fn convolve<'py>(&self, py: Python<'py>, pressure: &Bound<'py, PyAny>, out: Option<Bound<'py, PyAny>>) -> PyResult<Array<'py>> {
+    fn convolve<'py>(
+        &self,
+        py: Python<'py>,
+        pressure: &Bound<'py, PyAny>,
+        out: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
         let cells = self.kernel.grid().cells();
         let pressure = field("pressure", pressure, cells)?;
         let Some(out) = out else {
             let mut values = vec![0.0; pressure.len()];
-            py.detach(|| self.kernel.workspace().and_then(|mut work| self.kernel.convolve(&pressure, &mut values, &mut work))).or_raise()?;
+            py.detach(|| {
+                self.kernel.workspace().and_then(|mut work| self.kernel.convolve(&pressure, &mut values, &mut work))
+            })
+            .or_raise()?;
             return to_array(py, values, &cells);
         };
-        let array = out.cast::<PyArrayDyn<f64>>().map_err(|_| PyTypeError::new_err("out: an array of float64 is needed"))?;
+        let array =
+            out.cast::<PyArrayDyn<f64>>().map_err(|_| PyTypeError::new_err("out: an array of float64 is needed"))?;
         if *array.shape() != cells {
-            return Err(PyValueError::new_err(format!("out: the shape {cells:?} of the grid is needed, the array has {:?}", array.shape())));
+            return Err(PyValueError::new_err(format!(
+                "out: the shape {cells:?} of the grid is needed, the array has {:?}",
+                array.shape()
+            )));
         }
         {
             let mut writable = array.try_readwrite().map_err(|error| PyValueError::new_err(format!("out: {error}")))?;
-            let values = writable.as_slice_mut().map_err(|_| PyValueError::new_err("out: a contiguous array is needed"))?;
-            py.detach(|| self.kernel.workspace().and_then(|mut work| self.kernel.convolve(&pressure, values, &mut work))).or_raise()?;
+            let values =
+                writable.as_slice_mut().map_err(|_| PyValueError::new_err("out: a contiguous array is needed"))?;
+            py.detach(|| {
+                self.kernel.workspace().and_then(|mut work| self.kernel.convolve(&pressure, values, &mut work))
+            })
+            .or_raise()?;
         }
         Ok(array.clone())
     }

@@ -65,11 +65,11 @@ mod _native {
     #[pymodule_export]
     use crate::measured::{MasterCurve, Measurements};
     #[pymodule_export]
-    use crate::recipe::again;
-    #[pymodule_export]
     use crate::observe::SubsurfaceStress;
     #[pymodule_export]
     use crate::plan::Plan;
+    #[pymodule_export]
+    use crate::recipe::again;
     #[pymodule_export]
     use crate::reports::{BodyState, StepReport};
     #[pymodule_export]
@@ -77,11 +77,11 @@ mod _native {
     #[pymodule_export]
     use crate::scene::memory;
     #[pymodule_export]
+    use crate::shapes::Shape;
+    #[pymodule_export]
     use crate::sliding::{SlidingReport, SlidingTable, SteadySliding};
     #[pymodule_export]
     use crate::states::{ElasticStates, StatesContact};
-    #[pymodule_export]
-    use crate::shapes::Shape;
     #[pymodule_export]
     use crate::temperature::{TemperatureHistory, TimeTemperature};
     #[pymodule_export]

@@ -159,7 +159,13 @@ impl LoadHistory {
     /// The first load for the part `duty` of each `period` [s], then the second.
     #[staticmethod]
     #[pyo3(signature = (first, second, period, duty=0.5))]
-    fn square(py: Python<'_>, first: Bound<'_, Load>, second: Bound<'_, Load>, period: f64, duty: f64) -> PyResult<LoadHistory> {
+    fn square(
+        py: Python<'_>,
+        first: Bound<'_, Load>,
+        second: Bound<'_, Load>,
+        period: f64,
+        duty: f64,
+    ) -> PyResult<LoadHistory> {
         let history = ld::Periodic::square(first.get().load, second.get().load, period, duty).or_raise()?;
         LoadHistory::made(py, "square", (first, second, period, duty), Arc::new(history))
     }
@@ -259,7 +265,8 @@ pub fn history(given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn History>> {
     if given.is_callable() {
         return Ok(LoadHistory::function(py, given.clone().unbind(), vec![])?.history);
     }
-    let needed = "load: a Load, a LoadHistory, a sequence of (time, Load), or a function of time that returns a Load is needed";
+    let needed =
+        "load: a Load, a LoadHistory, a sequence of (time, Load), or a function of time that returns a Load is needed";
     let rows = rows(given).map_err(|_| PyTypeError::new_err(needed))?;
     Ok(Arc::new(ld::PiecewiseLinear::new(&rows).or_raise()?))
 }

@@ -75,7 +75,12 @@ impl HeightMap {
 impl HeightMap {
     #[new]
     #[pyo3(signature = (heights, lengths, periodic=false))]
-    fn new(py: Python<'_>, heights: &Bound<'_, PyAny>, lengths: PerAxis<f64>, periodic: bool) -> PyResult<PyClassInitializer<HeightMap>> {
+    fn new(
+        py: Python<'_>,
+        heights: &Bound<'_, PyAny>,
+        lengths: PerAxis<f64>,
+        periodic: bool,
+    ) -> PyResult<PyClassInitializer<HeightMap>> {
         let (heights, cells) = plane("heights", heights)?;
         let map = geo::HeightMap::new(cells, lengths.both(), heights).or_raise()?;
         HeightMap::parts(py, if periodic { map.periodic() } else { map })
@@ -104,11 +109,14 @@ impl HeightMap {
     ) -> PyResult<Py<HeightMap>> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         let file = File::open(&path).map_err(|error| {
-            raise(&FileError::Unreadable {
-                file: path.display().to_string(),
-                reason: error.to_string(),
-                kind: Some(error.kind()),
-            }.into())
+            raise(
+                &FileError::Unreadable {
+                    file: path.display().to_string(),
+                    reason: error.to_string(),
+                    kind: Some(error.kind()),
+                }
+                .into(),
+            )
         })?;
         let unit = unit.map(|unit| unit.parse::<LengthUnit>().or_raise()).transpose()?;
         let mut format = TextFormat::default();
@@ -199,17 +207,17 @@ impl HeightMap {
     fn leveled(slf: &Bound<'_, Self>, form: &str) -> PyResult<Py<HeightMap>> {
         let forms = [("mean", Form::Mean), ("tilt", Form::Tilt), ("curvature", Form::Curvature)];
         let chosen = choice("form", form, &forms)?;
-        HeightMap::changed(slf, "leveled", (slf.clone(), form,), |map| map.leveled(chosen))
+        HeightMap::changed(slf, "leveled", (slf.clone(), form), |map| map.leveled(chosen))
     }
 
     /// The part of `shape` points that begins at the point `first`.
     fn cropped(slf: &Bound<'_, Self>, first: [usize; 2], shape: [usize; 2]) -> PyResult<Py<HeightMap>> {
-        HeightMap::changed(slf, "cropped", (slf.clone(), first, shape,), |map| map.cropped(first, shape))
+        HeightMap::changed(slf, "cropped", (slf.clone(), first, shape), |map| map.cropped(first, shape))
     }
 
     /// The mirror image along the chosen axes.
     fn flipped(slf: &Bound<'_, Self>, along: [bool; 2]) -> PyResult<Py<HeightMap>> {
-        HeightMap::changed(slf, "flipped", (slf.clone(), along,), |map| Ok(map.flipped(along)))
+        HeightMap::changed(slf, "flipped", (slf.clone(), along), |map| Ok(map.flipped(along)))
     }
 
     /// The map with x1 and x2 exchanged.
@@ -224,12 +232,12 @@ impl HeightMap {
 
     /// The map with all heights multiplied by `factor`.
     fn scaled(slf: &Bound<'_, Self>, factor: f64) -> PyResult<Py<HeightMap>> {
-        HeightMap::changed(slf, "scaled", (slf.clone(), factor,), |map| map.scaled(factor))
+        HeightMap::changed(slf, "scaled", (slf.clone(), factor), |map| map.scaled(factor))
     }
 
     /// The map with its middle at the point `center` [m].
     fn centered_at(slf: &Bound<'_, Self>, center: [f64; 2]) -> PyResult<Py<HeightMap>> {
-        HeightMap::changed(slf, "centered_at", (slf.clone(), center,), |map| map.centered_at(center))
+        HeightMap::changed(slf, "centered_at", (slf.clone(), center), |map| map.centered_at(center))
     }
 
     /// The map repeated along both axes, its lengths being the periods.

@@ -38,7 +38,13 @@ pub struct Measurements {
 fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
     let (x, y) = (column(names[0], x)?, column(names[1], y)?);
     if x.len() != y.len() {
-        return Err(PyValueError::new_err(format!("{}: {} given, {} needed, one for each of {}", names[1], y.len(), x.len(), names[0])));
+        return Err(PyValueError::new_err(format!(
+            "{}: {} given, {} needed, one for each of {}",
+            names[1],
+            y.len(),
+            x.len(),
+            names[0]
+        )));
     }
     Ok(x.into_iter().zip(y).collect())
 }
@@ -48,7 +54,8 @@ impl Measurements {
     /// Creep: times ≥ 0 [s] and compliances [1/Pa], in any order.
     #[staticmethod]
     fn creep(py: Python<'_>, times: Bound<'_, PyAny>, compliances: Bound<'_, PyAny>) -> PyResult<Measurements> {
-        let measurements = rh::Measurements::creep(&together(["times", "compliances"], &times, &compliances)?).or_raise()?;
+        let measurements =
+            rh::Measurements::creep(&together(["times", "compliances"], &times, &compliances)?).or_raise()?;
         Ok(Measurements { measurements, recipe: Recipe::new(py, "creep", (times, compliances))? })
     }
 
@@ -158,7 +165,8 @@ fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
         None => Ok(Units::SI),
         Some(units) if units.extract::<&str>().is_ok_and(|text| text == "headings") => Ok(Units::OF_HEADINGS),
         Some(units) => {
-            let (abscissa, value) = units.extract().map_err(|_| PyTypeError::new_err("units: \"headings\" or (abscissa, value)"))?;
+            let (abscissa, value) =
+                units.extract().map_err(|_| PyTypeError::new_err("units: \"headings\" or (abscissa, value)"))?;
             Units::new(abscissa, value).or_raise()
         }
     }
@@ -189,7 +197,9 @@ impl MasterCurve {
         law: Option<&TimeTemperature>,
         vertical_shifts: bool,
     ) -> PyResult<MasterCurve> {
-        let isotherms = isotherms.into_iter().map(|(temperature, measured)| rh::Isotherm::new(temperature, measured.get().measurements.clone()));
+        let isotherms = isotherms
+            .into_iter()
+            .map(|(temperature, measured)| rh::Isotherm::new(temperature, measured.get().measurements.clone()));
         let isotherms = isotherms.collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
         let curve = py.detach(|| match law {
             Some(law) => rh::MasterCurve::with_law(&law.law, isotherms),
@@ -230,7 +240,11 @@ impl MasterCurve {
     #[getter]
     fn shift_factors(&self) -> Vec<(f64, f64, f64)> {
         let (factors, errors) = (self.0.shift_factors(), self.0.shift_errors());
-        factors.into_iter().zip(errors).map(|((temperature, factor), (_, error))| (temperature, factor, error)).collect()
+        factors
+            .into_iter()
+            .zip(errors)
+            .map(|((temperature, factor), (_, error))| (temperature, factor, error))
+            .collect()
     }
 
     /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`.

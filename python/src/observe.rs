@@ -99,8 +99,9 @@ impl ViscoelasticContact {
     #[pyo3(signature = (*, in_counter_body=false))]
     fn stress(&self, py: Python<'_>, in_counter_body: bool) -> PyResult<SubsurfaceStress> {
         let contact = self.get()?;
-        let stress =
-            py.detach(|| if in_counter_body { contact.stress_in_counter_body() } else { contact.stress() }).or_raise()?;
+        let stress = py
+            .detach(|| if in_counter_body { contact.stress_in_counter_body() } else { contact.stress() })
+            .or_raise()?;
         Ok(SubsurfaceStress(stress))
     }
 }

@@ -76,7 +76,8 @@ impl Plan {
     ) -> PyResult<Plan> {
         let (history, accuracy) = (history(load)?, Accuracy::new(accuracy).or_raise()?);
         let (geometry, body) = (&*shape.get().geometry, &material.get().material);
-        let (made, temperature_of) = (kernel.as_ref(), temperature.as_ref().map(|temperature| &temperature.get().history));
+        let (made, temperature_of) =
+            (kernel.as_ref(), temperature.as_ref().map(|temperature| &temperature.get().history));
         let mut listener = Listener::new(progress);
         let plan = py.detach(|| {
             let of_grid = |grid: &viscocontact::Grid| kernel_on(made, grid);
@@ -181,12 +182,18 @@ impl Plan {
 
     fn __repr__(&self) -> String {
         let [n1, n2] = self.plan.grid.cells();
-        format!("Plan({n1} × {n2} cells, {} steps, {:.0} convolutions, {} bytes)", self.plan.steps, self.plan.convolutions, self.plan.bytes)
+        format!(
+            "Plan({n1} × {n2} cells, {} steps, {:.0} convolutions, {} bytes)",
+            self.plan.steps, self.plan.convolutions, self.plan.bytes
+        )
     }
 }
 
 /// The kernel that a function in Python makes on a grid.
-fn kernel_on(function: Option<&Py<PyAny>>, grid: &viscocontact::Grid) -> viscocontact::Result<viscocontact::InfluenceKernel> {
+fn kernel_on(
+    function: Option<&Py<PyAny>>,
+    grid: &viscocontact::Grid,
+) -> viscocontact::Result<viscocontact::InfluenceKernel> {
     let what = "the kernel of a plan";
     let made = Python::attach(|py| {
         let made = function.map(|function| function.call1(py, (Grid(grid.clone()),))).transpose()?;

@@ -64,7 +64,8 @@ impl Recipe {
     /// The call in one line; of arrays their shape alone.
     pub fn repr(&self, class: &Bound<'_, PyType>) -> PyResult<String> {
         let (py, class) = (class.py(), self.class(class.clone()));
-        let mut shown: Vec<String> = self.arguments.bind(py).iter().map(|value| shown(&value)).collect::<PyResult<_>>()?;
+        let mut shown: Vec<String> =
+            self.arguments.bind(py).iter().map(|value| shown(&value)).collect::<PyResult<_>>()?;
         if let Some(keywords) = &self.keywords {
             for (name, value) in keywords.bind(py) {
                 shown.push(format!("{name}={}", self::shown(&value)?));

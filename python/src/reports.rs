@@ -149,6 +149,9 @@ impl BodyState {
 
     fn __repr__(&self) -> String {
         let of = &self.0;
-        format!("BodyState(force={:e}, approach={:e}, tilt={:?}, contact_cells={})", of.force, of.approach, of.tilt, of.contact_cells)
+        format!(
+            "BodyState(force={:e}, approach={:e}, tilt={:?}, contact_cells={})",
+            of.force, of.approach, of.tilt, of.contact_cells
+        )
     }
 }

@@ -155,9 +155,6 @@ pub enum Held<C: Led> {
     Lost,
 }
 
-/// Steps of a table between two looks for a signal: those of contacts on states take a microsecond.
-const LISTEN: u64 = 256;
-
 /// Number of the next run.
 static NEXT: AtomicU64 = AtomicU64::new(0);
 
@@ -264,7 +261,9 @@ impl Run {
         Run { of: Of::States(contact), number, options }
     }
 
+    /// Signals are looked for in each step: `list(run)` runs no Python between them.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Report>> {
+        py.check_signals()?;
         let report = match &self.of {
             Of::Space(contact) => contact.bind(py).borrow_mut().next(py, self.number)?,
             Of::States(contact) => contact.bind(py).borrow_mut().next(py, self.number)?,
@@ -365,14 +364,10 @@ impl Run {
     /// array([1., 2., 5.])
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut columns: [Vec<f64>; 4] = Default::default();
-        let (sampled, mut steps) = (self.options.sample_at.is_some(), 0);
+        let sampled = self.options.sample_at.is_some();
         while self.next(py)?.is_some() {
             let passed = on_run!(self, py, run => py.detach(|| passed(run, sampled))).or_raise()?;
             passed.iter().for_each(|row| columns.iter_mut().zip(row).for_each(|(column, value)| column.push(*value)));
-            steps += 1;
-            if steps % LISTEN == 0 {
-                py.check_signals()?;
-            }
         }
         as_table(py, columns)
     }

@@ -38,7 +38,9 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
             settings.with_time_rule(choice(name, &text()?, &rules)?)
         }
         "edge" => settings.with_edge(choice(name, &text()?, &[("refuse", Edge::Refuse), ("allow", Edge::Allow)])?),
-        "frame" => settings.with_frame(choice(name, &text()?, &[("bodies", Frame::Bodies), ("indenter", Frame::Indenter)])?),
+        "frame" => {
+            settings.with_frame(choice(name, &text()?, &[("bodies", Frame::Bodies), ("indenter", Frame::Indenter)])?)
+        }
         _ => return Ok(None),
     }))
 }

@@ -25,7 +25,10 @@ impl Drop for Scratch {
     }
 }
 
-pub fn bytes_of<'py>(py: Python<'py>, save: impl FnOnce(&PathBuf) -> viscocontact::Result<()> + Send) -> PyResult<Bound<'py, PyBytes>> {
+pub fn bytes_of<'py>(
+    py: Python<'py>,
+    save: impl FnOnce(&PathBuf) -> viscocontact::Result<()> + Send,
+) -> PyResult<Bound<'py, PyBytes>> {
     let file = Scratch::new();
     py.detach(|| save(&file.0)).or_raise()?;
     Ok(PyBytes::new(py, &std::fs::read(&file.0)?))

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use viscocontact as vc;
 use vc::geometry::{self as geo, Geometry};
+use viscocontact as vc;
 
 use crate::arrays::{Array, plane, to_array};
 use crate::errors::OrRaise;
@@ -54,7 +54,8 @@ struct GapOnCells {
 impl Geometry for GapOnCells {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         let ([n1, n2], spacing) = (self.grid.cells(), self.grid.spacing());
-        let index = |x: f64, axis: usize, n: usize| ((x / spacing[axis] + 0.5 * n as f64).floor().max(0.0) as usize).min(n - 1);
+        let index =
+            |x: f64, axis: usize, n: usize| ((x / spacing[axis] + 0.5 * n as f64).floor().max(0.0) as usize).min(n - 1);
         self.gap[index(x1, 0, n1) * n2 + index(x2, 1, n2)]
     }
 
@@ -191,7 +192,9 @@ pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc
         let (gap, shape) = plane("geometry", given)?;
         if shape != grid.cells() {
             let cells = grid.cells();
-            return Err(PyValueError::new_err(format!("geometry: the shape {cells:?} of the grid is needed, the array has {shape:?}")));
+            return Err(PyValueError::new_err(format!(
+                "geometry: the shape {cells:?} of the grid is needed, the array has {shape:?}"
+            )));
         }
         return Ok(vec![Arc::new(GapOnCells { grid: grid.clone(), gap })]);
     }

@@ -98,7 +98,13 @@ impl SlidingReport {
 
     fn __repr__(&self) -> String {
         let of = &self.0;
-        format!("SlidingReport(velocity={:?} m/s, force={:e} N, friction={:.6}, contact_area={:e} m²)", of.velocity, of.force, of.friction(), of.contact_area)
+        format!(
+            "SlidingReport(velocity={:?} m/s, force={:e} N, friction={:.6}, contact_area={:e} m²)",
+            of.velocity,
+            of.force,
+            of.friction(),
+            of.contact_area
+        )
     }
 }
 
@@ -156,8 +162,8 @@ impl SteadySliding {
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
     ///
-    /// `progress` is called after each state with the part that is done, and ends the sweep where it returns False; Ctrl-C ends it between
-    /// two states.
+    /// `progress` is called after each state with the part that is done; where it returns False, the sweep ends with the states so far.
+    /// Ctrl-C ends it between two states.
     ///
     /// Returns the table of the states, each found from the one before: neighbours cost least.
     #[pyo3(signature = (velocities, loads, *, law=None, temperatures=None, progress=None))]
@@ -181,7 +187,8 @@ impl SteadySliding {
             _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
         }
         let mut listener = Listener::new(progress);
-        let table = py.detach(|| self.0.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
+        let table =
+            py.detach(|| self.0.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
         listener.result(table).map(SlidingTable)
     }
 

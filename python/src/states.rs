@@ -99,7 +99,7 @@ impl ElasticStates {
     ///     Whether `StatesContact.pressure` is possible.
     /// max_states : int, default 4000
     /// progress : function, optional
-    ///     Called with the number of states so far; the sweep ends with `Cancelled` where it returns False. Ctrl-C ends it, too.
+    ///     Called with the number of states so far; the sweep ends with these where it returns False. Ctrl-C ends it, too.
     /// settings
     ///     Keywords of `ViscoelasticContact` from `tolerance` on.
     ///
@@ -256,7 +256,11 @@ impl ElasticStates {
             });
             let rows = rows.or_raise()?;
             if rows.len() != times.len() {
-                let text = format!("times: they must ascend, each once, after 0: {} of {} were passed", rows.len(), times.len());
+                let text = format!(
+                    "times: they must ascend, each once, after 0: {} of {} were passed",
+                    rows.len(),
+                    times.len()
+                );
                 return Err(pyo3::exceptions::PyValueError::new_err(text));
             }
             values.extend(rows.iter().flat_map(|row| &row[1..]));
@@ -456,7 +460,8 @@ impl StatesContact {
         let contact = self.get()?;
         let fields = py.detach(|| contact.fields()).or_raise()?;
         let (all, cells) = (PyDict::new(py), self.cells()?);
-        for (name, field) in [("pressure", fields.pressure), ("displacement", fields.displacement), ("gap", fields.gap)] {
+        for (name, field) in [("pressure", fields.pressure), ("displacement", fields.displacement), ("gap", fields.gap)]
+        {
             all.set_item(name, to_array(py, field, &cells)?)?;
         }
         Ok(all)

@@ -88,7 +88,12 @@ pub struct TemperatureHistory {
 impl TemperatureHistory {
     #[new]
     #[pyo3(signature = (law, temperature, corners=vec![]))]
-    fn new(py: Python<'_>, law: Bound<'_, TimeTemperature>, temperature: Bound<'_, PyAny>, corners: Vec<f64>) -> PyResult<TemperatureHistory> {
+    fn new(
+        py: Python<'_>,
+        law: Bound<'_, TimeTemperature>,
+        temperature: Bound<'_, PyAny>,
+        corners: Vec<f64>,
+    ) -> PyResult<TemperatureHistory> {
         let given = law.get().law.clone();
         let history = if let Ok(constant) = temperature.extract::<f64>() {
             rh::TemperatureHistory::constant(given, constant)
@@ -99,7 +104,10 @@ impl TemperatureHistory {
         } else {
             rh::TemperatureHistory::table(given, &pairs("temperature", &temperature)?)
         };
-        Ok(TemperatureHistory { history: history.or_raise()?, recipe: Recipe::new(py, "", (law, temperature, corners))? })
+        Ok(TemperatureHistory {
+            history: history.or_raise()?,
+            recipe: Recipe::new(py, "", (law, temperature, corners))?,
+        })
     }
 
     /// The temperature [K] at times [s].

@@ -101,7 +101,7 @@ ERRORS = {
     "a load": (ValueError, "force", lambda: ball().step(0.0, vc.Load.force(math.nan))),
     "the edge": (ValueError, "enlarge the grid", lambda: ball().step(0.0, vc.Load.force(1e3))),
     "a missing file": (FileNotFoundError, "no_such.sdf", lambda: vc.HeightMap.read("no_such.sdf")),
-    "a file of another kind": (OSError, "cannot be read", lambda: vc.HeightMap.read(__file__, unit="um", lengths=1.0)),
+    "a file of another kind": (OSError, "line 1, column 1", lambda: vc.HeightMap.read(__file__, unit="um", lengths=1.0)),
     "memory": (MemoryError, "take fewer cells", lambda: ball(200_000)),
     "convergence": (vc.ConvergenceError, "iterations", lambda: ball(64, max_iterations=1).step(0.0, vc.Load.force(1.0))),
     "what is not covered": (NotImplementedError, "Settings::frame", lambda: ball().step_over((1, 0), 1.0, vc.Load.force(1.0))),
@@ -194,8 +194,8 @@ def test_progress_cancels():
     with pytest.raises(vc.Cancelled):
         list(contact.follow(vc.Load.force(1.0), 1.0, progress=lambda share: False))
     assert contact.time == 0.0 and contact.force == pytest.approx(1.0)
-    with pytest.raises(vc.Cancelled):
-        vc.ElasticStates.sweep(GRID, BALL, approach=1e-5, progress=lambda states: False)
+    few, all = (vc.ElasticStates.sweep(GRID, BALL, approach=1e-4, progress=lambda n: n < most) for most in (4, 10**9))
+    assert len(few) < len(all)
     with pytest.raises(vc.Cancelled):
         vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=lambda *at: False)
 
@@ -203,7 +203,7 @@ def test_progress_cancels():
 def test_samples_and_events():
     contact = ball()
     run = contact.follow(vc.LoadHistory.ramp(vc.Load.force(0), vc.Load.force(1), 1.0), 1.0, sample_at=[0.25, 0.5])
-    run.stop_when("contact_area", up=2e-6)
+    run.stop_when("approach", up=1e-4)
     samples = [sample for _ in run for sample in run.samples()]
     assert [sample.report.time for sample in samples] == [0.25, 0.5]
     assert samples[0].contact.force == pytest.approx(0.25, rel=1e-6)

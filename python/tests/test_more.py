@@ -46,7 +46,8 @@ def test_steady_sliding():
     assert done[-1] == 1.0 and len(table) == 6 and table[-1].velocity[0] == 1e3
     assert friction.argmax() not in (0, 5) and friction.min() > 0
     own = vc.SteadySliding(grid, road, vc.Material(rubber), kernel=kernel, modulus=lambda w: 4 * rubber.complex_modulus(w)[()])
-    assert own.at((1.0, 0.0), vc.Load.force(0.02)).friction == pytest.approx(sliding.at((1.0, 0.0), vc.Load.force(0.02)).friction, rel=1e-9)
+    fresh = vc.SteadySliding(grid, road, vc.Material(rubber), kernel=kernel).at((1.0, 0.0), vc.Load.force(0.02))
+    assert own.at((1.0, 0.0), vc.Load.force(0.02)).friction == pytest.approx(fresh.friction, rel=1e-9)
     assert (sliding.gap[sliding.pressure > 0] < 1e-9).all()
     warm = sliding.sweep([1.0], vc.Load.force(0.02), law=vc.TimeTemperature.wlf(17.4, 51.6, 300.0), temperatures=[290.0, 300.0])
     assert list(warm.columns()["temperature"]) == [290.0, 300.0]
@@ -57,7 +58,7 @@ def test_attraction():
     own = vc.Attraction.function(law.traction, law.energy)
     states = []
     for attraction in (law, own):
-        contact = vc.ViscoelasticContact(vc.Grid(32, 0.4e-3), vc.Shape.sphere(1e-3), vc.Material(vc.Rheology.elastic(1e6)), attraction=attraction)
+        contact = vc.ViscoelasticContact(vc.Grid(64, 0.4e-3), vc.Shape.sphere(1e-3), vc.Material(vc.Rheology.elastic(1e6)), attraction=attraction)
         contact.step(0.0, vc.Load.approach(2e-6))
         contact.step(0.0, vc.Load.approach(0.0))
         states.append((contact.force, contact.traction.min()))
