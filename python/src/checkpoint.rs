@@ -8,7 +8,7 @@ use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
 use crate::contact::ViscoelasticContact;
 use crate::errors::OrRaise;
 use crate::scratch::{bytes_of, file_of};
-use crate::states::StatesContact;
+use crate::states_contact::StatesContact;
 
 /// How an object is made again, and the bytes of its state.
 type Pickled<'py> =

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::contact as ct;
@@ -12,13 +11,14 @@ use viscocontact::{self as vc, motion};
 
 use crate::errors::OrRaise;
 use crate::grid::Grid;
+use crate::held::{Held, Options};
 use crate::interrupt::interruptible;
 use crate::kernels::axis;
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::recipe::Recipe;
 use crate::reports::StepReport;
-use crate::run::{Held, Options, Run};
+use crate::run::Run;
 use crate::scene::builder;
 use crate::shapes::{Shape, geometries};
 
@@ -334,9 +334,4 @@ impl Snapshot {
     fn __repr__(&self) -> String {
         format!("Snapshot(time={} s)", self.0.time())
     }
-}
-
-/// The error of a contact that a panic has lost.
-pub fn lost() -> PyErr {
-    PyRuntimeError::new_err("the contact was lost in a step that panicked: please report the panic")
 }

@@ -11,8 +11,9 @@ use viscocontact_identify as id;
 use crate::arrays::{Array, mapped, to_array};
 use crate::curves::{Curve, Experiment, model};
 use crate::errors::OrRaise;
-use crate::materials::{Material, Rheology};
+use crate::materials::Material;
 use crate::recipe::Recipe;
+use crate::rheology::Rheology;
 
 /// What is known of a property of the measurement: None (fixed at 0 by default), a number (fixed), True (fitted), or ("from", start).
 fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisance>> {

@@ -156,14 +156,14 @@ impl InfluenceKernel {
     /// A layer, loaded on the grid alone.
     #[staticmethod]
     fn layer(py: Python<'_>, grid: Bound<'_, Grid>, layer: Bound<'_, Layer>) -> PyResult<InfluenceKernel> {
-        let (on, of) = (&grid.get().0.clone(), layer.get().layer.clone());
+        let (on, of) = (&grid.get().0.clone(), layer.get().layer);
         InfluenceKernel::made(py, "layer", (grid, layer), || vc::InfluenceKernel::layer(on, of))
     }
 
     /// A layer that is periodic along both axes.
     #[staticmethod]
     fn layer_periodic(py: Python<'_>, grid: Bound<'_, Grid>, layer: Bound<'_, Layer>) -> PyResult<InfluenceKernel> {
-        let (on, of) = (&grid.get().0.clone(), layer.get().layer.clone());
+        let (on, of) = (&grid.get().0.clone(), layer.get().layer);
         InfluenceKernel::made(py, "layer_periodic", (grid, layer), || vc::InfluenceKernel::layer_periodic(on, of))
     }
 
@@ -176,7 +176,7 @@ impl InfluenceKernel {
         layer: Bound<'_, Layer>,
         datum: Option<f64>,
     ) -> PyResult<InfluenceKernel> {
-        let (on, of) = (&grid.get().0.clone(), layer.get().layer.clone());
+        let (on, of) = (&grid.get().0.clone(), layer.get().layer);
         InfluenceKernel::made(py, "layer_line", (grid, layer, datum), || vc::InfluenceKernel::layer_line(on, of, datum))
     }
 
@@ -190,7 +190,7 @@ impl InfluenceKernel {
         along: usize,
         datum: Option<f64>,
     ) -> PyResult<InfluenceKernel> {
-        let (on, of, axis) = (&grid.get().0.clone(), layer.get().layer.clone(), axis(along)?);
+        let (on, of, axis) = (&grid.get().0.clone(), layer.get().layer, axis(along)?);
         InfluenceKernel::made(py, "layer_periodic_along", (grid, layer, along, datum), || {
             vc::InfluenceKernel::layer_periodic_along(on, of, axis, datum)
         })

@@ -9,6 +9,7 @@ mod curves;
 mod errors;
 mod fields;
 mod grid;
+mod held;
 mod identify;
 mod interrupt;
 mod kernels;
@@ -20,12 +21,14 @@ mod observe;
 mod plan;
 mod recipe;
 mod reports;
+mod rheology;
 mod run;
 mod scene;
 mod scratch;
 mod shapes;
 mod sliding;
 mod states;
+mod states_contact;
 mod temperature;
 mod writers;
 
@@ -53,6 +56,8 @@ mod _native {
     #[pymodule_export]
     use crate::grid::Grid;
     #[pymodule_export]
+    use crate::held::Times;
+    #[pymodule_export]
     use crate::identify::{Estimate, Fit, Identification};
     #[pymodule_export]
     use crate::kernels::{InfluenceKernel, Layer};
@@ -61,7 +66,7 @@ mod _native {
     #[pymodule_export]
     use crate::maps::HeightMap;
     #[pymodule_export]
-    use crate::materials::{Material, Rheology, Tension, published_materials};
+    use crate::materials::{Material, Tension, published_materials};
     #[pymodule_export]
     use crate::measured::{MasterCurve, Measurements};
     #[pymodule_export]
@@ -73,7 +78,9 @@ mod _native {
     #[pymodule_export]
     use crate::reports::{BodyState, StepReport};
     #[pymodule_export]
-    use crate::run::{Run, Sample, Times};
+    use crate::rheology::Rheology;
+    #[pymodule_export]
+    use crate::run::{Run, Sample};
     #[pymodule_export]
     use crate::scene::memory;
     #[pymodule_export]
@@ -81,7 +88,9 @@ mod _native {
     #[pymodule_export]
     use crate::sliding::{SlidingReport, SlidingTable, SteadySliding};
     #[pymodule_export]
-    use crate::states::{ElasticStates, StatesContact};
+    use crate::states::ElasticStates;
+    #[pymodule_export]
+    use crate::states_contact::StatesContact;
     #[pymodule_export]
     use crate::temperature::{TemperatureHistory, TimeTemperature};
     #[pymodule_export]

@@ -11,8 +11,9 @@ use viscocontact::rheology::{self as rh, Experiment, Units};
 
 use crate::arrays::column;
 use crate::errors::{OrRaise, choice};
-use crate::materials::{Rheology, Tension};
+use crate::materials::Tension;
 use crate::recipe::{Recipe, Reduced};
+use crate::rheology::Rheology;
 use crate::temperature::TimeTemperature;
 
 const EXPERIMENTS: [(&str, Experiment); 4] = [

@@ -126,7 +126,10 @@ fn components(values: Vec<Stress>) -> Vec<f64> {
     values.iter().flat_map(Stress::components).collect()
 }
 
-const QUANTITIES: [(&str, fn(&Stress) -> f64); 5] = [
+/// A quantity of a stress, by name.
+type Quantity = (&'static str, fn(&Stress) -> f64);
+
+const QUANTITIES: [Quantity; 5] = [
     ("von_mises", Stress::von_mises),
     ("tresca", Stress::tresca),
     ("mean", Stress::mean),

@@ -80,10 +80,10 @@ impl Recipe {
 }
 
 fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    if let Ok(shape) = value.getattr("shape").and_then(|shape| shape.extract::<Vec<usize>>()) {
-        if value.hasattr("dtype")? {
-            return Ok(format!("<array {shape:?}>"));
-        }
+    if value.hasattr("dtype")?
+        && let Ok(shape) = value.getattr("shape")?.extract::<Vec<usize>>()
+    {
+        return Ok(format!("<array {shape:?}>"));
     }
     let text = value.repr()?.to_string();
     Ok(if text.chars().count() > 60 { format!("{}…", text.chars().take(59).collect::<String>()) } else { text })

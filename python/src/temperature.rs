@@ -7,8 +7,8 @@ use viscocontact::rheology as rh;
 
 use crate::arrays::{mapped, pairs};
 use crate::errors::{OrRaise, raised_number};
-use crate::materials::Rheology;
 use crate::recipe::{Recipe, Reduced};
+use crate::rheology::Rheology;
 
 /// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K].
 ///

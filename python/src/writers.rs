@@ -10,7 +10,7 @@ use viscocontact::output::{self as vo, Field, Format, Metadata};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
 use crate::reports::StepReport;
-use crate::states::StatesContact;
+use crate::states_contact::StatesContact;
 
 fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {

@@ -1,9 +1,13 @@
 //! Random scenes, and the bits of their states: `tests/test_scenes.py` computes the same scenes in Python.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use viscocontact::geometry::{Cone, Ellipsoid, Geometry, Shifted, Sphere, Sum, Wavy};
 use viscocontact::prelude::*;
+
+/// Times over which bodies without an exact series are fitted [s].
+const FITTED: RangeInclusive<f64> = 1e-4..=1e2;
 
 /// Numbers that both languages draw alike (Vigna's xorshift64*).
 struct Draw(u64);
@@ -49,8 +53,14 @@ fn rheology(draw: &mut Draw) -> viscocontact::Result<Arc<dyn Rheology>> {
             g,
             &[(draw.within(1e5, 1e7), time), (draw.within(1e5, 1e7), 10.0 * time)],
         )?),
-        4 => Arc::new(FractionalZener::new(g, draw.within(0.5e6, 2e6), time, draw.within(0.3, 0.9))?),
-        _ => Arc::new(SlowCreep::new(1.0 / g, draw.within(1e-7, 1e-6), time, draw.within(0.3, 0.9))?),
+        4 => {
+            let body = FractionalZener::new(g, draw.within(0.5e6, 2e6), time, draw.within(0.3, 0.9))?;
+            Arc::new(body.series(FITTED, 1e-4)?)
+        }
+        _ => {
+            let body = SlowCreep::new(1.0 / g, draw.within(1e-7, 1e-6), time, draw.within(0.3, 0.9))?;
+            Arc::new(body.series(FITTED, 1e-4)?)
+        }
     })
 }
 

@@ -60,8 +60,8 @@ def rheology(draw):
     if kind == 3:
         return vc.Rheology.prony(g, [(draw.within(1e5, 1e7), time), (draw.within(1e5, 1e7), 10.0 * time)])
     if kind == 4:
-        return vc.Rheology.fractional_zener(g, draw.within(0.5e6, 2e6), time, draw.within(0.3, 0.9))
-    return vc.Rheology.slow_creep(1.0 / g, draw.within(1e-7, 1e-6), time, draw.within(0.3, 0.9))
+        return vc.Rheology.fractional_zener(g, draw.within(0.5e6, 2e6), time, draw.within(0.3, 0.9)).fitted(1e-4, 1e2)
+    return vc.Rheology.slow_creep(1.0 / g, draw.within(1e-7, 1e-6), time, draw.within(0.3, 0.9)).fitted(1e-4, 1e2)
 
 
 def load(draw):
