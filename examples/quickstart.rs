@@ -8,7 +8,7 @@ use viscocontact::prelude::*;
 fn main() -> viscocontact::Result<()> {
     let grid = Grid::square(256, 4.0e-3)?; // 256 × 256 cells on 4 mm × 4 mm
     let mut contact = ViscoelasticContact::builder(grid)
-        .geometry(&Sphere::new(10.0e-3)?) // anything that implements `Geometry`
+        .geometry(&Sphere::new(10.0e-3)?) // any `Geometry`
         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?)) // G = 1 MPa, τ = 1 s
         .build()?;
     contact.step(0.0, Load::force(1.0))?; // Δ = 0: a jump of the load

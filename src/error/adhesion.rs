@@ -5,15 +5,6 @@ use crate::rounded::{TIME, rounded};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdhesionError {
-    /// A contact with attraction cannot do this.
-    #[error("{what} is not covered where surfaces attract each other: {cure}")]
-    NotCovered {
-        /// The request.
-        what: &'static str,
-        /// What to do.
-        cure: &'static str,
-    },
-
     /// An attraction that is none: it grows with the gap, repels, or its energy is not its integral.
     #[error("the attraction breaks a law: {0}; adhesion::laws::all tests it")]
     Law(Violation),

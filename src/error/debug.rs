@@ -46,6 +46,7 @@ fmt_fields! {
     InvalidGap { cell position value }
     Missing { part }
     NoDomain { length }
+    NotCovered { special what cure }
     NothingToTouch { body cells }
     OtherContact {}
     OutOfMemory { what bytes }

@@ -50,7 +50,7 @@ impl Error {
             Error::Checkpoint { .. } => ErrorKind::File,
             Error::OutOfMemory { .. } => ErrorKind::Memory,
             Error::Cancelled { .. } => ErrorKind::Cancelled,
-            Error::WrongFrame { .. } => ErrorKind::Unsupported,
+            Error::WrongFrame { .. } | Error::NotCovered { .. } => ErrorKind::Unsupported,
             Error::Kernel(error) => match error {
                 KernelError::NoStress { .. } => ErrorKind::Unsupported,
                 _ => ErrorKind::Value,
@@ -69,16 +69,13 @@ impl Error {
                 _ => ErrorKind::File,
             },
             Error::Ranks(error) => match error {
-                RanksError::NotShared { .. } => ErrorKind::Unsupported,
                 RanksError::Left { .. } | RanksError::Failed { .. } | RanksError::Apart => ErrorKind::Cancelled,
             },
             Error::Adhesion(error) => match error {
-                AdhesionError::NotCovered { .. } => ErrorKind::Unsupported,
                 AdhesionError::NotConverged { .. } => ErrorKind::Convergence,
                 _ => ErrorKind::Value,
             },
             Error::Sliding(error) => match error {
-                SlidingError::NotCovered { .. } => ErrorKind::Unsupported,
                 SlidingError::NotPassive { .. } => ErrorKind::Value,
                 SlidingError::NotConverged { .. } => ErrorKind::Convergence,
             },

@@ -80,7 +80,9 @@ pub enum MapError {
     },
 
     /// The file does not begin with the magic number of its format.
-    #[error("not a {format} file: it does not begin with {magic}")]
+    #[error(
+        "not a {format} file: it does not begin with {magic} and the line end of its format; export it anew, or as GSF by Gwyddion"
+    )]
     Magic {
         /// The format.
         format: &'static str,
@@ -89,7 +91,7 @@ pub enum MapError {
     },
 
     /// A required part of a file is missing.
-    #[error("the {format} file has no {key}")]
+    #[error("the {format} file has no {key}: add it, or export the map anew")]
     Missing {
         /// The format.
         format: &'static str,
@@ -160,7 +162,7 @@ pub enum MapError {
     },
 
     /// Two points of a file are at the same point of the grid: average them, or keep one.
-    #[error("lines {earlier} and {line} give two heights for the point ({:e}, {:e}) m", .at[0], .at[1])]
+    #[error("lines {earlier} and {line} give two heights for the point ({:e}, {:e}) m: give their mean", .at[0], .at[1])]
     Duplicate {
         /// The line, from 1.
         line: u64,
@@ -179,19 +181,13 @@ pub enum MapError {
         cells: [usize; 2],
     },
 
-    /// A text is not a matrix of heights: its two columns are a profile, or its first row and column are coordinates.
-    #[error(
-        "{}", if *.profile {
-            format!("two columns of {rows} rows, of which the first ascends evenly, are a profile: use HeightMap::from_profile, or HeightMap::new if it is a matrix")
-        } else {
-            "the first row and column look like coordinates or an index, and their corner is empty: remove them, or use HeightMap::from_xyz".into()
-        }
-    )]
+    /// A text is no matrix of heights: it has coordinates.
+    #[error("the text has {found}: use {cure}, or HeightMap::new for a matrix that looks so")]
     NotAMatrix {
-        /// Number of rows.
-        rows: usize,
-        /// Whether it is a profile.
-        profile: bool,
+        /// What it has.
+        found: &'static str,
+        /// What reads it.
+        cure: &'static str,
     },
 
     /// Some heights of a text look like a number for points that were not measured: they are far from all others.

@@ -12,6 +12,7 @@ mod kind;
 mod load;
 mod map;
 mod material;
+mod not_covered;
 mod output;
 mod ranks;
 mod sliding;
@@ -36,6 +37,7 @@ pub use kind::ErrorKind;
 pub use load::LoadError;
 pub use map::MapError;
 pub use material::MaterialError;
+pub use not_covered::Special;
 pub use output::OutputError;
 pub use ranks::RanksError;
 pub use sliding::SlidingError;
@@ -67,6 +69,17 @@ use crate::rounded::{rounded, without_noise};
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// The scene or request is not covered.
+    #[error("{what} is not covered {special}: {cure}")]
+    NotCovered {
+        /// What makes the scene special.
+        special: Special,
+        /// The request, or what the scene has.
+        what: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
+
     /// A number is outside its allowed range, or not finite.
     #[error("{field} = {:?} is not allowed: it must be {allowed}", without_noise(*.value, .allowed))]
     OutOfRange {

@@ -21,11 +21,4 @@ pub enum RanksError {
     /// The ranks made different calls, or the same call with different arguments.
     #[error("the ranks are not at the same step: all of them must make the same calls with the same arguments")]
     Apart,
-
-    /// A contact that is shared out cannot do this.
-    #[error("{what} is not possible on rows that ranks share out: compute the contact in one process")]
-    NotShared {
-        /// The request.
-        what: &'static str,
-    },
 }

@@ -4,15 +4,6 @@ use crate::rounded::rounded;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SlidingError {
-    /// The scene has no steady state, or none that is computed here.
-    #[error("{what} has no steady motion here: {cure}")]
-    NotCovered {
-        /// What the scene has.
-        what: &'static str,
-        /// What to do.
-        cure: &'static str,
-    },
-
     /// At a frequency that the motion meets, the bodies do not resist: their complex compliance has no positive real part.
     #[error("at {:e} rad/s the complex compliance is {:e} + {:e} i 1/Pa: its real part must be positive", rounded(*.omega, 5),
         rounded(.compliance[0], 5), rounded(.compliance[1], 5))]

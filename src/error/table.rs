@@ -27,7 +27,9 @@ impl fmt::Display for Place {
 pub enum TableError {
     /// A value is outside its range, or not finite. Remove a first row of zeros, recorded before the load: it is not part
     /// of the creep.
-    #[error("{table}, {place}: {column} = {value:?} is not allowed: it must be {allowed}")]
+    #[error(
+        "{table}, {place}: {column} = {value:?} is not allowed: it must be {allowed}; leave out rows without a value"
+    )]
     OutOfRange {
         /// Which table.
         table: &'static str,
@@ -42,7 +44,9 @@ pub enum TableError {
     },
 
     /// Two values are given for the same time or frequency: average them, or keep one.
-    #[error("{table}: {place} and {earlier} give two values for {column} = {value}")]
+    #[error(
+        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, or read several temperatures as isotherms (Isotherm::from_csv_reader)"
+    )]
     Duplicate {
         /// Which table.
         table: &'static str,

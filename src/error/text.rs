@@ -21,7 +21,7 @@ pub enum TextError {
 
     /// An entry is not a number.
     #[error(
-        "line {line}, column {column}: {text:?} is not a number; lines of words are left out by TextFormat::with_skipped_lines, or by # at their beginning"
+        "line {line}, column {column}: {text:?} is not a number; leave the line out by # at its beginning or TextFormat::with_skipped_lines, and remove separators of thousands"
     )]
     NotNumeric {
         /// The line, from 1.

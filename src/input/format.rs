@@ -40,6 +40,18 @@ impl TextFormat {
     }
 
     /// The same with a [`missing_height`](TextFormat::missing_height).
+    ///
+    /// ```
+    /// use viscocontact::TextFormat;
+    /// use viscocontact::geometry::{HeightMap, LengthUnit};
+    ///
+    /// let text = "Unit: nm\n1.0 2.0 65535\n1.5 2.5 3.5\n";
+    /// let read = |format| HeightMap::from_text(text.as_bytes(), [3e-6, 2e-6], LengthUnit::Nanometre, format);
+    /// assert!(read(TextFormat::default()).is_err()); // 65535 looks like a missing point
+    /// let map = read(TextFormat::default().with_missing_height(65535.0))?;
+    /// assert_eq!(map.missing(), 1);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
     #[must_use]
     pub const fn with_missing_height(self, height: f64) -> TextFormat {
         TextFormat { missing_height: Some(height), ..self }

@@ -62,7 +62,7 @@ const BRACKETS: [[char; 2]; 3] = [['[', ']'], ['(', ')'], ['{', '}']];
 /// bracket, and the texts in brackets.
 fn unit_texts(heading: &str) -> Vec<(&str, bool)> {
     let inside = BRACKETS.iter().filter_map(|[open, close]| {
-        let (before, rest) = heading.rsplit_once(*open)?;
+        let (before, rest) = heading.rsplit_once(*open).filter(|(before, _)| !is_open(before))?;
         Some((before, rest.rsplit_once(*close)?.0.trim()))
     });
     let before = inside.clone().map(|(before, _)| before).min_by_key(|before| before.len());
@@ -71,6 +71,11 @@ fn unit_texts(heading: &str) -> Vec<(&str, bool)> {
         ends = last_units(before);
     }
     ends.into_iter().chain(inside.map(|(_, text)| (text, true))).collect()
+}
+
+/// Whether a bracket of a text is not closed: what follows is not all that it encloses, as of `E (M(Pa)`.
+fn is_open(text: &str) -> bool {
+    BRACKETS.iter().any(|[open, close]| text.matches(*open).count() > text.matches(*close).count())
 }
 
 /// The ends of a text that are units, the longest first: of `J 1/Pa`, this is 1/Pa, and not Pa; of `t / s`, the second is s.
@@ -86,6 +91,7 @@ fn last_units(text: &str) -> Vec<(&str, bool)> {
         let left = text[..at].trim();
         let word = left.rsplit(|c: char| SEPARATORS.contains(c) || opens(c)).next()?;
         let bare = BRACKETS.iter().find_map(|[open, close]| unit.strip_prefix(*open)?.strip_suffix(*close));
+        let bare = bare.filter(|_| !is_open(left));
         // the s of rad/s is no unit of its own; h/nm is a depth
         let divides = mark == '/' && word != left && !readings(word).is_empty();
         // a unit torn from its prefix, as in k_Pa
@@ -126,7 +132,7 @@ mod tests {
         ] {
             assert_eq!(unit_texts(heading).first().map(|text| text.0), Some(unit), "{heading}");
         }
-        for heading in ["E at 5 MPa", "G'", "J (dry)"] {
+        for heading in ["E at 5 MPa", "G'", "J (dry)", "|E*| (M(Pa)", "t [m[s]"] {
             assert!(unit_texts(heading).iter().all(|(text, _)| readings(text).is_empty()), "{heading}");
         }
     }

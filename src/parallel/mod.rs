@@ -39,7 +39,7 @@
 //! If a rank leaves, the call that misses it returns [`RanksError::Left`] and leaves the contact as it was. An observation without
 //! an error to return is NaN, and the next call returns the error.
 //!
-//! | covered | refused, by [`RanksError::NotShared`] |
+//! | covered | refused, by [`Error::NotCovered`](crate::Error::NotCovered) |
 //! |---|---|
 //! | half-spaces, bodies periodic along one axis or both, lines, layers | several rigid bodies |
 //! | symmetry: half or a quarter of the grid | loads that break a symmetry that was found (set [`Settings::symmetry`](crate::contact::Settings::symmetry) to false) |
@@ -48,7 +48,7 @@
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
 //! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
 //!
-//! Surfaces that attract each other are refused, too, by [`AdhesionError::NotCovered`](crate::adhesion::AdhesionError::NotCovered).
+//! Surfaces that attract each other are refused, too.
 //!
 //! Files and checkpoints are written by rank 0, files with the same bytes as in one process; the other ranks send it their rows a
 //! piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.

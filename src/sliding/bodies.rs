@@ -11,7 +11,7 @@ use super::coefficients::{Row, Rules};
 use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
-use crate::error::{Result, SlidingError};
+use crate::error::{Error, Result, SlidingError, Special};
 use crate::kernel::InfluenceKernel;
 
 /// A free dashpot acts as a term with a reach of so many lengths of the grid.
@@ -57,7 +57,7 @@ impl Bodies {
         }
         if velocity[0] != 0.0 && velocity[1] != 0.0 {
             let what = "a motion that follows neither x1 nor x2, over a body that is not periodic along both,";
-            return Err(SlidingError::NotCovered { what, cure: "turn the shape instead" }.into());
+            return Err(Error::not_covered(Special::SteadyMotion, what, "turn the shape instead"));
         }
         Ok(usize::from(velocity[0] == 0.0))
     }

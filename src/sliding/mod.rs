@@ -14,6 +14,7 @@ mod creep;
 mod gmres;
 mod layer_on_base;
 mod operator;
+mod search;
 mod sweep;
 
 pub use crate::error::SlidingError;
@@ -25,7 +26,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 
 use crate::contact::{Builder, Frame, ViscoelasticContact};
-use crate::error::{Error, Result, StepError, finite};
+use crate::error::{Error, Result, Special, StepError, finite};
 use crate::kernel::HalfSpace;
 use crate::load::{Load, Tilt};
 use crate::memory;
@@ -90,7 +91,7 @@ pub struct SlidingReport {
     pub residual: f64,
     /// Sets of cells that were tried.
     pub sets: usize,
-    /// Pairs of transforms.
+    /// Pairs of transforms; those on a coarser mesh, where the search begins, count by their cells.
     pub transforms: usize,
 }
 
@@ -118,7 +119,7 @@ impl fmt::Display for SlidingReport {
 
 /// A refusal.
 fn not_covered<T>(what: &'static str, cure: &'static str) -> Result<T> {
-    Err(SlidingError::NotCovered { what, cure }.into())
+    Err(Error::not_covered(Special::SteadyMotion, what, cure))
 }
 
 /// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
@@ -324,18 +325,10 @@ impl SteadySliding {
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
         }
         let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
-        let warm = (self.contact.contact_cells() > 0).then(|| problem.solve(&mut bodies, self.contact.pressure()));
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
-        } else if let Some(warm) = warm.filter(|found| found.converged) {
-            warm
         } else {
-            // the symmetric part of the response gives a first contact: in slow motion a set would grow by one row of cells at a time
-            let mut symmetric = bodies.symmetric();
-            let first = problem.solve(&mut symmetric, self.contact.pressure());
-            let found = problem.solve(&mut bodies, &first.pressure);
-            bodies.response.pairs += symmetric.transforms();
-            Found { sets: found.sets + first.sets, ..found }
+            problem.search(&mut bodies, self.contact.pressure())
         };
         let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
         if !converged {

@@ -78,7 +78,7 @@ impl Coefficients {
 impl MovingBodies {
     /// Bodies that are periodic along both axes, of which `displaces` returns the compliance \[m/Pa\] of a wave \[1/m\] of these absolute numbers.
     pub(super) fn periodic(grid: &Grid, displaces: &dyn Fn([usize; 2], [f64; 2]) -> Complex64) -> MovingBodies {
-        let cells @ [n1, n2] = grid.cells();
+        let cells @ [n1, _] = grid.cells();
         let waves = wave_numbers(grid);
         let mut loss = [Vec::with_capacity(waves.len()), Vec::with_capacity(waves.len())];
         let factor = |(k, &q): (usize, &[f64; 2])| {
@@ -92,9 +92,14 @@ impl MovingBodies {
             (0..2).for_each(|axis| loss[axis].push(sum(axis)));
             each.iter().map(|(_, own)| own).sum()
         };
-        let factors: Vec<Complex64> = waves.iter().enumerate().map(factor).collect();
+        let factors = waves.iter().enumerate().map(factor).collect();
+        MovingBodies::of_waves(cells, factors, loss)
+    }
+
+    /// Bodies of one factor for each wave, which the inverse divides by.
+    pub(super) fn of_waves(cells: [usize; 2], factors: Vec<Complex64>, loss: [Vec<f64>; 2]) -> MovingBodies {
         let inverse = factors.iter().map(|&of| if of == Complex64::ZERO { of } else { of.inv() }).collect();
-        let of = |factors| Multiplier::new(cells, [n1, n2], factors);
+        let of = |factors| Multiplier::new(cells, cells, factors);
         MovingBodies { response: of(factors), inverse: of(inverse), loss }
     }
 
@@ -122,12 +127,12 @@ impl MovingBodies {
         MovingBodies { response, inverse, loss }
     }
 
-    /// Bodies with the symmetric part of the response: the pressure moves both ways at once.
-    pub(super) fn symmetric(&self) -> MovingBodies {
+    /// Bodies with this part of the skew-symmetric response; without any the pressure moves both ways at once.
+    pub(super) fn with_skew(&self, part: f64) -> MovingBodies {
         let Multiplier { cells, ref plane, ref factors, .. } = self.response;
-        let real = factors.iter().map(|factor| Complex64::from(factor.re)).collect();
+        let factors = factors.iter().map(|factor| Complex64::new(factor.re, part * factor.im)).collect();
         MovingBodies {
-            response: Multiplier::new(cells, plane.periods(), real),
+            response: Multiplier::new(cells, plane.periods(), factors),
             inverse: Multiplier { pairs: 0, ..self.inverse.clone() },
             loss: Default::default(),
         }
@@ -154,9 +159,9 @@ impl MovingBodies {
 /// A map of fields that multiplies each wave by a factor.
 #[derive(Debug, Clone)]
 pub(super) struct Multiplier {
-    cells: [usize; 2],
-    plane: RealPlane,
-    factors: Vec<Complex64>,
+    pub(super) cells: [usize; 2],
+    pub(super) plane: RealPlane,
+    pub(super) factors: Vec<Complex64>,
     coefficients: Vec<Complex64>,
     /// Pairs of a forward and an inverse transform so far.
     pub(super) pairs: usize,

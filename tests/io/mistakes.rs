@@ -205,7 +205,7 @@ const MISTAKES: &[Mistake] = &[
     "accuracy = 5.0 is not allowed: it must be in [1e-6, 0.1]"),
 ("a negative compliance",
     || Measurements::creep(&[(0.1, 1.0e-6), (1.0, 1.1e-6), (10.0, -1.2e-6), (100.0, 1.3e-6)]).map(drop),
-    "creep table, entry 2: creep compliance = -1.2e-6 is not allowed: it must be finite and > 0"),
+    "creep table, entry 2: creep compliance = -1.2e-6 is not allowed: it must be finite and > 0; leave out rows without a value"),
 ("a table of two rows",
     || Measurements::creep(&[(0.1, 1.0e-6), (1.0, 1.1e-6)]).map(drop),
     "creep table: 2 given, at least 4 needed"),

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use viscocontact::Special;
 use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::analytic::MaugisDugdale;
 use viscocontact::contact::Warnings;
@@ -246,7 +247,7 @@ fn what_is_not_covered_is_refused() {
             .unwrap_err(),
         builder(1.0).build().unwrap().stress().unwrap_err(),
     ] {
-        assert!(matches!(error, Error::Adhesion(AdhesionError::NotCovered { .. })), "{error}");
+        assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
     }
     // cells of 1/4: the zone has 4 ρ² cells
     let Err(Error::Adhesion(AdhesionError::ZoneNotResolved { cells, spacing, range, .. })) = builder(0.5).build()

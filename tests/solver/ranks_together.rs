@@ -8,10 +8,10 @@ use std::time::Duration;
 
 use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
 use crate::common::{builder_on, elastic, zener};
-use viscocontact::ErrorKind;
-use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
+use viscocontact::{ErrorKind, Special};
 
 fn sphere(cells: usize, ranks: Arc<dyn Ranks>) -> Result<ViscoelasticContact, Error> {
     let settings = Settings::default().with_symmetry(false);
@@ -205,7 +205,7 @@ fn attraction_is_refused() {
         .unwrap()
     });
     for error in &errors {
-        assert!(matches!(error, Error::Adhesion(AdhesionError::NotCovered { .. })), "{error}");
+        assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
         assert!(error.to_string().contains("compute it in one process"), "{error}");
     }
 }
@@ -386,11 +386,12 @@ fn what_is_not_shared_is_refused_by_name() {
         || Settings::default().with_frame(Frame::Indenter),
     ] {
         for error in refused(settings) {
-            assert!(matches!(error, Some(Error::Ranks(RanksError::NotShared { .. }))), "{error:?}");
+            assert!(matches!(error, Some(Error::NotCovered { special: Special::Ranks, .. })), "{error:?}");
         }
     }
     Threads::run(2, |ranks| {
-        let not_shared = |error: Error| assert!(matches!(error, Error::Ranks(RanksError::NotShared { .. })), "{error}");
+        let not_shared =
+            |error: Error| assert!(matches!(error, Error::NotCovered { special: Special::Ranks, .. }), "{error}");
         let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener()).ranks(ranks).build().unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
         not_shared(contact.patches().unwrap_err());

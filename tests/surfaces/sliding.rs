@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use super::steady::Scene;
 use crate::common::steady_sliding::Time;
 use crate::common::{Draws, from_environment};
+use viscocontact::Special;
 use viscocontact::prelude::*;
-use viscocontact::sliding::SlidingError;
 
 /// Waves of an indenter over its period of 1 m: numbers along x1 and x2, phase, height.
 const WAVES: [[f64; 4]; 4] =
@@ -195,7 +195,7 @@ fn what_is_not_steady_is_refused() {
             .build_sliding()
             .unwrap_err(),
     ] {
-        assert!(matches!(refused, Error::Sliding(SlidingError::NotCovered { .. })), "{refused}");
+        assert!(matches!(refused, Error::NotCovered { special: Special::SteadyMotion, .. }), "{refused}");
     }
     let mut sliding = periodic().build_sliding().unwrap();
     let before = sliding.at([1.0, 0.0], Load::force(1.0)).unwrap();
@@ -205,7 +205,7 @@ fn what_is_not_steady_is_refused() {
         assert!(matches!(refused, Error::Step(StepError::TiltOfPeriodic { .. })), "{load}: {refused}");
     }
     let spring = sliding.at([1.0, 0.0], Load::spring(1.0, 1.0));
-    assert!(matches!(spring, Err(Error::Sliding(SlidingError::NotCovered { .. }))));
+    assert!(matches!(spring, Err(Error::NotCovered { special: Special::SteadyMotion, .. })));
     assert!(matches!(
         sliding.at([1.0, 0.0], Load::approach(1.0)),
         Err(Error::Step(StepError::BeyondFullContact { .. }))
@@ -223,7 +223,10 @@ fn what_is_not_steady_is_refused() {
     let apart = periodic().build_sliding().unwrap().at([1.0, 0.0], Load::approach(-2.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.force == 0.0 && apart.residual == 0.0, "{apart:?}");
     let mut stepped = sliding.contact().clone();
-    assert!(matches!(stepped.step(1.0, Load::force(1.0)), Err(Error::Sliding(SlidingError::NotCovered { .. }))));
+    assert!(matches!(
+        stepped.step(1.0, Load::force(1.0)),
+        Err(Error::NotCovered { special: Special::SteadyMotion, .. })
+    ));
 }
 
 /// A sweep has the states of single problems, at each temperature those of the shifted velocity; it ends where its progress says so, and its file can be read back.
@@ -278,7 +281,7 @@ fn an_edge_at_the_period_is_refused() {
     let kernel = InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).unwrap();
     let ball = Sphere::new(1.0).unwrap();
     let builder = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(rubber()).kernel(kernel);
-    assert!(matches!(builder.build_sliding(), Err(Error::Sliding(SlidingError::NotCovered { .. }))));
+    assert!(matches!(builder.build_sliding(), Err(Error::NotCovered { special: Special::SteadyMotion, .. })));
     // memory: stated before, in proportion to the cells
     let memory = |cells: usize| {
         let grid = Grid::square(cells, 1.0).unwrap();

@@ -12,11 +12,12 @@ fn median(mut values: Vec<usize>) -> usize {
     values[values.len() / 2]
 }
 
-/// A rough ball on a half-space of 128² cells, or a wavy cylinder on 512, of tan δ up to 4: cold, and then at speeds of a quarter of a decade from one to the next.
+/// A rough ball on a half-space of 128² cells, or a wavy cylinder on 512, of tan δ up to 4, or up to 10: cold, and then at speeds of a quarter of a decade from
+/// one to the next.
 #[test]
 fn balls_and_cylinders_cost_few_transforms() {
     let (scenes, seed) = (from_environment("SLIDING_COSTS", 8), from_environment("SLIDING_SEED", 1));
-    for line in [false, true] {
+    for (line, strongest) in [(false, 65.0), (true, 65.0), (false, 420.0), (true, 420.0)] {
         let (mut cold, mut warm) = (Vec::new(), Vec::new());
         for number in 0..scenes {
             let mut draws = Draws::new(11_000_000 * seed + number);
@@ -33,8 +34,8 @@ fn balls_and_cylinders_cost_few_transforms() {
                 0.05 * (x1 * x1 + aside * aside) + waves.iter().map(wave).sum::<f64>()
             });
             let count = 1 + draws.below(8);
-            // C∞/C0 = 66 has tan δ = 4 with a single term
-            let strength = draws.scale(1.0, 65.0);
+            // C∞/C0 = 66 has tan δ = 4 with a single term, 420 has 10
+            let strength = draws.scale(1.0, strongest);
             let terms: Vec<_> = (0..count).map(|_| (strength / count as f64 * 1e-6, draws.scale(1e-3, 1e3))).collect();
             let kernel =
                 if line { InfluenceKernel::line(&grid, 1e4) } else { InfluenceKernel::half_space(&grid) }.unwrap();
@@ -60,8 +61,8 @@ fn balls_and_cylinders_cost_few_transforms() {
         println!("line {line}: cold {cold:?}, warm {warm:?}");
         assert!(2 * cold.len() as u64 >= scenes, "{}", cold.len());
         let [cold, warm] = [cold, warm].map(median);
-        println!("line {line}: medians {cold} cold, {warm} warm");
-        assert!(cold <= 150 && warm <= 60, "line {line}: {cold} {warm}");
+        println!("line {line}, {strongest}: medians {cold} cold, {warm} warm");
+        assert!(strongest > 65.0 || cold <= 150 && warm <= 60, "line {line}: {cold} {warm}");
     }
 }
 

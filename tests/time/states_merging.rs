@@ -90,7 +90,7 @@ fn run(times: u32, kind: &str, steps: usize, kept: usize, error: f64) -> Found {
 /// Errors relative to the greatest values of the run, or of its last half where loads fall.
 #[test]
 fn merged_groups_are_few_and_change_little() {
-    let steps = from_environment("STATES_STEPS", 3000) as usize;
+    let steps = from_environment("STATES_STEPS", 1500) as usize;
     let kept = steps.min(from_environment("STATES_KEPT", 20_000) as usize);
     let mut compared = 0;
     for times in [1, 5, 30] {

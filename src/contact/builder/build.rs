@@ -14,12 +14,12 @@ use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
-use crate::error::{AdhesionError, Error, KernelError, RanksError, Result, StepError, count_within, length, positive};
+use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, count_within, length, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
-use crate::rheology::Material;
+use crate::rheology::{Elastic, Material};
 
 impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
@@ -38,8 +38,8 @@ impl Builder {
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
     /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     ///
-    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`]); a scene that
-    /// cannot be shared out is refused ([`RanksError::NotShared`]).
+    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`](crate::parallel::RanksError::Failed)); a scene that
+    /// cannot be shared out is refused ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
             self.validate()?;
@@ -108,7 +108,7 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
-        self.special().map_or(Ok(()), |[what, _]| Err(RanksError::NotShared { what }.into()))
+        self.special().map_or(Ok(()), |[what, _]| Err(Error::not_shared(what)))
     }
 
     /// What neither ranks nor surfaces that attract each other cover, and what to do.
@@ -192,7 +192,7 @@ impl Builder {
         let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
         let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
         let refused = self.special().or(shared).or(planned);
-        refused.map_or(Ok(()), |[what, cure]| Err(AdhesionError::NotCovered { what, cure }.into()))
+        refused.map_or(Ok(()), |[what, cure]| Err(Error::not_covered(Special::Attraction, what, cure)))
     }
 
     /// Material, kernel and history.
@@ -227,6 +227,40 @@ impl Builder {
     }
 }
 
+impl ViscoelasticContact {
+    /// The undisturbed contact of an elastic body of unit compliance with the same indenter, solved to `tolerance`.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub(crate) fn of_unit_compliance(&self, tolerance: f64) -> Result<ViscoelasticContact> {
+        let (scene, material) = (&*self.scene, Material::incompressible(Elastic::new(0.25)?));
+        let settings = Settings { tolerance, time_rule: TimeRule::Exponential, ..scene.settings };
+        let history = history_by(&settings, &material, scene.kernel.periodic_axes())?;
+        let indenter = &self.computation.state.indenter;
+        let folded = if settings.symmetry { indenter.even_axes(&scene.grid) } else { [false; 2] };
+        let region = Region::whole(&scene.grid, folded);
+        let parts = Parts { settings, material, kernel: Arc::clone(&scene.kernel), history, attracts: false };
+        parts.footprint(1).check(&region, 0)?;
+        let Parts { settings, material, kernel, history, .. } = parts;
+        let unit = Scene {
+            grid: scene.grid.clone(),
+            limits: Limits::of(&material),
+            #[cfg(feature = "checkpoint")]
+            built: Built::default(),
+            temperature: None,
+            attraction: None,
+            softening: 0.0,
+            steady: false,
+            bodies: 1,
+            kernel,
+            material,
+            settings,
+        };
+        let computation = Computation::new(&unit, State::at_rest(Arc::clone(indenter), region, &history, false));
+        Ok(ViscoelasticContact::new(unit, computation, self.missed))
+    }
+}
+
 /// The gap on the local rows of the whole grid.
 fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     let Some((has, gap)) = gaps.first() else { return Err(Error::Missing { part: "geometry" }) };
@@ -234,7 +268,7 @@ fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     match has {
         has if *has == (0..n1) => Ok(&gap[own.start * n2..own.end * n2]),
         has if *has == own => Ok(gap),
-        _ => Err(RanksError::NotShared { what: "a geometry that was given for other ranks" }.into()),
+        _ => Err(Error::not_shared("a geometry that was given for other ranks")),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::{State, ViscoelasticContact};
-use crate::error::{RanksError, Result, count_within, exact_length};
+use crate::error::{Error, Result, count_within, exact_length};
 use crate::parallel::Rows;
 use crate::{Axis, sum};
 
@@ -132,6 +132,6 @@ impl ViscoelasticContact {
 
     /// Rejects a request that needs the whole contact, where ranks share it out.
     pub(crate) fn not_shared(&self, what: &'static str) -> Result<()> {
-        if self.computation.state.region.is_shared() { Err(RanksError::NotShared { what }.into()) } else { Ok(()) }
+        if self.computation.state.region.is_shared() { Err(Error::not_shared(what)) } else { Ok(()) }
     }
 }

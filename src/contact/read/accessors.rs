@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::adhesion::Attraction;
 use crate::contact::step::attraction::PassReport;
 use crate::contact::{BodyState, Region, Scene, Settings, State, ViscoelasticContact};
-use crate::error::{AdhesionError, Result, exact_length};
+use crate::error::{Error, Result, Special, exact_length};
 use crate::extent::Extent;
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
@@ -227,7 +227,7 @@ impl ViscoelasticContact {
     /// Refuses what is not covered where surfaces attract each other.
     pub(crate) fn not_attracted(&self, what: &'static str, cure: &'static str) -> Result<()> {
         match self.scene.attraction {
-            Some(_) => Err(AdhesionError::NotCovered { what, cure }.into()),
+            Some(_) => Err(Error::not_covered(Special::Attraction, what, cure)),
             None => Ok(()),
         }
     }

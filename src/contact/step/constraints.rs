@@ -6,7 +6,7 @@ use crate::Grid;
 use crate::axis::Axis;
 use crate::contact::state::net_sum;
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
-use crate::error::{AdhesionError, Convergence, Error, Result, StepError, exact_length};
+use crate::error::{Convergence, Error, Result, Special, StepError, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
@@ -23,7 +23,7 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
             && load.tilt().iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
         if free_below_approach {
             let what = "a body that tilts freely under a given approach or a spring";
-            return Err(AdhesionError::NotCovered { what, cure: "give its tilts, or its force" }.into());
+            return Err(Error::not_covered(Special::Attraction, what, "give its tilts, or its force"));
         }
         let Freedom { translation, tilt, point, total } = freedom(load, grid);
         let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));

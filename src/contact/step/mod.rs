@@ -33,7 +33,7 @@ use crate::contact::{
     Computation, Edge, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial,
     ViscoelasticContact,
 };
-use crate::error::{Error, Result, SlidingError, StepError, non_negative};
+use crate::error::{Error, Result, Special, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, StepContext, TimeError};
@@ -151,8 +151,8 @@ impl ViscoelasticContact {
     /// Computes a step. The state stays as it is.
     pub(crate) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
         if self.scene.steady {
-            let (what, cure) = ("a step of a contact in steady motion", "build one by Builder::build to step");
-            return Err(SlidingError::NotCovered { what, cure }.into());
+            let (what, cure) = ("a step", "build a contact by Builder::build to step");
+            return Err(Error::not_covered(Special::SteadyMotion, what, cure));
         }
         let (mut larger, region) = (None, &self.computation.state.region);
         let (rows, from) = (region.rows(), region.cells());

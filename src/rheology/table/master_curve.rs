@@ -101,6 +101,21 @@ impl MasterCurve {
 
     /// Shifts by a known `law`, to its reference temperature.
     ///
+    /// ```
+    /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology, TimeTemperature};
+    ///
+    /// // shift factors as another program found them
+    /// let law = TimeTemperature::table(&[(291.15, 1.0), (298.15, 10f64.powf(-1.5))], 291.15)?;
+    /// let moduli = |shift: f64| [0.1, 1.0, 10.0, 100.0].map(|t: f64| (t, 2.0e9 * (t * 10f64.powf(shift)).powf(-0.1)));
+    /// let isotherms = vec![
+    ///     Isotherm::new(291.15, Measurements::relaxation(&moduli(0.0))?)?,
+    ///     Isotherm::new(298.15, Measurements::relaxation(&moduli(1.5))?)?,
+    /// ];
+    /// let master = MasterCurve::with_law(&law, isotherms)?;
+    /// assert!((master.fit_tension()?.0.known_until() / 100.0 / 10f64.powf(1.5) - 1.0).abs() < 1.0e-9);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// If there is no isotherm, two have the same temperature, they measure different quantities, or the law does
     /// not hold at the temperature of one.

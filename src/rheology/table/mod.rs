@@ -134,6 +134,22 @@ impl Measurements {
     /// values themselves. Values may then deviate by six times as much from a monotone curve, and the best series by as much in
     /// the root mean square, if this is more than 10 %.
     ///
+    /// ```
+    /// use viscocontact::rheology::{FitWarning, Measurements};
+    ///
+    /// let creep = [(0.1, 1.0e-9), (1.0, 1.4e-9), (10.0, 1.1e-9), (100.0, 1.6e-9), (1000.0, 2.1e-9)];
+    /// let measured = Measurements::creep(&creep)?;
+    /// assert!(measured.fit().is_err()); // 1.1 after 1.4 is more scatter than is judged from few rows
+    /// let report = measured.with_scatter(0.08)?.fit()?.report().clone();
+    /// println!("{report}");
+    /// match report.warning() {
+    ///     Some(FitWarning::FewSamples { uncertainty }) => println!("±{:.0} % between rows", 100.0 * uncertainty),
+    ///     Some(other) => println!("{other}"),
+    ///     None => println!("creep within {:.0} %", 100.0 * report.uncertainty()),
+    /// }
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// If it is not finite and positive.
     pub fn with_scatter(self, scatter: f64) -> Result<Measurements> {

@@ -16,10 +16,8 @@ const TRIED: usize = 400;
 const LEAST_OVERLAP: f64 = 0.1;
 /// Relative scatter below which values are as good as exact: the line between two rows is no better.
 const LEAST_SCATTER: f64 = 2e-3;
-/// Mean of ln(1 + z²) of a normal deviate.
-const EXPECTED: f64 = 0.53;
-/// Deviations of an outlier from the lines through its neighbours.
-const OUTLYING: f64 = 5.0;
+/// Least mean of ln(1 + z²): 0.53 of a normal deviate, and more with an outlier in thirty rows, of which each spoils three differences.
+const EXPECTED: f64 = 0.75;
 /// Price of a decade of the union.
 const PER_DECADE: f64 = 4.0;
 /// Rows on either side of a row through which its slope is taken.
@@ -61,20 +59,26 @@ struct Pair<'a> {
     isotherms: [&'a Isotherm; 2],
     /// Of each isotherm and column, at each row.
     slopes: [Vec<Vec<[f64; 2]>>; 2],
-    columns: usize,
+    /// What a difference of each column costs as a rule. Were it less, isotherms would flee from an overlap that has outliers.
+    usual: Vec<f64>,
     /// Whether values may differ by a factor, the same in all columns.
     is_vertical: bool,
 }
 
 /// The shift of `warmer` relative to `colder`.
 pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: bool) -> Result<Shift> {
-    let (cleaned, columns) = ([colder, warmer].map(without_outliers), colder.rows[0].values.len());
-    let isotherms @ [colder, warmer] = cleaned.each_ref();
+    let (isotherms, columns) = ([colder, warmer], colder.rows[0].values.len());
     let slopes = isotherms.map(|isotherm| (0..columns).map(|column| slopes(isotherm, column)).collect());
-    let pair = Pair { isotherms, slopes, columns, is_vertical };
     let temperatures = [colder.temperature(), warmer.temperature()];
-    let all: Vec<usize> = (0..pair.columns).collect();
-    let scatter: Vec<f64> = all.iter().map(|&column| pair.scatter(column)).collect();
+    let all: Vec<usize> = (0..columns).collect();
+    let scattered = |&column: &usize| {
+        let offs = isotherms.map(|isotherm| off_lines(isotherm, column));
+        let scatter = offs.iter().cloned().map(deviation).fold(LEAST_SCATTER, f64::max);
+        let costs: Vec<f64> = offs.iter().flatten().map(|off| (off / scatter).powi(2).ln_1p()).collect();
+        (scatter, (costs.iter().sum::<f64>() / costs.len().max(1) as f64).max(EXPECTED))
+    };
+    let (scatter, usual): (Vec<f64>, Vec<f64>) = all.iter().map(scattered).unzip();
+    let pair = Pair { isotherms, slopes, usual, is_vertical };
     let is_constant = |isotherm: &Isotherm| {
         let logs = || isotherm.rows.iter().map(|row| row.values[0].ln());
         logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min) < 1e-6
@@ -150,11 +154,6 @@ impl Pair<'_> {
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// The scatter of a column about the lines between the neighbours of each row.
-    fn scatter(&self, column: usize) -> f64 {
-        self.isotherms.iter().map(|isotherm| scatter(isotherm, column)).fold(LEAST_SCATTER, f64::max)
-    }
-
     /// The scatter of the differences of a column at a shift.
     fn residual(&self, shift: f64, column: usize, scatter: f64) -> f64 {
         let (mut values, factor) = (Vec::new(), self.factor(shift, &[column]));
@@ -166,7 +165,7 @@ impl Pair<'_> {
         let (mut sum, factor) = (0.0, self.factor(shift, columns));
         self.differences(shift, columns, |found| {
             let z = (found.value - factor) / scatter[found.column];
-            sum += (z * z / found.variance).ln_1p() - EXPECTED;
+            sum += (z * z / found.variance).ln_1p() - self.usual[found.column];
         });
         sum
     }
@@ -204,38 +203,17 @@ impl Pair<'_> {
     }
 }
 
-/// The distance of a value from the line through those of two other rows, over its standard deviation for a scatter of one.
-fn off_line(isotherm: &Isotherm, column: usize, row: usize, others: [usize; 2]) -> f64 {
-    let point = |k: usize| (isotherm.log_time(&isotherm.rows[k]), isotherm.rows[k].values[column].ln());
-    let ((x, y), [a, b]) = (point(row), others.map(point));
-    let part = (x - a.0) / (b.0 - a.0);
-    (y - a.1 - part * (b.1 - a.1)) / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
-}
-
-/// The scatter of a column about the lines between the neighbours of each row.
-fn scatter(isotherm: &Isotherm, column: usize) -> f64 {
-    let inner = 1..isotherm.rows.len() - 1;
-    deviation(inner.map(|k| off_line(isotherm, column, k, [k - 1, k + 1]).abs()).collect())
-}
-
-/// The isotherm without single rows that contradict their neighbours: as each would be compared with several rows of the other
-/// isotherm, or with none, the best shift would be the one that compares it with the fewest.
-///
-/// An outlier lies far on the same side of the line between its neighbours and of the lines through the two rows before and
-/// after; in a bend, these lie on different sides.
-fn without_outliers(isotherm: &Isotherm) -> Isotherm {
-    let count = isotherm.rows.len();
-    let is_outlier = |row: usize, column: usize, scatter: f64| {
-        let pairs = [[row.wrapping_sub(1), row + 1], [row.wrapping_sub(2), row.wrapping_sub(1)], [row + 1, row + 2]];
-        let pairs = pairs.into_iter().filter(|pair| pair.iter().all(|&k| k < count));
-        let offs: Vec<f64> = pairs.map(|pair| off_line(isotherm, column, row, pair) / scatter).collect();
-        offs.len() > 1 && (offs.iter().all(|off| *off > OUTLYING) || offs.iter().all(|off| *off < -OUTLYING))
+/// The distance of each inner row from the line between its neighbours, over its standard deviation for a scatter of one.
+fn off_lines(isotherm: &Isotherm, column: usize) -> Vec<f64> {
+    let points: Vec<(f64, f64)> =
+        isotherm.rows.iter().map(|row| (isotherm.log_time(row), row.values[column].ln())).collect();
+    let off = |own: &[(f64, f64)]| {
+        let [before, point, after] = [own[0], own[1], own[2]];
+        let part = (point.0 - before.0) / (after.0 - before.0);
+        let line = before.1 + part * (after.1 - before.1);
+        (point.1 - line).abs() / (1.0 + part * part + (1.0 - part) * (1.0 - part)).sqrt()
     };
-    let columns = 0..isotherm.rows[0].values.len();
-    let scatters: Vec<f64> = columns.map(|column| scatter(isotherm, column).max(LEAST_SCATTER)).collect();
-    let is_kept = |row: usize| !scatters.iter().enumerate().any(|(column, &scatter)| is_outlier(row, column, scatter));
-    let rows = (0..count).filter(|&row| is_kept(row)).map(|row| isotherm.rows[row].clone()).collect();
-    Isotherm { rows, ..isotherm.clone() }
+    points.windows(3).map(off).collect()
 }
 
 /// The row after ln t, and the part of the way to it from the row before.

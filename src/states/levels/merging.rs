@@ -11,6 +11,9 @@ const LEAST: f64 = 1e-4;
 
 /// Share of the error that merging uses: the contact area errs by up to ten times as much as the depth.
 const SHARE: f64 = 0.9;
+/// Share of the error for the depth of held groups and the force of free ones. A merged group keeps the force or the depth: weighted by the
+/// other widths its mean strain is another, and these errors of all groups add up where the load falls far at once.
+const OTHER: f64 = 0.07;
 
 impl Levels {
     /// Merges neighbours, both held or both free, where a later step that ends within the merged group errs by at most about `error`, in
@@ -40,9 +43,11 @@ impl Levels {
                 let before = width(self, kept - 1);
                 let [level, depth] = [0, 1].map(|axis| before[axis] + own[axis]);
                 let deep = group.motions.depth.max(LEAST * last.motions.depth);
-                let most = 4.0 * SHARE * error * (carried.max(least) / level).min(deep / depth);
+                let shares = [own[0] / level, own[1] / depth];
+                let apart = (shares[0] - shares[1]).abs();
+                let most = error * (4.0 * SHARE * (carried.max(least) / level).min(deep / depth)).min(OTHER / apart);
                 if self.history.differ_at_most(kept - 1, k, most) {
-                    let share = if k < held { own[0] / level } else { own[1] / depth };
+                    let share = shares[usize::from(k >= held)];
                     self.history.mix(kept - 1, k, share);
                     let into = &mut self.groups[kept - 1];
                     let traction = into.traction + share * (group.traction - into.traction);

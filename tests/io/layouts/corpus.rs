@@ -114,6 +114,38 @@ enum Source {
 }
 use Source::{Count, Magnitude, Number, Of, Phase, Tan, Word};
 
+/// Columns `name~unit~source`: a column of the rows, `=` and a number, a derived quantity, or a word.
+fn columns(spec: &'static str) -> Vec<Column> {
+    let column = |text: &'static str| {
+        let [name, unit, source] = text.split('~').collect::<Vec<_>>()[..] else { panic!("{text}") };
+        let size = match unit {
+            "µs" | "1/MPa" | "µm" | "uN" => 1e-6,
+            "1/GPa" | "nN" | "nm" => 1e-9,
+            "ms" | "mN" => 1e-3,
+            "min" => 60.0,
+            "h" => 3600.0,
+            "kPa" => 1e3,
+            "MPa" => 1e6,
+            "GPa" => 1e9,
+            "Hz" => std::f64::consts::TAU,
+            "°" => std::f64::consts::TAU / 360.0,
+            _ => 1.0,
+        };
+        let source = match source {
+            "tan" => Tan,
+            "phase" => Phase,
+            "magnitude" => Magnitude,
+            "count" => Count,
+            _ => match source.strip_prefix('=') {
+                Some(number) => Number(number.parse().unwrap()),
+                None => source.parse().map_or(Word(source), Of),
+            },
+        };
+        (name, unit, size, source)
+    };
+    spec.split("; ").map(column).collect()
+}
+
 /// How a table is written.
 #[derive(Clone, Copy)]
 struct Style {
@@ -243,8 +275,6 @@ fn moduli(falling: bool) -> Vec<Vec<f64>> {
 
 pub fn corpus() -> Vec<Layout> {
     use Experiment::{Creep, Dynamic, Relaxation, Storage};
-    const TAU: f64 = std::f64::consts::TAU;
-    type Table<'a> = (Kind, &'a str, Vec<Column>, &'a Vec<Vec<f64>>);
     let creep: Vec<Vec<f64>> = moduli(true).iter().map(|row| vec![row[0], 1.0 / row[1]]).collect();
     let (relaxation, dynamic) = (moduli(true), moduli(false));
     let storage: Vec<Vec<f64>> = dynamic.iter().map(|row| row[..2].to_vec()).collect();
@@ -254,212 +284,102 @@ pub fn corpus() -> Vec<Layout> {
             vec![time, 2.0 * depth.powf(1.5), depth]
         })
         .collect();
-    let degree = TAU / 360.0;
-    let tables: Vec<Table> = vec![
-        (Kind::Table(Creep), "creep", vec![("t", "s", 1.0, Of(0)), ("J", "1/Pa", 1.0, Of(1))], &creep),
-        (
-            Kind::Table(Creep),
-            "creep, reversed",
-            vec![
-                ("Creep compliance", "1/GPa", 1e-9, Of(1)),
-                ("Time", "min", 60.0, Of(0)),
-                ("Sample", "", 1.0, Word("A")),
-            ],
-            &creep,
-        ),
-        (Kind::Table(Creep), "creep in tension", vec![("t", "µs", 1e-6, Of(0)), ("D", "1/MPa", 1e-6, Of(1))], &creep),
-        (
-            Kind::Table(Relaxation),
-            "relaxation, pyvisco",
-            vec![
-                ("t", "s", 1.0, Of(0)),
-                ("E_relax", "MPa", 1e6, Of(1)),
-                ("T", "°C", 1.0, Number(23.0)),
-                ("Set", "-", 1.0, Number(0.0)),
-            ],
-            &relaxation,
-        ),
-        (
-            Kind::Table(Relaxation),
-            "relaxation, German",
-            vec![("Zeit t", "h", 3600.0, Of(0)), ("E", "GPa", 1e9, Of(1))],
-            &relaxation,
-        ),
+    let tables: [(Kind, &str, &Vec<Vec<f64>>, &str); 17] = [
+        (Kind::Table(Creep), "creep", &creep, "t~s~0; J~1/Pa~1"),
+        (Kind::Table(Creep), "creep, reversed", &creep, "Creep compliance~1/GPa~1; Time~min~0; Sample~~A"),
+        (Kind::Table(Creep), "creep in tension", &creep, "t~µs~0; D~1/MPa~1"),
+        (Kind::Table(Relaxation), "relaxation, pyvisco", &relaxation, "t~s~0; E_relax~MPa~1; T~°C~=23; Set~-~=0"),
+        (Kind::Table(Relaxation), "relaxation, German", &relaxation, "Zeit t~h~0; E~GPa~1"),
         (
             Kind::Table(Relaxation),
             "relaxation with segments",
-            vec![
-                ("Segment", "", 1.0, Word("Hold")),
-                ("G(t)", "kPa", 1e3, Of(1)),
-                ("Time", "ms", 1e-3, Of(0)),
-                ("Temperature", "K", 1.0, Number(296.15)),
-            ],
             &relaxation,
+            "Segment~~Hold; G(t)~kPa~1; Time~ms~0; Temperature~K~=296.15",
         ),
-        (
-            Kind::Table(Dynamic),
-            "DMA, pyvisco",
-            vec![("f", "Hz", TAU, Of(0)), ("E_stor", "MPa", 1e6, Of(1)), ("E_loss", "MPa", 1e6, Of(2))],
-            &dynamic,
-        ),
+        (Kind::Table(Dynamic), "DMA, pyvisco", &dynamic, "f~Hz~0; E_stor~MPa~1; E_loss~MPa~2"),
         (
             Kind::Table(Dynamic),
             "rheometer sweep",
-            vec![
-                ("Angular frequency", "rad/s", 1.0, Of(0)),
-                ("Storage modulus", "kPa", 1e3, Of(1)),
-                ("Loss modulus", "Pa", 1.0, Of(2)),
-                ("Tan(delta)", "", 1.0, Tan),
-            ],
             &dynamic,
+            "Angular frequency~rad/s~0; Storage modulus~kPa~1; Loss modulus~Pa~2; Tan(delta)~~tan",
         ),
         (
             Kind::Table(Dynamic),
             "both frequencies",
-            vec![
-                ("Angular frequency", "rad/s", 1.0, Of(0)),
-                ("Frequency", "Hz", TAU, Of(0)),
-                ("G'", "Pa", 1.0, Of(1)),
-                ("G''", "Pa", 1.0, Of(2)),
-            ],
             &dynamic,
+            "Angular frequency~rad/s~0; Frequency~Hz~0; G'~Pa~1; G''~Pa~2",
         ),
         (
             Kind::Table(Dynamic),
             "time and frequency",
-            vec![
-                ("Time", "s", 1.0, Count),
-                ("Freq", "Hz", TAU, Of(0)),
-                ("E'", "MPa", 1e6, Of(1)),
-                ("E''", "MPa", 1e6, Of(2)),
-                ("T", "°C", 1.0, Number(23.0)),
-            ],
             &dynamic,
+            "Time~s~count; Freq~Hz~0; E'~MPa~1; E''~MPa~2; T~°C~=23",
         ),
-        (
-            Kind::Table(Dynamic),
-            "magnitude and phase",
-            vec![("f", "Hz", TAU, Of(0)), ("|E*|", "MPa", 1e6, Magnitude), ("phase", "°", degree, Phase)],
-            &dynamic,
-        ),
-        (
-            Kind::Table(Dynamic),
-            "loss factor",
-            vec![("omega", "rad/s", 1.0, Of(0)), ("G'", "kPa", 1e3, Of(1)), ("tan delta", "", 1.0, Tan)],
-            &dynamic,
-        ),
-        (Kind::Table(Storage), "storage alone", vec![("f", "Hz", TAU, Of(0)), ("G'", "MPa", 1e6, Of(1))], &storage),
-        (
-            Kind::Isotherms(Dynamic),
-            "isotherm",
-            vec![
-                ("f", "Hz", TAU, Of(0)),
-                ("E_stor", "MPa", 1e6, Of(1)),
-                ("E_loss", "MPa", 1e6, Of(2)),
-                ("T", "°C", 1.0, Number(18.0)),
-            ],
-            &dynamic,
-        ),
-        (
-            Kind::Recording,
-            "AFM",
-            vec![("t", "s", 1.0, Of(0)), ("F", "nN", 1e-9, Of(1)), ("z", "nm", 1e-9, Of(2))],
-            &curve,
-        ),
+        (Kind::Table(Dynamic), "magnitude and phase", &dynamic, "f~Hz~0; |E*|~MPa~magnitude; phase~°~phase"),
+        (Kind::Table(Dynamic), "loss factor", &dynamic, "omega~rad/s~0; G'~kPa~1; tan delta~~tan"),
+        (Kind::Table(Storage), "storage alone", &storage, "f~Hz~0; G'~MPa~1"),
+        (Kind::Isotherms(Dynamic), "isotherm", &dynamic, "f~Hz~0; E_stor~MPa~1; E_loss~MPa~2; T~°C~=18"),
+        (Kind::Recording, "AFM", &curve, "t~s~0; F~nN~1; z~nm~2"),
         (
             Kind::Recording,
             "nanoindenter",
-            vec![
-                ("Segment", "", 1.0, Word("Load")),
-                ("Load On Sample", "mN", 1e-3, Of(1)),
-                ("Time On Sample", "ms", 1e-3, Of(0)),
-                ("Depth", "µm", 1e-6, Of(2)),
-            ],
             &curve,
+            "Segment~~Load; Load On Sample~mN~1; Time On Sample~ms~0; Depth~µm~2",
         ),
-        (
-            Kind::Recording,
-            "Chiaro",
-            vec![
-                ("Time", "s", 1.0, Of(0)),
-                ("Load", "uN", 1e-6, Of(1)),
-                ("Piezo", "nm", 1e-9, Of(2)),
-                ("Auxiliary", "", 1.0, Number(0.0)),
-            ],
-            &curve,
-        ),
+        (Kind::Recording, "Chiaro", &curve, "Time~s~0; Load~uN~1; Piezo~nm~2; Auxiliary~~=0"),
     ];
     let mut all: Vec<Layout> = tables
         .iter()
-        .flat_map(|(kind, name, columns, rows)| STYLES.map(|style| table(*kind, name, columns, rows, style)))
+        .flat_map(|(kind, name, rows, spec)| STYLES.map(|style| table(*kind, name, &columns(spec), rows, style)))
         // a unit or symbol that a style cannot write
         .filter(|layout| !(layout.encoding == Encoding::Windows && layout.text.contains('δ')))
         .collect();
     let heights = [[1.5, 2.25, 3.5], [4.0, 5.125, 6.75]].map(|row| row.map(|z: f64| z / 1e6));
     let with_hole = [[1.5, f64::NAN, 3.5], [4.0, 5.125, 6.75]].map(|row| row.map(|z: f64| z / 1e6));
     let line = [1.5, 1.25, 2.0, 2.25, 1.75].map(|z: f64| z / 1e6);
-    let maps: [(Kind, &str, &str, Vec<Vec<f64>>); 16] = [
-        (Kind::Matrix, "plain", "1.5 2.25 3.5\n4.0 5.125 6.75\n", heights.map(Vec::from).into()),
-        (Kind::Matrix, "tabs at the ends", "1.5\t2.25\t3.5\t\n4.0\t5.125\t6.75\t\n", heights.map(Vec::from).into()),
-        (Kind::Matrix, "German", "1,5;2,25;3,5\n4,0;5,125;6,75\n", heights.map(Vec::from).into()),
-        (
-            Kind::Matrix,
-            "Wyko",
-            "Wyko ASCII Data File Format 0 0 1\nX Size\t3\nY Size\t2\nPixel_size\t2.00E-003\nRAW DATA\t3\t24\n1.5\tBad\t3.5\n4.0\t5.125\t6.75\n",
-            with_hole.map(Vec::from).into(),
-        ),
-        (
-            Kind::Matrix,
-            "ESRI",
-            "ncols 3\nnrows 2\nxllcorner 0.0\ncellsize 50\nNODATA_value -9999\n1.5 -9999 3.5\n4.0 5.125 6.75\n",
-            with_hole.map(Vec::from).into(),
-        ),
-        (Kind::Matrix, "data frame", ",0,1,2\n0,1.5,2.25,3.5\n1,4.0,5.125,6.75\n", heights.map(Vec::from).into()),
-        (
-            Kind::Matrix,
-            "Keyence",
-            "\"Date\",\"2024\"\n\"Unit\",\"um\"\n1.5,---,3.5\n4.0,5.125,6.75\n",
-            with_hole.map(Vec::from).into(),
-        ),
-        (
-            Kind::Matrix,
-            "Bruker",
-            "\"\\Exported image units: um\"\nh=2 w=3\n1.5\t2.25\t3.5\n4.0\t5.125\t6.75\n",
-            heights.map(Vec::from).into(),
-        ),
-        (Kind::Stated(65535.0), "65535", "1.5 65535 3.5\n4.0 5.125 6.75\n", with_hole.map(Vec::from).into()),
-        (Kind::Stated(-9999.0), "-9999, German", "1,5;-9999;3,5\n4,0;5,125;6,75\n", with_hole.map(Vec::from).into()),
-        (Kind::Matrix, "Zygo", "# Zygo\n1.5 No Data 3.5\n4.0 5.125 6.75\n", with_hole.map(Vec::from).into()),
-        (
-            Kind::Points,
-            "points",
-            "0 1 1.5\n1 1 2.25\n2 1 3.5\n0 0 4.0\n1 0 5.125\n2 0 6.75\n",
-            heights.map(Vec::from).into(),
-        ),
-        (
-            Kind::Points,
-            "points with headings",
-            "x (mm),y (mm),z (um)\n0,1,1.5\n1,1,2.25\n2,1,3.5\n0,0,4.0\n1,0,5.125\n2,0,6.75\n",
-            heights.map(Vec::from).into(),
-        ),
-        (
-            Kind::Points,
-            "points, German",
-            "0,0;1,0;1,5\n1,0;1,0;---\n2,0;1,0;3,5\n0,0;0,0;4,0\n1,0;0,0;5,125\n2,0;0,0;6,75\n",
-            with_hole.map(Vec::from).into(),
-        ),
-        (Kind::Profile, "profile", "0.0 1.5\n0.1 1.25\n0.2 2.0\n0.3 2.25\n0.4 1.75\n", vec![line.into()]),
-        (
-            Kind::Profile,
-            "profile with headings",
-            "Profil 1\nx [mm];z [µm]\n0,0;1,5\n0,1;1,25\n0,2;2,0\n0,3;2,25\n0,4;1,75\n",
-            vec![line.into()],
-        ),
+    let rows = |[a, b]: [[f64; 3]; 2]| vec![a.to_vec(), b.to_vec()];
+    let (whole, hole, line) = (&rows(heights), &rows(with_hole), &vec![line.to_vec()]);
+    let points = "0 1 1.5\n1 1 2.25\n2 1 3.5\n0 0 4.0\n1 0 5.125\n2 0 6.75\n";
+    let wyko = "Wyko ASCII Data File Format 0 0 1\nX Size\t3\nY Size\t2\nPixel_size\t2.00E-003\nBlock Name Type Length Value\n\
+        RAW DATA\t3\t24\n1.5\tBad\t3.5\n4.0\t5.125\t6.75\n";
+    let esri = "ncols 3\nnrows 2\nxllcorner 0.0\ncellsize 50\nNODATA_value -9999\n1.5 -9999 3.5\n4.0 5.125 6.75\n";
+    let keyence = "\"Date\",\"2024\"\n\"Unit\",\"um\"\n1.5,---,3.5\n4.0,5.125,6.75\n";
+    let bruker = "\"\\Exported image units: um\"\nh=2 w=3\n1.5\t2.25\t3.5\n4.0\t5.125\t6.75\n";
+    let gwyddion = "# Channel: Height\n# Width: 3.00 µm\n# Value units: µm\n1.5\t2.25\t3.5\n4.0\t5.125\t6.75\n";
+    let frame = ",0,1,2\n0,1.5,2.25,3.5\n1,4.0,5.125,6.75\n";
+    let german = "0,0;1,0;1,5\n1,0;1,0;---\n2,0;1,0;3,5\n0,0;0,0;4,0\n1,0;0,0;5,125\n2,0;0,0;6,75\n";
+    let profile = "Profil 1\nx [mm];z [µm]\n0,0;1,5\n0,1;1,25\n0,2;2,0\n0,3;2,25\n0,4;1,75\n";
+    let maps: [(Kind, &str, &str, &Vec<Vec<f64>>); 18] = [
+        (Kind::Matrix, "plain", "1.5 2.25 3.5\n4.0 5.125 6.75\n", whole),
+        (Kind::Matrix, "tabs at the ends", "1.5\t2.25\t3.5\t\n4.0\t5.125\t6.75\t\n", whole),
+        (Kind::Matrix, "German", "1,5;2,25;3,5\n4,0;5,125;6,75\n", whole),
+        (Kind::Matrix, "Wyko", wyko, hole),
+        (Kind::Matrix, "ESRI", esri, hole),
+        (Kind::Matrix, "data frame", frame, whole),
+        (Kind::Matrix, "Keyence", keyence, hole),
+        (Kind::Matrix, "Bruker", bruker, whole),
+        (Kind::Matrix, "Gwyddion", gwyddion, whole),
+        (Kind::Matrix, "Zygo", "# Zygo\n1.5 No Data 3.5\n4.0 5.125 6.75\n", hole),
+        (Kind::Stated(65535.0), "65535", "1.5 65535 3.5\n4.0 5.125 6.75\n", hole),
+        (Kind::Stated(-9999.0), "-9999, German", "1,5;-9999;3,5\n4,0;5,125;6,75\n", hole),
+        (Kind::Stated(-3.4028235e38), "least float", "1.5 -3.4028235e38 3.5\n4.0 5.125 6.75\n", hole),
+        (Kind::Points, "points", points, whole),
+        (Kind::Points, "points with headings", &format!("x (mm),y (mm),z (um)\n{}", points.replace(' ', ",")), whole),
+        (Kind::Points, "points, German", german, hole),
+        (Kind::Profile, "profile", "0.0 1.5\n0.1 1.25\n0.2 2.0\n0.3 2.25\n0.4 1.75\n", line),
+        (Kind::Profile, "profile with headings", profile, line),
     ];
     for (kind, name, text, rows) in maps {
         let encoding = if name.contains("German") { Encoding::Utf16 } else { Encoding::Utf8 };
         let marks = if name.contains("German") || text.contains("0,1;") { ",." } else { "." };
-        all.push(Layout { name: name.into(), kind, text: text.into(), encoding, rows, marks: marks.into() });
+        all.push(Layout {
+            name: name.into(),
+            kind,
+            text: text.into(),
+            encoding,
+            rows: rows.clone(),
+            marks: marks.into(),
+        });
     }
     all
 }

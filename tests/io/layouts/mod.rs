@@ -52,6 +52,34 @@ fn no_table_is_read_as_another() {
     assert!(refused >= 200, "{refused}");
 }
 
+/// What cannot be read, or would be guessed, is refused with its cure.
+#[test]
+fn what_is_no_table_or_map_is_refused_with_its_cure() {
+    let (dma, rows) = ("f [Hz],E' [MPa],E'' [MPa]", "0.01,1.50,0.02\n0.1,1.52,0.15\n1,2.25,0.75\n10,2.98,0.15\n");
+    let twice = format!("{dma},T [°C]\n{}", [18, 25].map(|t| rows.replace('\n', &format!(",{t}\n"))).concat());
+    for (kind, text, cure) in [
+        (Kind::Table(Dynamic), &*twice, "Isotherm::from_csv_reader"),
+        (Kind::Table(Dynamic), &format!("{dma}\n{rows}1,2.24,0.75\n"), "give their mean"),
+        (Kind::Table(Dynamic), &format!("{dma}\n{rows}100,3.00,-0.02\n"), "leave out rows"),
+        (Kind::Table(Dynamic), "Angular frequency,G',G''\n1,2,1\n2,3,1\n3,4,1\n4,5,1\n", "write it in brackets"),
+        (Kind::Table(Relaxation), "t [s],E [MPa]\n0.01,3\n0.1,\n1,2\n10,1\n", "leave the line out"),
+        (Kind::Table(Relaxation), "t [s],E [MPa]\n0.01,3\n0.1,NaN\n1,2\n10,1\n", "leave out rows"),
+        (Kind::Table(Relaxation), "T,E\n20,2900\n60,2700\n80,2300\n90,1700\n", "names the time"),
+        (Kind::Table(Relaxation), "T (°C),E (MPa)\n20,2900\n60,2700\n80,2300\n90,1700\n", "names the time"),
+        (Kind::Table(Creep), "T (°C),J (1/GPa)\n20,0.3\n30,0.4\n40,0.5\n50,0.6\n", "names the time"),
+        (Kind::Matrix, "1,234.5;2,345.6\n3,456.7;4,567.8\n", "separators of thousands"),
+        (Kind::Matrix, "1 2 3\n4 5 6 7\n", "4 columns"),
+        (Kind::Matrix, "1 2 -9999\n3 4 5\n", "with_missing_height(-9999)"),
+        (Kind::Matrix, "% relaxation\n0.01 3.0\n0.1 2.9\n1 2.25\n10 1.6\n", "Measurements"),
+        (Kind::Matrix, "0.0 1.5\n0.5 1.7\n1.0 1.1\n", "from_profile"),
+        (Kind::Matrix, "0 0 1\n1 0 2\n0 1 3\n1 1 4\n", "from_xyz"),
+        (Kind::Recording, "t [s],F [nN],z [um]\n0,0,0\n1,1,1\n0,1,1\n1,0,0\n", "add the end of the segment before"),
+    ] {
+        let error = read(kind, text.as_bytes()).expect_err(text);
+        assert!(error.contains(cure), "{cure}: {error}\n{text}");
+    }
+}
+
 /// A damage: the bytes, how many rows may be missing, and whether heights may.
 struct Damaged {
     bytes: Vec<u8>,
@@ -89,8 +117,10 @@ fn damaged(layout: &Layout, draw: &mut Draws) -> Option<Damaged> {
         }
         1 => {
             let without = characters[at];
-            // rows that end in a delimiter become one longer row, another matrix
-            let joins = at > 0 && "\n\r".contains(without) && "\t;,".contains(characters[at - 1]);
+            // rows that end in a delimiter become one longer row, another matrix; one after a remark becomes part of it
+            let before: String = characters[..at].iter().collect();
+            let remark = before.rsplit(end).next().is_some_and(|line| line.starts_with('#'));
+            let joins = "\n\r".contains(without) && (remark || before.ends_with(['\t', ';', ',']));
             if !" ,;\t\n\r\"".contains(without) || layout.marks.contains(without) || joins {
                 return None;
             }

@@ -65,7 +65,7 @@ impl<'a> Header<'a> {
 
     pub(super) fn finite(&self, key: &'static str) -> Result<f64> {
         let text = self.require(key)?;
-        finite(key, number(text, false).ok_or_else(|| self.error(key, text, "a number"))?)
+        finite(key, number(text, false).ok_or_else(|| self.error(key, text, "a number with a decimal point"))?)
     }
 
     pub(super) fn positive(&self, key: &'static str) -> Result<f64> {

@@ -173,7 +173,8 @@ mod tests {
                 let error = read(from, scale);
                 assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
             }
-            let entry = MapError::Entry { format: FORMAT, key, text: "small".into(), allowed: "a number" };
+            let entry =
+                MapError::Entry { format: FORMAT, key, text: "small".into(), allowed: "a number with a decimal point" };
             assert_eq!(read(from, "small"), entry.into());
         }
         let size = |found| MapError::Size { format: FORMAT, what: "heights", found, expected: 6, exact: true };

@@ -1,10 +1,11 @@
 //! Matrices of heights in text files.
 
+use std::collections::HashSet;
 use std::io::Read;
 
 use super::First;
 use crate::Grid;
-use crate::error::{MapError, Result, TextError};
+use crate::error::{Error, MapError, Result, TextError};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::{Text, TextFormat, TextRow};
 
@@ -116,8 +117,11 @@ fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)>
         values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-2 * step)
     };
     let beside: Vec<f64> = heights.iter().step_by(columns.max(1)).copied().collect();
-    if columns == 2 && beside.len() > 2 && ascends(&beside) && is_even(&beside) {
-        return Err(MapError::NotAMatrix { rows: beside.len(), profile: true }.into());
+    if columns == 2 && beside.len() > 2 && ascends(&beside) {
+        return Err(not_a_matrix("two columns, of which the first ascends", "HeightMap::from_profile or Measurements"));
+    }
+    if columns == 3 && is_grid(&heights) {
+        return Err(not_a_matrix("three columns, two of which are coordinates of a grid", "HeightMap::from_xyz"));
     }
     if columns < 3 || beside.len() < 3 || !beside[0].is_nan() {
         return Ok((columns, heights));
@@ -129,9 +133,25 @@ fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)>
         (true, true) => {}
         // half an index, or coordinates
         (false, false) if !is_axis(above) || !is_axis(beside) => return Ok((columns, heights)),
-        _ => return Err(MapError::NotAMatrix { rows: beside.len() + 1, profile: false }.into()),
+        _ => {
+            let found = "coordinates, or half an index, in its first row and column, whose corner is empty";
+            return Err(not_a_matrix(found, "the matrix without them"));
+        }
     }
     Ok((columns - 1, heights[columns..].chunks(columns).flat_map(|row| row[1..].to_vec()).collect()))
+}
+
+fn not_a_matrix(found: &'static str, cure: &'static str) -> Error {
+    MapError::NotAMatrix { found, cure }.into()
+}
+
+/// Whether rows of three numbers begin with the coordinates of a grid, each point once.
+fn is_grid(heights: &[f64]) -> bool {
+    let distinct = |of: &dyn Fn(&[f64]) -> [f64; 2]| {
+        heights.chunks(3).map(|row| of(row).map(f64::to_bits)).collect::<HashSet<_>>().len()
+    };
+    let (x, y) = (distinct(&|row| [row[0], 0.0]), distinct(&|row| [0.0, row[1]]));
+    x > 1 && y > 1 && 3 * x * y == heights.len() && x * y == distinct(&|row| [row[0], row[1]])
 }
 
 /// Makes NaN of heights that stand for missing ones; without a value for them, heights that look so are an error.
@@ -155,7 +175,7 @@ pub(super) fn mask(heights: &mut [f64], missing: Option<f64>) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Error, FileError};
+    use crate::FileError;
 
     fn read(text: &str) -> Result<HeightMap> {
         HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Millimetre, TextFormat::default())
@@ -231,9 +251,14 @@ mod tests {
             assert_eq!((read(value).missing(), read(f64::NAN).missing()), (1, 0), "{text}");
         }
         assert!(read("9999 9998 1\n2 3 5\n").is_ok());
-        let profile = read("0 1\n1 4\n2 9\n").unwrap_err();
-        assert_eq!(profile, MapError::NotAMatrix { rows: 3, profile: true }.into());
-        let coordinates = read(",0.5,1.0,1.5\n2.5,1,2,3\n5.0,4,5,6\n").unwrap_err();
-        assert!(matches!(coordinates, Error::Map(MapError::NotAMatrix { profile: false, .. })), "{coordinates}");
+        for (text, cure) in [
+            ("0 1\n1 4\n2 9\n", "from_profile"),
+            ("% relaxation\n0.01 3.0\n0.1 2.9\n1 2.25\n", "Measurements"),
+            ("0 0 1\n1 0 2\n0 1 3\n1 1 No Data\n", "from_xyz"),
+            (",0.5,1.0,1.5\n2.5,1,2,3\n5.0,4,5,6\n", "without them"),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(matches!(error, Error::Map(MapError::NotAMatrix { cure: c, .. }) if c.contains(cure)), "{error}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::io::Read;
 
 use super::text::{NO_HEIGHT, height, mask};
 use super::{First, count};
-use crate::error::{MapError, Result, finite, least_length, positive};
+use crate::error::{MapError, Result, least_length, positive, within};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::{Quantity, TableRow, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same};
 use crate::memory;
@@ -59,9 +59,9 @@ impl HeightMap {
     pub fn from_points(points: &[[f64; 3]]) -> Result<HeightMap> {
         let point = |(k, &[x, y, height]): (usize, &[f64; 3])| Point { line: k as u64 + 1, at: [x, y], height };
         let points: Vec<Point> = points.iter().enumerate().map(point).collect();
-        for point in &points {
-            finite("x of the points", point.at[0])?;
-            finite("y of the points", point.at[1])?;
+        for (field, value) in points.iter().flat_map(|p| [("x of the points", p.at[0]), ("y of the points", p.at[1])]) {
+            // a mark of missing data is no coordinate
+            within(field, value, value.abs() < NO_HEIGHT, "within ±1e30 m")?;
         }
         on_grid(&points)
     }
@@ -281,7 +281,11 @@ mod tests {
         let map = read("0 0 1\n1 0 2\n0 1 3\n1 1 4\n").unwrap();
         let points = [[0.0, 0.0, 1e-9], [1e-6, 0.0, 2e-9], [0.0, 1e-6, 3e-9], [1e-6, 1e-6, 4e-9]];
         assert_eq!(HeightMap::from_points(&points).unwrap().heights, map.heights);
-        assert!(HeightMap::from_points(&[[f64::NAN, 0.0, 1.0]]).is_err());
+        for mark in [f64::NAN, -3.4028235e38] {
+            let refused =
+                HeightMap::from_points(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, mark, 1.0]]);
+            assert!(matches!(refused, Err(Error::OutOfRange { field: "y of the points", .. })), "{refused:?}");
+        }
         let named = read("y [um];x [um];z [nm]\n0;0;1\n0;1;2\n1;0;3\n1;1;4\n").unwrap();
         assert_eq!(named, map);
         let other = read("x [mm];y [um];z [nm]\n0;0;1\n0;1;2\n1;0;3\n1;1;4\n").unwrap_err();

@@ -1,0 +1,93 @@
+//! Where the search for a state of contact begins.
+
+use num_complex::Complex64;
+
+use super::contact_problem::{Found, Problem};
+use super::operator::MovingBodies;
+use crate::Grid;
+
+/// Bodies that are periodic along both axes are first solved on half as many cells along each axis, down to so many at least.
+const COARSEST: usize = 128;
+/// Residual allowed there.
+const ROUGHLY: f64 = 1e-3;
+/// The skew-symmetric part of the response grows by no less than this.
+const LEAST_STEP: f64 = 1e-3;
+
+impl Problem<'_> {
+    /// The state, from that of a coarser mesh, else from the pressure `before`, else from that of the symmetric part of the response: in slow
+    /// motion a set would grow by one row of cells at a time. Where sets come back, the skew-symmetric part grows in steps.
+    pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> Found {
+        let coarse = self.on_coarser(bodies, before);
+        let first = coarse.as_deref().unwrap_or(before);
+        let found = first.iter().any(|&p| p > 0.0).then(|| self.solve(bodies, first));
+        if let Some(found) = found.filter(|found| found.converged) {
+            return found;
+        }
+        let mut solve = |skew: f64, from: &[f64]| {
+            if skew == 1.0 {
+                return self.solve(bodies, from);
+            }
+            let mut less = bodies.with_skew(skew);
+            let found = self.solve(&mut less, from);
+            bodies.response.pairs += less.transforms();
+            found
+        };
+        let (mut last, mut reached, mut step) = (solve(0.0, before), 0.0, 1.0);
+        let mut sets = last.sets;
+        loop {
+            let skew = f64::min(reached + step, 1.0);
+            let found = solve(skew, &last.pressure);
+            sets += found.sets;
+            if found.converged && skew < 1.0 {
+                (last, reached, step) = (found, skew, 2.0 * step);
+            } else if found.converged || step <= LEAST_STEP {
+                return Found { sets, ..found };
+            } else {
+                step *= 0.25;
+            }
+        }
+    }
+
+    /// The pressure on half as many cells along each axis, spread over the cells of this grid. Its transforms count by their cells.
+    fn on_coarser(&self, bodies: &mut MovingBodies, before: &[f64]) -> Option<Vec<f64>> {
+        let cells @ [_, n2] = self.grid.cells();
+        if cells.iter().any(|n| n % 2 == 1 || n / 2 < COARSEST) {
+            return None;
+        }
+        let mut coarser = bodies.on_half_the_cells()?;
+        let grid = Grid::new(cells.map(|n| n / 2), self.grid.lengths()).ok()?;
+        let coarse_of = |k: usize| k / n2 / 2 * (n2 / 2) + k % n2 / 2;
+        let mean = |field: &[f64]| {
+            let mut coarse = vec![0.0; grid.len()];
+            field.iter().enumerate().for_each(|(k, value)| coarse[coarse_of(k)] += 0.25 * value);
+            coarse
+        };
+        let (gap, tolerance) = (mean(self.gap), self.tolerance.max(ROUGHLY));
+        let free = crate::solver::Freedom { total: 0.25 * self.free.total, ..self.free };
+        let found = Problem { grid: &grid, gap: &gap, free, tolerance }.search(&mut coarser, &mean(before));
+        bodies.response.pairs += coarser.transforms().div_ceil(4);
+        Some((0..before.len()).map(|k| found.pressure[coarse_of(k)]).collect())
+    }
+}
+
+impl MovingBodies {
+    /// The long waves of bodies that are periodic along both axes.
+    fn on_half_the_cells(&self) -> Option<MovingBodies> {
+        let (cells @ [n1, _], periods) = (self.response.cells, self.response.plane.periods());
+        // a body that ends is padded in its response
+        let [m1, m2] = cells.map(|n| n / 2);
+        if periods != cells {
+            return None;
+        }
+        let mut factors = Vec::with_capacity(m1 * (m2 / 2 + 1));
+        for k2 in 0..=m2 / 2 {
+            for k1 in 0..m1 {
+                let factor = self.response.factors[k2 * n1 + if 2 * k1 > m1 { n1 - m1 + k1 } else { k1 }];
+                // a wave of alternating cells moves both ways
+                let both = 2 * k1 == m1 || 2 * k2 == m2;
+                factors.push(if both { Complex64::from(factor.re) } else { factor });
+            }
+        }
+        Some(MovingBodies::of_waves([m1, m2], factors, Default::default()))
+    }
+}
