@@ -3,13 +3,14 @@
 # in both languages. Built in the profile of the tests; tools come from an environment in the user's cache that is made for it.
 set -euo pipefail
 cd "$(dirname "$0")/../python"
+repository=$(cd .. && pwd)
 
 own="${XDG_CACHE_HOME:-$HOME/.cache}/viscocontact/package"
 python="$own/bin/python"
-wanted="import mypy, numpy, pytest"
+wanted="import matplotlib, mypy, numpy, pytest, scipy"
 if ! "$python" -c "$wanted" 2>/dev/null; then
-    if ! { python3 -m venv "$own" && "$python" -m pip install --quiet mypy numpy pytest; }; then
-        echo "skipped: neither a network nor $own with mypy, numpy and pytest"
+    if ! { python3 -m venv "$own" && "$python" -m pip install --quiet matplotlib mypy numpy pytest scipy; }; then
+        echo "skipped: neither a network nor $own with matplotlib, mypy, numpy, pytest and scipy"
         exit 0
     fi
 fi
@@ -25,3 +26,6 @@ cd "$folder"
 export VISCOCONTACT_SCENES_IN_RUST="$CARGO_TARGET_DIR/debug/examples/scenes" PYTHONPATH="$folder"
 "$python" -m pytest --quiet tests
 "$python" -m mypy.stubtest viscocontact
+for example in "$repository"/python/examples/*.py; do
+    "$python" "$example" --quick --output "$repository/target/ci/python"
+done
