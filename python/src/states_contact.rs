@@ -179,10 +179,11 @@ impl StatesContact {
         to_array(py, pressure, &self.cells()?)
     }
 
-    /// Arrays "pressure" [Pa], "displacement" [m] and "gap" [m] of the shape of the grid, exact.
-    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    /// Arrays "pressure" [Pa], "displacement" [m] and "gap" [m] of the shape of the grid, within a relative `accuracy`.
+    #[pyo3(signature = (accuracy=1e-3))]
+    fn fields<'py>(&self, py: Python<'py>, accuracy: f64) -> PyResult<Bound<'py, PyDict>> {
         let contact = self.get()?;
-        let fields = py.detach(|| contact.fields()).or_raise()?;
+        let fields = py.detach(|| contact.fields(accuracy)).or_raise()?;
         let (all, cells) = (PyDict::new(py), self.cells()?);
         for (name, field) in [("pressure", fields.pressure), ("displacement", fields.displacement), ("gap", fields.gap)]
         {
