@@ -1,7 +1,7 @@
 //! Frictionless contact of viscoelastic bodies.
 //!
 //! An indenter is pressed onto a creeping body: pressure, contact area and approach over time, for any shape and load history. The rheology is
-//! linear, its creep compliance concave after t = 0. Surfaces and creep may be read from files.
+//! linear, its creep compliance concave after t = 0. Surfaces and creep may come from files.
 //!
 //! # The problem
 //!
@@ -13,7 +13,7 @@
 //! W = ∬ p dx,    W e = ∬ p x dx
 //! ```
 //!
-//! The displacement depends on the whole pressure history through the contact creep compliance C(t):
+//! The displacement follows the pressure history through the contact creep compliance C(t):
 //!
 //! ```text
 //! u(t) = ∫₀₋ᵗ C(t − s) d[K p(s)],    (K p)(x) = ∬ p(x′) / (π |x − x′|) dx′
@@ -46,7 +46,7 @@
 //! |---|---|
 //! | drive every step | [`ViscoelasticContact::step`] |
 //! | follow a load history, in fixed or adaptive steps | [`ViscoelasticContact::follow`] |
-//! | reach a required accuracy | [`plan::Plan`]: domain, mesh and steps |
+//! | reach a required accuracy | [`plan::Plan`] |
 //! | compute many materials on one surface | [`states`] |
 //! | let surfaces attract each other | [`adhesion`] |
 //! | slide and roll, in steps or steadily | [`motion`], [`sliding`] |
@@ -54,14 +54,14 @@
 //! | add a shape, a body or a history | [`geometry::Geometry`], [`rheology::Rheology`], [`load::LoadHistory`] |
 //! | evaluate a state, write files for NumPy and ParaView | [`observe`], [`output`] |
 //! | compare with closed forms | [`analytic`] |
-//! | identify a modulus from a measured indentation | the package `viscocontact-identify` |
+//! | identify a modulus by indentation | the package `viscocontact-identify` |
 //!
 //! Guides with programs, in the order of use: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
 //! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::steady_motion`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
 //!
 //! # Conventions
 //!
-//! * **Units**: SI throughout: m, Pa, N, s.
+//! * **Units**: SI: m, Pa, N, s.
 //! * **Signs**: pressure is positive in compression, displacement into the bodies, the gap when open, the approach when pressed together.
 //! * **Stress** below the surface ([`observe::Stress`]): tension positive, x3 the depth.
 //! * **Coordinates**: x1 and x2 in the common plane, origin in the middle of the [`Grid`].
@@ -71,7 +71,7 @@
 //!   elastic body: J/4 if incompressible, (1 − ν) J/2 at a constant Poisson's ratio, larger with an elastic bulk
 //!   ([`rheology::Material`]); the compliances of two bodies add up.
 //! * **Kernel**: [`InfluenceKernel::convolve`] returns K p in Pa·m.
-//! * **Datum** of the approach: the surface far away from a half-space's contact, the mean of a periodic surface, the surface at a distance given
+//! * **Datum** of the approach: the surface far from a half-space's contact, the mean of a periodic surface, the surface at a distance given
 //!   with the kernel in line contacts, the undeformed surface of a layer on a rigid base.
 //! * **Heights** of maps and rough surfaces are positive outward; the gap is the greatest height minus each height.
 //! * **Motion**: a positive velocity moves the indenter over the creeping bodies along x1 or x2; the lateral force moves it.
@@ -81,7 +81,7 @@
 //!
 //! A convolution of N cells transforms the zero-padded grid and back, O(N log N). A step of the default solver
 //! takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents in the scene of the paper. Half or a quarter of the cells is computed where gap
-//! and load are even ([`contact::Settings::symmetry`]), and no cell that contact cannot reach ([`contact::Settings::window`]).
+//! and load are even ([`contact::Settings::symmetry`]), and none beyond the reach of contact ([`contact::Settings::window`]).
 //!
 //! The history costs no transform, and one field per relaxation time. A rheology without an exact exponential
 //! series is fitted by one at `build` ([`rheology::Rheology::series`]).
