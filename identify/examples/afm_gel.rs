@@ -108,12 +108,12 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             .contact_point(Nuisance::Fitted)
             .offset(Nuisance::Fitted)
             .noise(Noise::Autoregressive);
-        fits.push(identification.fit(std::slice::from_ref(&curve))?);
+        fits.push(identification.fit(std::slice::from_ref(&curve)));
         bar.inc(1);
     }
     bar.finish_and_clear();
 
-    let ranked = ranked(fits);
+    let ranked = ranked(fits)?;
     println!("{:<18} {:>9} {:>7} {:>8}", "model", "ΔAICc", "weight", "p(runs)");
     for (fit, difference, weight) in &ranked {
         let (name, p) = (fit.model(), fit.runs().probability);

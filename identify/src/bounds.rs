@@ -19,12 +19,14 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    pub(crate) fn new(problem: &Problem<'_>, jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
-        let units: Vec<f64> = problem.free().map(|parameter| parameter.unit).collect();
-        let inverse = inverse_gram(jacobian)?;
-        let row = |i: usize| (0..units.len()).map(|j| sigma * sigma * inverse[(i, j)] * units[i] * units[j]).collect();
-        let names = problem.free().map(|parameter| parameter.name.clone()).collect();
-        Ok(Bounds { names, covariance: (0..units.len()).map(row).collect() })
+    pub(crate) fn new(problem: &Problem<'_>, values: &[f64], jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
+        let names: Vec<String> = problem.free().map(|parameter| parameter.name.clone()).collect();
+        let inverse = inverse_gram(jacobian, 0.0)?;
+        let scales = problem.scales(values);
+        let covariance = &scales * inverse * scales.transpose();
+        let row = |i: usize| (0..names.len()).map(|j| sigma * sigma * covariance[(i, j)]).collect();
+        let covariance = (0..names.len()).map(row).collect();
+        Ok(Bounds { names, covariance })
     }
 
     /// Least standard deviation of a parameter: of its logarithm for moduli, times and stiffness, of ln(α/(1 − α)) for exponents, and
@@ -42,8 +44,9 @@ impl Bounds {
     }
 }
 
-/// (JᵀJ)⁻¹, by a matrix of unit diagonal.
-pub(crate) fn inverse_gram(jacobian: &Mat<f64>) -> Result<Mat<f64>> {
+/// (JᵀJ)⁻¹, by a matrix of unit diagonal, to which `ridge` is added: so that a combination of parameters on which the data do not depend has a
+/// great deviation.
+pub(crate) fn inverse_gram(jacobian: &Mat<f64>, ridge: f64) -> Result<Mat<f64>> {
     let gram = jacobian.transpose() * jacobian;
     let count = gram.nrows();
     let scale: Vec<f64> = (0..count).map(|j| gram[(j, j)].sqrt()).collect();
@@ -54,7 +57,8 @@ pub(crate) fn inverse_gram(jacobian: &Mat<f64>) -> Result<Mat<f64>> {
     if scale.iter().any(|s| *s == 0.0 || !s.is_finite()) {
         return Err(singular());
     }
-    let scaled = Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j]));
+    let scaled =
+        Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j]) + if i == j { ridge } else { 0.0 });
     let inverse = scaled.llt(Side::Lower).map_err(|_| singular())?.inverse();
     Ok(Mat::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
 }

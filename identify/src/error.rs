@@ -79,15 +79,6 @@ pub enum Error {
         depth: f64,
     },
 
-    /// The contact grows again after it has shrunk.
-    #[error(
-        "curve {curve}: the contact grows again after it has shrunk, so that its force is not linear in the spectrum: leave out what follows, or fit a model"
-    )]
-    Returns {
-        /// Index of the curve.
-        curve: usize,
-    },
-
     /// No values of the parameters give the measured forces even roughly.
     #[error("the fit failed after {iterations} iterations: {reason}")]
     NotConverged {
@@ -109,6 +100,10 @@ pub enum Error {
     /// An error of a measured curve.
     #[error(transparent)]
     Data(#[from] crate::data::DataError),
+
+    /// Fits of different data are compared.
+    #[error("fits are ranked only if all are of the same curves, and none is robust: fit each model to the same data")]
+    OtherData,
 
     /// A table of results cannot be written.
     #[error("the results cannot be written: {reason}")]

@@ -74,6 +74,15 @@ impl Experiment {
     }
 }
 
+/// Curves are equal if drive, tip, spring and force are.
+impl PartialEq for Curve {
+    fn eq(&self, other: &Curve) -> bool {
+        let (a, b) = (&self.experiment, &other.experiment);
+        let same_tip = Arc::ptr_eq(&a.tip, &b.tip) || a.tip.states() == b.tip.states();
+        self.force == other.force && a.protocol == b.protocol && a.stiffness == b.stiffness && same_tip
+    }
+}
+
 /// A measured curve: an experiment and the force at each time.
 #[derive(Clone, Debug)]
 pub struct Curve {

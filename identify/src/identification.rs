@@ -6,14 +6,14 @@ use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
-use crate::noise::{Noise, Whitening};
-use crate::parameters::{Chosen, Kind, Nuisance, Size, parameters};
-use crate::problem::{DIFFERENCE, Part, Problem};
+use crate::noise::{CurveNoise, Noise, Whitening};
+use crate::parameters::{Chosen, Kind, Nuisance, PerCurve, Size, parameters};
+use crate::problem::{Part, Problem};
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
 /// All curves of one fit have the same material. The contact point is the drive at which the tip first touches. Each curve has its own contact
-/// point, offset, drift and drag; the stiffness of the spring is common. All are known to be 0 unless stated (and the stiffness the stiffness
+/// point, offset, drift, tilt and drag; the stiffness of the spring is common. All are known to be 0 unless stated (and the stiffness the stiffness
 /// of the experiment).
 ///
 /// ```
@@ -38,35 +38,42 @@ pub struct Identification {
     chosen: Chosen,
     noise: Noise,
     sigma: Option<f64>,
+    robust: bool,
 }
 
 impl Identification {
     /// Identifies the parameters of a model; everything else is known until stated otherwise.
     pub fn new(model: Model) -> Identification {
-        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None }
+        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false }
     }
 
     /// Drive at first touch \[m\].
-    pub fn contact_point(mut self, contact_point: Nuisance) -> Identification {
-        self.chosen.contact_point = contact_point;
+    pub fn contact_point(mut self, contact_point: impl Into<PerCurve>) -> Identification {
+        self.chosen.contact_point = contact_point.into();
         self
     }
 
     /// Force without contact \[N\].
-    pub fn offset(mut self, offset: Nuisance) -> Identification {
-        self.chosen.offset = offset;
+    pub fn offset(mut self, offset: impl Into<PerCurve>) -> Identification {
+        self.chosen.offset = offset.into();
         self
     }
 
     /// Growth of the force without contact \[N/s\].
-    pub fn drift(mut self, drift: Nuisance) -> Identification {
-        self.chosen.drift = drift;
+    pub fn drift(mut self, drift: impl Into<PerCurve>) -> Identification {
+        self.chosen.drift = drift.into();
+        self
+    }
+
+    /// Growth of the force without contact with the drive \[N/m\]: interference of the light on the cantilever, or an actuator that is not straight.
+    pub fn tilt(mut self, tilt: impl Into<PerCurve>) -> Identification {
+        self.chosen.tilt = tilt.into();
         self
     }
 
     /// Force over the speed of the drive \[N s/m\]: a cantilever in a liquid.
-    pub fn drag(mut self, drag: Nuisance) -> Identification {
-        self.chosen.drag = drag;
+    pub fn drag(mut self, drag: impl Into<PerCurve>) -> Identification {
+        self.chosen.drag = drag.into();
         self
     }
 
@@ -87,6 +94,17 @@ impl Identification {
     pub fn known_sigma(mut self, sigma: f64) -> Identification {
         self.sigma = Some(sigma);
         self
+    }
+
+    /// Takes the weight of outliers: Tukey's biweight of the residuals made white. Neither known standard deviations nor the criterion of
+    /// Akaike apply then.
+    pub fn robust(mut self) -> Identification {
+        self.robust = true;
+        self
+    }
+
+    pub(crate) fn is_robust(&self) -> bool {
+        self.robust
     }
 
     /// Fixes a parameter of the material.
@@ -135,33 +153,43 @@ impl Identification {
     /// ```
     ///
     /// # Errors
-    /// As [`Identification::respond`].
+    /// As [`Identification::respond`]; if the correlation of the noise is unknown.
     pub fn bounds(&self, experiments: &[Experiment], values: &[(&str, f64)], sigma: f64) -> Result<Bounds> {
         positive("standard deviation of the noise", sigma)?;
+        if self.fits_correlation() {
+            let reason = "bounds need the correlation of the noise: take Noise::AutoregressiveWith";
+            return Err(Error::NotConverged { iterations: 0, reason });
+        }
         let problem = self.problem(experiments.iter().map(|experiment| (experiment, None)))?;
         let values = self.given(&problem, values)?;
-        let jacobian = problem.jacobian(&problem.coordinates(&values), DIFFERENCE)?;
-        Bounds::new(&problem, &jacobian, sigma)
+        let jacobian = problem.jacobian(&problem.coordinates(&values))?;
+        Bounds::new(&problem, &values, &jacobian, sigma)
     }
 
-    /// The problem of fitted curves with the whitening of the fit.
-    pub(crate) fn refit_problem<'a>(&self, curves: &'a [Curve], correlation: Option<f64>) -> Result<Problem<'a>> {
+    /// The problem of fitted curves with the noise of the fit: whitening, scale and weights of each curve.
+    pub(crate) fn refit_problem<'a>(&self, curves: &'a [Curve], noise: &[CurveNoise]) -> Result<Problem<'a>> {
         let mut problem = self.problem(curves.iter().map(|curve| (&curve.experiment, Some(&curve.force))))?;
-        if let Some(phi) = correlation {
-            for part in &mut problem.parts {
+        for (part, noise) in problem.parts.iter_mut().zip(noise) {
+            if let Some(phi) = noise.correlation {
                 part.whitening = Whitening::Autoregressive(phi);
             }
+            part.scale = noise.scale;
+            part.outliers.clone_from(&noise.outliers);
+            part.weights = noise.outliers.iter().map(|weight| noise.scale * weight).collect();
         }
         Ok(problem)
     }
 
     /// The value of a known property of a curve.
     pub(crate) fn known(&self, kind: Kind) -> f64 {
+        let chosen = &self.chosen;
         let nuisance = match kind {
-            Kind::ContactPoint(_) => self.chosen.contact_point,
-            Kind::Offset(_) => self.chosen.offset,
-            Kind::Drift(_) => self.chosen.drift,
-            _ => self.chosen.drag,
+            Kind::ContactPoint(curve) => chosen.contact_point.of(curve),
+            Kind::Offset(curve) => chosen.offset.of(curve),
+            Kind::Drift(curve) => chosen.drift.of(curve),
+            Kind::Tilt(curve) => chosen.tilt.of(curve),
+            Kind::Drag(curve) => chosen.drag.of(curve),
+            Kind::Material(_) | Kind::Stiffness => return 0.0,
         };
         if let Nuisance::Fixed(value) = nuisance { value } else { 0.0 }
     }
@@ -169,6 +197,8 @@ impl Identification {
     pub(crate) fn sigma(&self) -> Option<f64> {
         match self.noise {
             Noise::Covariance(_) => Some(1.0),
+            // of residuals without outliers it is found
+            _ if self.robust => None,
             _ => self.sigma,
         }
     }
@@ -180,13 +210,7 @@ impl Identification {
 
     /// Minimum from a start.
     pub(crate) fn minimum(&self, problem: &Problem<'_>, coordinates: Vec<f64>) -> Result<Minimum> {
-        minimise(
-            coordinates,
-            problem.rounding(),
-            DIFFERENCE,
-            |x| problem.residuals(x),
-            |x, difference| problem.jacobian(x, difference),
-        )
+        minimise(coordinates, problem.rounding(), |x| problem.residuals(x), |x| problem.jacobian(x))
     }
 
     /// The problem of some curves, which may have no data yet.
@@ -201,12 +225,12 @@ impl Identification {
         for (curve, (experiment, force)) in curves.enumerate() {
             let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
             let data = force.cloned().unwrap_or_else(|| vec![0.0; times.len()]);
-            let range = |values: &[f64]| {
-                let [low, high] =
-                    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-                if high > low { high - low } else { 1.0 }
+            let ends = |values: &[f64]| {
+                values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)])
             };
-            sizes.push(Size { depth: range(drive), force: range(&data), time: times[times.len() - 1] - times[0] });
+            let range = |[low, high]: [f64; 2]| if high > low { high - low } else { 1.0 };
+            let time = times[times.len() - 1] - times[0];
+            sizes.push(Size { depth: range(ends(drive)), drive: ends(drive), force: range(ends(&data)), time });
             let whitening = Whitening::of(&self.noise, curve, times.len())?;
             parts.push(Part::new(experiment, data, whitening));
         }

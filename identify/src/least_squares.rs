@@ -7,20 +7,19 @@ use crate::error::{Error, Result};
 
 /// Iterations after which a search has failed.
 const MAX_ITERATIONS: usize = 200;
-/// A search ends where its next step would reduce the sum of squares by less than this fraction: it moves parameters by a
-/// millionth of √n standard deviations.
-const ENOUGH: f64 = 1e-12;
+/// A search ends where the linearised residuals promise less than this fraction of the sum of squares.
+const ENOUGH: f64 = 1e-10;
+/// The same where steps are damped so much that the linearised residuals hold nowhere: at kinks, where samples are about to touch or to leave.
+const AT_KINK: f64 = 1e-9;
+/// A search that reduces the sum of squares by less than this fraction in its last iteration has not failed.
+const SLOW: f64 = 1e-6;
 /// Longest step of a coordinate: a factor of e² in a modulus.
 const LONGEST_STEP: f64 = 2.0;
-/// Least width of differences: below, rounding is felt.
-const LEAST_DIFFERENCE: f64 = 1e-7;
-/// Least damping.
-const LEAST_DAMPING: f64 = 1e-12;
-/// A search ends after some steps that each reduce the sum of squares by less than this fraction: it is at a kink.
-const IDLE: f64 = 1e-2;
-const MAX_IDLE: usize = 6;
-/// Shortest step.
-const SHORTEST_STEP: f64 = 1e-10;
+/// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
+const AHEAD: f64 = 0.1;
+const MOST_BENT: f64 = 0.75;
+/// Least damping, and damping at the start.
+const DAMPING: [f64; 2] = [1e-14, 1e-3];
 
 /// A minimum.
 #[derive(Clone, Debug)]
@@ -31,50 +30,52 @@ pub(crate) struct Minimum {
     pub(crate) iterations: usize,
 }
 
-/// Minimises the sum of squares of `residuals` from `start`, or until it is at most `exact`. Residuals that cannot be computed reject a step. `jacobian` takes
-/// differences of a width that is at most `difference`: narrower than the last step, since residuals have kinks where a sample is
-/// about to touch or to leave.
+/// Minimises the sum of squares of `residuals` from `start`, or until it is at most `exact`. Residuals that cannot be computed reject a
+/// step. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter in Marquardt's Method*, 1999).
 pub(crate) fn minimise(
     start: Vec<f64>,
     exact: f64,
-    difference: f64,
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
-    jacobian: impl Fn(&[f64], f64) -> Result<Mat<f64>>,
+    jacobian: impl Fn(&[f64]) -> Result<Mat<f64>>,
 ) -> Result<Minimum> {
     let mut x = start;
     let mut r = residuals(&x)?;
     let mut sum = square(&r);
-    let (mut damping, mut width, mut idle) = (1e-3, difference, 0);
-    for iteration in 0..MAX_ITERATIONS {
-        let slopes = jacobian(&x, width)?;
-        let right = slopes.transpose() * Col::from_fn(r.len(), |k| -r[k]);
-        let gram = slopes.transpose() * &slopes;
-        // the scale of each coordinate; coordinates that move nothing stay
-        let scale: Vec<f64> =
-            (0..x.len()).map(|j| gram[(j, j)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+    let (mut damping, mut growth, mut is_slow) = (DAMPING[1], 2.0, false);
+    for iteration in 1..=MAX_ITERATIONS {
+        let slopes = jacobian(&x)?;
+        let model = Linear::new(&slopes, &r);
         let done = loop {
-            let step = damped_step(&gram, &right, &scale, damping);
-            let promised: f64 = (0..x.len()).map(|j| step[j] * right[j]).sum();
-            let longest = step.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
-            let shorter = (LONGEST_STEP / longest).min(1.0);
-            let moved: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s * shorter).collect();
-            let trial = residuals(&moved).ok().map(|r| (square(&r), r)).filter(|(sum, _)| sum.is_finite());
-            match trial {
-                Some((reduced, residuals)) if reduced < sum => {
-                    idle = if sum - reduced < IDLE * sum { idle + 1 } else { 0 };
-                    let enough = promised <= ENOUGH * sum && damping < 1.0 || idle == MAX_IDLE;
-                    (x, r, sum) = (moved, residuals, reduced);
-                    damping = (damping * 0.1).max(LEAST_DAMPING);
-                    width = (0.1 * longest).clamp(LEAST_DIFFERENCE, difference);
-                    break enough;
-                }
-                _ if longest < SHORTEST_STEP || promised <= ENOUGH * sum && damping < 1.0 => break true,
-                _ => damping = (damping * 10.0).max(1e-9),
+            if sum <= exact || model.promised(&model.step(0.0)) <= ENOUGH * sum {
+                break true;
             }
+            let mut step = model.step(damping);
+            let promised = model.promised(&step);
+            if let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
+                model.bend(&mut step, damping, &slopes, &r, &ahead);
+            }
+            let moved = along(&x, &step, 1.0);
+            let trial = residuals(&moved).ok().map(|r| (square(&r), r)).filter(|(sum, _)| sum.is_finite());
+
+            if let Some((reduced, residuals)) = trial.filter(|(reduced, _)| *reduced < sum) {
+                let gain = (sum - reduced) / promised;
+                // at a kink, shorter and shorter steps reduce the sum less and less
+                let reduction = promised.max(sum - reduced);
+                let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK } else { ENOUGH };
+                is_slow = reduction <= SLOW * sum;
+                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
+                growth = 2.0;
+                (x, r, sum) = (moved, residuals, reduced);
+                break is_enough;
+            }
+            if promised <= ENOUGH * sum {
+                break true;
+            }
+            (damping, growth) = (damping * growth, growth * 2.0);
         };
-        if done || sum <= exact {
-            let jacobian = jacobian(&x, difference)?;
-            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations: iteration + 1 });
+        if done || is_slow && iteration == MAX_ITERATIONS {
+            let jacobian = jacobian(&x)?;
+            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations: iteration });
         }
     }
     let reason =
@@ -82,14 +83,104 @@ pub(crate) fn minimise(
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
 }
 
-/// Solves (JᵀJ + λ D²) s = right, with D the norms of the columns.
-fn damped_step(gram: &Mat<f64>, right: &Col<f64>, scale: &[f64], damping: f64) -> Vec<f64> {
-    let count = scale.len();
-    let scaled =
-        Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j]) + if i == j { damping } else { 0.0 });
-    let right = Col::from_fn(count, |i| right[i] / scale[i]);
-    let solved = scaled.partial_piv_lu().solve(&right);
-    (0..count).map(|i| solved[i] / scale[i]).map(|s| if s.is_finite() { s } else { 0.0 }).collect()
+fn along(x: &[f64], step: &[f64], share: f64) -> Vec<f64> {
+    x.iter().zip(step).map(|(x, s)| x + share * s).collect()
+}
+
+/// Linearised residuals, in coordinates whose columns have the norm 1.
+struct Linear {
+    gram: Mat<f64>,
+    right: Vec<f64>,
+    scale: Vec<f64>,
+}
+
+impl Linear {
+    fn new(slopes: &Mat<f64>, residuals: &[f64]) -> Linear {
+        let count = slopes.ncols();
+        let gram = slopes.transpose() * slopes;
+        let right = slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]);
+        // a coordinate that moves nothing stays
+        let norm = |j: usize| if gram[(j, j)] > 0.0 { gram[(j, j)].sqrt() } else { 1.0 };
+        let scale: Vec<f64> = (0..count).map(norm).collect();
+        Linear {
+            gram: Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j])),
+            right: (0..count).map(|j| right[j] / scale[j]).collect(),
+            scale,
+        }
+    }
+
+    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long go as far as they may, and the
+    /// others are found again; if the sum of squares would not fall so, the whole step is shortened.
+    fn step(&self, damping: f64) -> Vec<f64> {
+        let limits: Vec<f64> = self.scale.iter().map(|scale| LONGEST_STEP * scale).collect();
+        let mut held: Vec<Option<f64>> = vec![None; limits.len()];
+        let whole = self.solve(damping, &held);
+        let mut step = whole.clone();
+        loop {
+            let long = (0..limits.len()).filter(|&j| held[j].is_none() && step[j].abs() > limits[j]);
+            let long: Vec<usize> = long.collect();
+            if long.is_empty() {
+                break;
+            }
+            long.into_iter().for_each(|j| held[j] = Some(limits[j] * step[j].signum()));
+            step = self.solve(damping, &held);
+        }
+        let unscaled =
+            |step: &[f64]| -> Vec<f64> { step.iter().zip(&self.scale).map(|(s, scale)| s / scale).collect() };
+        if self.promised(&unscaled(&step)) > 0.0 {
+            return unscaled(&step);
+        }
+        let shorter = whole.iter().zip(&limits).fold(1.0, |least: f64, (s, limit)| least.min(limit / s.abs()));
+        unscaled(&whole).into_iter().map(|s| s * shorter).collect()
+    }
+
+    /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
+    /// second derivative of the residuals is found from those a little `ahead`. A step whose acceleration is great is left.
+    fn bend(&self, step: &mut [f64], damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
+        let linear = slopes * Col::from_fn(step.len(), |j| step[j]);
+        let curvature =
+            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * ((ahead[k] - residuals[k]) / AHEAD - linear[k]));
+        let right = slopes.transpose() * curvature;
+        let bent = Linear {
+            gram: self.gram.clone(),
+            right: (0..step.len()).map(|j| -right[j] / self.scale[j]).collect(),
+            scale: self.scale.clone(),
+        };
+        let acceleration = bent.solve(damping, &vec![None; step.len()]);
+        let size = |of: &mut dyn Iterator<Item = f64>| of.map(|s| s * s).sum::<f64>().sqrt();
+        let length = size(&mut step.iter().zip(&self.scale).map(|(s, scale)| s * scale));
+        if size(&mut acceleration.iter().copied()) <= MOST_BENT * length {
+            for ((s, a), scale) in step.iter_mut().zip(acceleration).zip(&self.scale) {
+                *s += (0.5 * a / scale).clamp(-LONGEST_STEP, LONGEST_STEP);
+            }
+        }
+    }
+
+    /// The scaled step, some coordinates of which are held.
+    fn solve(&self, damping: f64, held: &[Option<f64>]) -> Vec<f64> {
+        let free: Vec<usize> = (0..held.len()).filter(|&j| held[j].is_none()).collect();
+        let entry = |i: usize, j: usize| self.gram[(i, j)] + if i == j { damping.max(DAMPING[0]) } else { 0.0 };
+        let matrix = Mat::from_fn(free.len(), free.len(), |i, j| entry(free[i], free[j]));
+        let right = Col::from_fn(free.len(), |i| {
+            let known = held.iter().enumerate().filter_map(|(j, s)| Some(self.gram[(free[i], j)] * (*s)?));
+            self.right[free[i]] - known.sum::<f64>()
+        });
+        let solved = matrix.partial_piv_lu().solve(&right);
+        let mut step: Vec<f64> = held.iter().map(|s| s.unwrap_or_default()).collect();
+        let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
+        free.iter().enumerate().for_each(|(i, &j)| step[j] = finite(solved[i]));
+        step
+    }
+
+    /// The reduction of the sum of squares by a step.
+    fn promised(&self, step: &[f64]) -> f64 {
+        let scaled: Vec<f64> = step.iter().zip(&self.scale).map(|(s, scale)| s * scale).collect();
+        let of = |j: usize| {
+            let product: f64 = (0..scaled.len()).map(|i| self.gram[(j, i)] * scaled[i]).sum();
+            scaled[j] * (2.0 * self.right[j] - product)
+        };
+        (0..scaled.len()).map(of).sum()
+    }
 }
 
 /// Sum of squares.
@@ -106,9 +197,8 @@ mod tests {
         let found = minimise(
             vec![-1.2, 1.0],
             0.0,
-            1e-5,
             |x| Ok(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]),
-            |x, _| Ok(Mat::from_fn(2, 2, |i, j| [[-20.0 * x[0], 10.0], [-1.0, 0.0]][i][j])),
+            |x| Ok(Mat::from_fn(2, 2, |i, j| [[-20.0 * x[0], 10.0], [-1.0, 0.0]][i][j])),
         );
         let x = found.unwrap().coordinates;
         assert!((x[0] - 1.0).abs() < 1e-10 && (x[1] - 1.0).abs() < 1e-10, "{x:?}");

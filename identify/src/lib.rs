@@ -2,8 +2,8 @@
 //! nanoindenter or a load cell.
 //!
 //! A tip is pressed into a body, held, and drawn back; force and drive are measured over time. The crate finds the contact
-//! modulus over time, E*(t), with its uncertainty. The force of every model is computed exactly, for any tip, layer and
-//! history, retraction included ([`viscocontact::states`]).
+//! modulus over time, E*(t), with its uncertainty. The force of every model is computed for any tip, layer and history,
+//! retraction and renewed contact included, as on elastic states ([`viscocontact::states`]).
 //!
 //! | task | start at |
 //! |---|---|
@@ -13,6 +13,8 @@
 //! | fit each curve of a force map, on several threads | [`Identification::fit_each`] |
 //! | find a spectrum without a model, and the decades that the data determine | [`Fit::free_spectrum`], [`Fit::decades`] |
 //! | compare models | [`ranked`] |
+//! | see what a misfit does to the modulus | [`Fit::variants`] |
+//! | cut a curve | [`Curve::within`], [`Curve::until_release`] |
 //! | check a fit by the stepper in space | [`Fit::verify`] |
 //! | tables and pictures | [`Summary`], `Fit::picture` with the feature `plot` |
 //! | the complex modulus of a small oscillation | [`Curve::complex_modulus`] |
@@ -56,9 +58,12 @@ mod plot;
 mod problem;
 mod protocol;
 mod results;
+mod segments;
+mod series;
 mod spectrum;
 mod start;
 mod statistics;
+pub mod tips;
 pub mod usual;
 mod verify;
 #[cfg(any(doc, doctest))]
@@ -74,12 +79,12 @@ pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
-pub use fit::{Estimate, Fit, FitWarning, ranked};
+pub use fit::{Estimate, Fit, FitWarning, Variant, ranked};
 pub use forward::Sample;
 pub use identification::Identification;
 pub use model::{Model, Scale};
 pub use noise::Noise;
-pub use parameters::Nuisance;
+pub use parameters::{Nuisance, PerCurve};
 pub use protocol::{Protocol, ProtocolBuilder};
 pub use results::Summary;
 pub use spectrum::{Decade, FreeSpectrum};

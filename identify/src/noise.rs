@@ -4,20 +4,34 @@ use faer::{Mat, Side};
 
 use crate::error::{Error, Result, within};
 
+/// Least and greatest autoregressive coefficient that is looked for.
+pub(crate) const CORRELATIONS: [f64; 2] = [-0.9, 0.995];
+
 /// The noise of the measured forces.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Noise {
-    /// Independent from sample to sample, with one unknown standard deviation.
+    /// Independent from sample to sample, with an unknown standard deviation of each curve.
     #[default]
     White,
     /// Each deviation is φ times the one before plus an independent part: amplifiers, filters, thermal motion of a
-    /// cantilever. φ is estimated from the residuals.
+    /// cantilever. φ of each curve is the one of the greatest restricted likelihood of the residuals.
     Autoregressive,
     /// Autoregressive with a known φ, between −1 and 1.
     AutoregressiveWith(f64),
     /// The covariance matrix of the forces of each curve \[N²\], by rows.
     Covariance(Vec<Vec<f64>>),
+}
+
+/// The noise of one curve, as a fit found it.
+#[derive(Clone, Debug)]
+pub(crate) struct CurveNoise {
+    /// The autoregressive coefficient.
+    pub(crate) correlation: Option<f64>,
+    /// σ of the fit over σ of this curve.
+    pub(crate) scale: f64,
+    /// Weights of the residuals: below 1 for outliers.
+    pub(crate) outliers: Vec<f64>,
 }
 
 /// Makes the noise of one curve white: r ↦ L⁻¹ r where L Lᵀ is the covariance, up to a factor.
@@ -74,6 +88,14 @@ impl Whitening {
         }
     }
 
+    /// The autoregressive coefficient, if there is one.
+    pub(crate) fn correlation(&self) -> Option<f64> {
+        match self {
+            Whitening::Autoregressive(phi) if *phi != 0.0 => Some(*phi),
+            _ => None,
+        }
+    }
+
     /// −ln of the determinant of the covariance, up to the factor σ².
     pub(crate) fn log_weight(&self) -> f64 {
         match self {
@@ -81,19 +103,6 @@ impl Whitening {
             Whitening::Factor(factor) => -2.0 * (0..factor.nrows()).map(|i| factor[(i, i)].ln()).sum::<f64>(),
         }
     }
-}
-
-/// The autoregressive coefficient of residuals, by the correlation of neighbours with its bias to first order removed
-/// (Marriott & Pope 1954).
-pub(crate) fn autoregression<'a>(residuals: impl Iterator<Item = &'a [f64]>) -> f64 {
-    let (mut product, mut square, mut count) = (0.0, 0.0, 0);
-    for curve in residuals {
-        product += curve.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
-        square += curve.iter().map(|r| r * r).sum::<f64>();
-        count += curve.len();
-    }
-    let phi = if square > 0.0 { product / square } else { 0.0 };
-    (phi + (1.0 + 3.0 * phi) / count.max(1) as f64).clamp(-0.99, 0.99)
 }
 
 #[cfg(test)]

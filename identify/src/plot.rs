@@ -30,7 +30,7 @@ const POINTS: usize = 100;
 /// # Ok::<(), viscocontact_identify::Error>(())
 /// ```
 impl Fit {
-    /// Measured and fitted force of a curve over time.
+    /// Measured and fitted force of a curve over time, with the band within which 95 % of the noise should be.
     ///
     /// # Errors
     /// If there is no such curve.
@@ -41,6 +41,11 @@ impl Fit {
         let measured = self.curves()[curve].force();
         chart.add("measured", COLORS[0], Style::Dots, pairs(times, measured));
         chart.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, self.force(curve)));
+        let limit = self.noise_limit(curve);
+        for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
+            let band = times.iter().zip(self.force(curve)).map(|(time, force)| (*time, force + side));
+            chart.add(label, COLORS[5], Style::Line, band.collect());
+        }
         Ok(chart)
     }
 
@@ -54,9 +59,7 @@ impl Fit {
         let [time, force] = [Quantity::new("time", "s"), Quantity::new("measured - fitted force", "N")];
         let mut chart = Chart::new("Residuals", time, force, Legend::UpperRight);
         chart.add("", COLORS[0], Style::Dots, pairs(times, self.residuals(curve)));
-        // of correlated noise, the whole standard deviation
-        let phi = self.autoregression().unwrap_or_default();
-        let limit = WITHIN_95 * self.sigma() / (1.0 - phi * phi).sqrt();
+        let limit = self.noise_limit(curve);
         for (label, value) in [("95 % of the noise", limit), ("", -limit)] {
             chart.add(label, COLORS[1], Style::Line, vec![(times[0], value), (times[times.len() - 1], value)]);
         }
@@ -93,6 +96,12 @@ impl Fit {
         let charts = [self.force_chart(curve)?, self.residual_chart(curve)?, self.modulus_chart()];
         let pictures = charts.iter().map(Chart::draw).collect::<viscocontact::Result<Vec<_>>>()?;
         Ok(Picture::beside(&pictures)?)
+    }
+
+    /// Limit of 95 % of the noise of a curve: of correlated noise, the whole one.
+    fn noise_limit(&self, curve: usize) -> f64 {
+        let phi = self.autoregression_of(curve).unwrap_or_default();
+        WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt()
     }
 
     fn times(&self, curve: usize) -> Result<&[f64]> {

@@ -4,13 +4,14 @@ use faer::Mat;
 
 use crate::error::Result;
 use crate::experiment::Experiment;
-use crate::forward::{Drive, Forward, Sample};
-use crate::model::{Model, Prony};
+use crate::forward::{Drive, Dual, Forward, LANES, Real, Response, Roots, Sample, Term};
+use crate::model::Model;
 use crate::noise::Whitening;
 use crate::parameters::{Kind, Parameter};
+use crate::series::Prony;
 
-/// Step of central differences in coordinates of order 1: the error is its square.
-pub(crate) const DIFFERENCE: f64 = 3e-5;
+/// Least share of a modulus that relaxes.
+const LEAST_SHARE: f64 = 1e-12;
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 
@@ -21,6 +22,10 @@ pub(crate) struct Part<'a> {
     /// The measured forces; zeros where none are measured yet.
     pub(crate) data: Vec<f64>,
     pub(crate) whitening: Whitening,
+    /// Weights of the residuals made white: a scale of the curve, times the weights of outliers.
+    pub(crate) weights: Vec<f64>,
+    pub(crate) scale: f64,
+    pub(crate) outliers: Vec<f64>,
     forward: Forward,
     /// Speed of the drive at each sample \[m/s\].
     speed: Vec<f64>,
@@ -35,36 +40,49 @@ impl<'a> Part<'a> {
             (drive[b] - drive[a]) / (times[b] - times[a])
         };
         let speed = (0..times.len()).map(speed).collect();
-        Part { experiment, data, whitening, forward: Forward::new(&experiment.tip), speed }
+        let weights = vec![1.0; times.len()];
+        let outliers = weights.clone();
+        Part {
+            experiment,
+            data,
+            whitening,
+            weights,
+            scale: 1.0,
+            outliers,
+            forward: Forward::new(&experiment.tip),
+            speed,
+        }
     }
 
     pub(crate) fn len(&self) -> usize {
         self.data.len()
     }
 
-    /// Force of the contact, and where the tip is, at each sample. `record` is given the terms of each force, as in [`Forward::respond`].
-    pub(crate) fn respond(
+    /// Makes a column of the data white, with its weights.
+    pub(crate) fn whiten(&self, column: &mut [f64]) {
+        self.whitening.apply(column);
+        column.iter_mut().zip(&self.weights).for_each(|(value, weight)| *value *= weight);
+    }
+
+    /// −ln of the determinant of the covariance, up to the factor σ².
+    pub(crate) fn log_weight(&self) -> f64 {
+        self.whitening.log_weight() + 2.0 * self.len() as f64 * self.scale.ln()
+    }
+
+    /// Force of the contact, and where the tip is, at each sample. `record` is given each with the terms of its force.
+    pub(crate) fn respond<T: Real>(
         &self,
         curve: usize,
-        prony: &Prony,
-        contact_point: f64,
-        stiffness: f64,
-        mut record: impl FnMut(Sample, Option<&[f64]>),
-    ) -> Result<Vec<Sample>> {
+        prony: &Prony<T>,
+        contact_point: T,
+        stiffness: T,
+        roots: &mut Roots,
+        record: impl FnMut(Response<T>, &[Term<T>]),
+    ) -> Result<()> {
         let protocol = &self.experiment.protocol;
-        let drive: Vec<f64> = protocol.drive().iter().map(|z| z - contact_point).collect();
-        let mut samples = Vec::with_capacity(drive.len());
-        self.forward.respond(
-            prony,
-            Drive { times: protocol.times(), drive: &drive },
-            1.0 / stiffness,
-            curve,
-            |s, terms| {
-                samples.push(s);
-                record(s, terms);
-            },
-        )?;
-        Ok(samples)
+        let drive: Vec<T> = protocol.drive().iter().map(|&z| T::from(z) - contact_point).collect();
+        let drive = Drive { times: protocol.times(), drive: &drive };
+        self.forward.respond(prony, drive, T::from(1.0) / stiffness, curve, roots, record)
     }
 }
 
@@ -86,6 +104,25 @@ impl<'a> Problem<'a> {
         Problem { model, parts, parameters, window: [shortest, longest] }
     }
 
+    /// The same problem with a simpler model; `None` where parameters of the material are given.
+    pub(crate) fn with_model(&self, model: Model) -> Option<Problem<'a>> {
+        let is_material = |parameter: &&Parameter| matches!(parameter.kind, Kind::Material(_));
+        if self.parameters.iter().filter(is_material).any(|parameter| parameter.given.is_some()) {
+            return None;
+        }
+        let others = self.parameters.iter().filter(|parameter| !is_material(parameter)).cloned();
+        let parameters = Parameter::of_material(model, &[]).into_iter().chain(others).collect();
+        Some(Problem { model, parameters, ..self.clone() })
+    }
+
+    /// Values of all parameters from those of a contained model.
+    pub(crate) fn of_contained(&self, inner: Model, values: &[f64]) -> Vec<f64> {
+        let (material, others) = values.split_at(inner.parameters().len());
+        let mut all = self.model.of_contained(inner, material, self.window[1]);
+        all.extend_from_slice(others);
+        all
+    }
+
     /// Number of samples of all curves.
     pub(crate) fn len(&self) -> usize {
         self.parts.iter().map(Part::len).sum()
@@ -101,20 +138,61 @@ impl<'a> Problem<'a> {
         self.parameters.iter().filter(|parameter| parameter.is_free)
     }
 
-    /// Values of all parameters from the coordinates of the free ones.
+    /// Whether E0 and Einf are parameters of the material.
+    fn has_equilibrium(&self) -> bool {
+        self.parameters.len() > 1 && self.parameters[1].name == "Einf"
+    }
+
+    /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln(E0 − Einf); that of Einf below a fixed E0 is
+    /// ln(Einf/(E0 − Einf)): every coordinate is allowed.
     pub(crate) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut free = coordinates.iter();
         let value = |parameter: &Parameter| match parameter.is_free {
             true => free.next().map_or(f64::NAN, |&x| parameter.value(x)),
             false => parameter.given.unwrap_or(f64::NAN),
         };
-        self.parameters.iter().map(value).collect()
+        let mut values: Vec<f64> = self.parameters.iter().map(value).collect();
+        if self.has_equilibrium() {
+            if self.parameters[0].is_free {
+                values[0] += values[1];
+            } else if self.parameters[1].is_free {
+                values[1] = values[0] / (1.0 + 1.0 / values[1]);
+            }
+        }
+        values
     }
 
     /// Coordinates of the free parameters of given values.
     pub(crate) fn coordinates(&self, values: &[f64]) -> Vec<f64> {
-        let pairs = self.parameters.iter().zip(values).filter(|(parameter, _)| parameter.is_free);
-        pairs.map(|(parameter, &value)| parameter.coordinate(value)).collect()
+        let mut own = values.to_vec();
+        if self.has_equilibrium() {
+            let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
+            if self.parameters[0].is_free {
+                own[0] = relaxing;
+            } else if self.parameters[1].is_free {
+                own[1] = values[1] / relaxing;
+            }
+        }
+        let pairs = self.parameters.iter().zip(own).filter(|(parameter, _)| parameter.is_free);
+        pairs.map(|(parameter, value)| parameter.coordinate(value)).collect()
+    }
+
+    /// Derivatives of the free parameters, on their scales, by the coordinates.
+    pub(crate) fn scales(&self, values: &[f64]) -> Mat<f64> {
+        let free: Vec<&Parameter> = self.free().collect();
+        let mut scales = Mat::from_fn(free.len(), free.len(), |i, j| if i == j { free[i].unit } else { 0.0 });
+        if self.has_equilibrium() {
+            let share = values[1] / values[0];
+            if self.parameters[0].is_free {
+                scales[(0, 0)] = 1.0 - share;
+                if self.parameters[1].is_free {
+                    scales[(0, 1)] = share;
+                }
+            } else if self.parameters[1].is_free {
+                scales[(0, 0)] = 1.0 - share;
+            }
+        }
+        scales
     }
 
     /// The exponentials of the material of given values.
@@ -137,16 +215,23 @@ impl<'a> Problem<'a> {
     /// Response of one curve.
     pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
         let contact_point = self.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
-        self.parts[curve].respond(curve, prony, contact_point, self.stiffness(curve, values), |_, _| {})
+        let mut samples = Vec::with_capacity(self.parts[curve].len());
+        let push = |response: Response<f64>, _: &[Term<f64>]| samples.push(response.into());
+        let stiffness = self.stiffness(curve, values);
+        self.parts[curve].respond(curve, prony, contact_point, stiffness, &mut Roots::default(), push)?;
+        Ok(samples)
     }
 
     /// The force that a curve would measure, from the force of its contact.
     pub(crate) fn measured(&self, curve: usize, values: &[f64], contact: impl Iterator<Item = f64>) -> Vec<f64> {
         let value = |kind: Kind| self.value_of(values, kind).unwrap_or_default();
-        let [offset, drift, drag] = [Kind::Offset(curve), Kind::Drift(curve), Kind::Drag(curve)].map(value);
+        let [offset, drift, tilt, drag] =
+            [Kind::Offset(curve), Kind::Drift(curve), Kind::Tilt(curve), Kind::Drag(curve)].map(value);
         let part = &self.parts[curve];
-        let times = part.experiment.protocol.times();
-        let of = |(k, force): (usize, f64)| force + offset + drift * (times[k] - times[0]) + drag * part.speed[k];
+        let (times, drive) = (part.experiment.protocol.times(), part.experiment.protocol.drive());
+        let of = |(k, force): (usize, f64)| {
+            force + offset + drift * (times[k] - times[0]) + tilt * (drive[k] - drive[0]) + drag * part.speed[k]
+        };
         contact.enumerate().map(of).collect()
     }
 
@@ -175,31 +260,64 @@ impl<'a> Problem<'a> {
     pub(crate) fn residuals(&self, coordinates: &[f64]) -> Result<Vec<f64>> {
         let mut all = Vec::with_capacity(self.len());
         for (part, mut deviations) in self.parts.iter().zip(self.all_deviations(&self.values(coordinates))?) {
-            part.whitening.apply(&mut deviations);
+            part.whiten(&mut deviations);
             all.append(&mut deviations);
         }
         Ok(all)
     }
 
-    /// Derivatives of the residuals by the free coordinates: central differences, or exact where the force is linear.
-    pub(crate) fn jacobian(&self, coordinates: &[f64], difference: f64) -> Result<Mat<f64>> {
+    /// Derivatives of the residuals by the free coordinates.
+    pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
+        let values = self.values(coordinates);
+        let material = self.free().filter(|parameter| matches!(parameter.kind, Kind::Material(_))).count();
+        let count = self.model.parameters().len();
+        let moved = |column: usize, width: f64| {
+            let mut moved = coordinates.to_vec();
+            moved[column] += width;
+            self.values(&moved)[..count].to_vec()
+        };
+        let (prony, slopes) = self.model.derived(&values[..count], self.window, material, moved)?;
         let mut jacobian = Mat::zeros(self.len(), coordinates.len());
-        for (column, parameter) in self.free().enumerate() {
-            let mut row = 0;
-            for (curve, part) in self.parts.iter().enumerate() {
-                if parameter.kind.curve().is_none_or(|only| only == curve) {
-                    let mut slopes = if parameter.kind.is_linear() {
-                        self.linear_slopes(curve, parameter)
-                    } else {
-                        self.differences(curve, coordinates, column, difference)?
-                    };
-                    part.whitening.apply(&mut slopes);
-                    for (k, slope) in slopes.into_iter().enumerate() {
-                        jacobian[(row + k, column)] = slope;
-                    }
-                }
-                row += part.len();
+        let (mut roots, mut row) = (Roots::default(), 0);
+        for (curve, part) in self.parts.iter().enumerate() {
+            let acts = |parameter: &Parameter| parameter.kind.curve().is_none_or(|only| only == curve);
+            let columns = || self.free().enumerate().filter(|(_, parameter)| acts(parameter));
+            let mut put = |column: usize, mut slopes: Vec<f64>| {
+                part.whiten(&mut slopes);
+                slopes.into_iter().enumerate().for_each(|(k, slope)| jacobian[(row + k, column)] = slope);
+            };
+            for (column, parameter) in columns().filter(|(_, parameter)| parameter.kind.is_linear()) {
+                put(column, self.linear_slopes(curve, parameter));
             }
+            let curved: Vec<_> = columns().filter(|(_, parameter)| !parameter.kind.is_linear()).collect();
+            for lanes in curved.chunks(LANES) {
+                let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
+                    Dual::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
+                };
+                let of = |values: &[f64], slope: &dyn Fn(&Prony) -> f64, at: usize| {
+                    dual(values[at], &|column, _| slopes.get(column).map_or(0.0, slope))
+                };
+                let terms = 0..prony.moduli.len();
+                let derived = Prony {
+                    moduli: terms.clone().map(|at| of(&prony.moduli, &|by| by.moduli[at], at)).collect(),
+                    rates: terms.map(|at| of(&prony.rates, &|by| by.rates[at], at)).collect(),
+                };
+                let contact_point = self.value_of(&values, Kind::ContactPoint(curve)).unwrap_or_default();
+                let stiffness = self.stiffness(curve, &values);
+                let shift = dual(contact_point, &|_, parameter| match parameter.kind {
+                    Kind::ContactPoint(_) => parameter.unit,
+                    _ => 0.0,
+                });
+                let spring =
+                    dual(stiffness, &|_, parameter| if parameter.kind == Kind::Stiffness { stiffness } else { 0.0 });
+                part.respond(curve, &prony, contact_point, stiffness, &mut roots, |_, _| {})?;
+                let mut forces = Vec::with_capacity(part.len());
+                part.respond(curve, &derived, shift, spring, &mut roots, |response, _| forces.push(response.force))?;
+                for (lane, &(column, _)) in lanes.iter().enumerate() {
+                    put(column, forces.iter().map(|force| force.slope(lane)).collect());
+                }
+            }
+            row += part.len();
         }
         Ok(jacobian)
     }
@@ -207,30 +325,13 @@ impl<'a> Problem<'a> {
     /// Derivative by a parameter in which the force is linear.
     fn linear_slopes(&self, curve: usize, parameter: &Parameter) -> Vec<f64> {
         let part = &self.parts[curve];
-        let times = part.experiment.protocol.times();
+        let (times, drive) = (part.experiment.protocol.times(), part.experiment.protocol.drive());
         let of = |k: usize| match parameter.kind {
             Kind::Offset(_) => 1.0,
             Kind::Drift(_) => times[k] - times[0],
+            Kind::Tilt(_) => drive[k] - drive[0],
             _ => part.speed[k],
         };
         (0..part.len()).map(|k| parameter.unit * of(k)).collect()
-    }
-
-    /// Derivative by central differences; one-sided at the limits of a model.
-    fn differences(&self, curve: usize, coordinates: &[f64], column: usize, width: f64) -> Result<Vec<f64>> {
-        let at = |shift: f64| {
-            let mut moved = coordinates.to_vec();
-            moved[column] += shift;
-            let values = self.values(&moved);
-            self.prony(&values).and_then(|prony| self.force(curve, &values, &prony))
-        };
-        let (up, down) = (at(width), at(-width));
-        let (upper, lower, width) = match (up, down) {
-            (Ok(up), Ok(down)) => (up, down, 2.0 * width),
-            (Ok(up), Err(_)) => (up, at(0.0)?, width),
-            (Err(_), Ok(down)) => (at(0.0)?, down, width),
-            (Err(error), Err(_)) => return Err(error),
-        };
-        Ok(upper.iter().zip(&lower).map(|(up, down)| (up - down) / width).collect())
     }
 }

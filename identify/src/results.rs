@@ -58,6 +58,41 @@ impl fmt::Display for Model {
     }
 }
 
+/// A number in four digits, without an exponent where there are few zeros.
+struct Digits(f64);
+
+impl fmt::Display for Digits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Digits(value) = *self;
+        let decade = value.abs().log10().floor();
+        if value == 0.0 || !value.is_finite() {
+            write!(f, "{value}")
+        } else if (-3.0..6.0).contains(&decade) {
+            write!(f, "{value:.*}", (3.0 - decade).max(0.0) as usize)
+        } else {
+            write!(f, "{value:.3e}")
+        }
+    }
+}
+
+/// Name, value and interval in plain digits, with the unit.
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.interval.map(Digits);
+        write!(f, "{} = {} {} (95 %: {low} to {high})", self.name, Digits(self.value), unit(&self.name))?;
+        self.limit.map_or(Ok(()), |limit| write!(f, ", at its limit: {limit}"))
+    }
+}
+
+/// The model, its parameters and the warnings, each on a line.
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: noise {} N", self.model(), Digits(self.sigma()))?;
+        self.estimates().iter().try_for_each(|estimate| write!(f, "\n  {estimate}"))?;
+        self.warnings().iter().try_for_each(|warning| write!(f, "\n  warning: {warning}"))
+    }
+}
+
 impl Fit {
     /// The numbers of this fit without its curves.
     pub fn summary(&self) -> Summary {
@@ -137,6 +172,7 @@ fn unit(name: &str) -> &'static str {
         "contact" => "m",
         "offset" => "N",
         "drift" => "N/s",
+        "tilt" => "N/m",
         "drag" => "N s/m",
         "alpha" => "1",
         other if other.starts_with("tau") => "s",

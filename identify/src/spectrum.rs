@@ -6,9 +6,10 @@ use viscocontact::numeric::non_negative_least_squares;
 
 use crate::error::{Error, Result};
 use crate::fit::Fit;
-use crate::model::Prony;
+use crate::forward::{Response, Roots, Term};
 use crate::parameters::Kind;
 use crate::problem::Problem;
+use crate::series::Prony;
 
 /// Relaxation times per decade.
 const PER_DECADE: f64 = 5.0;
@@ -71,7 +72,7 @@ impl Fit {
     /// asks. The extent of the contact during retraction depends on the spectrum: both are iterated.
     ///
     /// # Errors
-    /// If a contact grows again after it has shrunk: then the force is not linear in the spectrum; or if the iteration fails.
+    /// If the iteration fails.
     pub fn free_spectrum(&self) -> Result<FreeSpectrum> {
         let problem = self.problem()?;
         let rates = rates(problem.window);
@@ -81,7 +82,7 @@ impl Fit {
             let mut row = 0;
             for (part, values) in problem.parts.iter().zip(values) {
                 let mut values = values.clone();
-                part.whitening.apply(&mut values);
+                part.whiten(&mut values);
                 for value in values {
                     columns[(row, column)] = value;
                     row += 1;
@@ -161,7 +162,7 @@ impl Fit {
                 let share = 1.0 / terms.len() as f64;
                 let mut sum: Vec<f64> =
                     (0..part.len()).map(|k| terms.iter().map(|&t| of(t)[curve][k] * share).sum()).collect();
-                part.whitening.apply(&mut sum);
+                part.whiten(&mut sum);
                 all.append(&mut sum);
             }
             all
@@ -183,7 +184,7 @@ impl Fit {
             let prony = self.prony();
             let inside =
                 prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| (low..high).contains(&(1.0 / **rate)));
-            inside.map(|(modulus, _)| modulus).sum::<f64>()
+            inside.fold(0.0, |sum, (modulus, _)| sum + modulus)
         };
         let decade = |(k, times): (usize, [f64; 2])| {
             let deviation = total * inverse[(k + 1, k + 1)].sqrt();
@@ -225,17 +226,13 @@ fn basis(problem: &Problem<'_>, values: &[f64], prony: &Prony) -> Result<Vec<Vec
     for (curve, part) in problem.parts.iter().enumerate() {
         let contact_point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
         let mut columns = vec![Vec::with_capacity(part.len()); prony.moduli.len()];
-        let mut is_single = true;
-        part.respond(curve, prony, contact_point, problem.stiffness(curve, values), |_, terms| {
-            is_single = is_single && terms.is_some();
-            for (column, (term, modulus)) in columns.iter_mut().zip(terms.unwrap_or_default().iter().zip(&prony.moduli))
-            {
-                column.push(term / modulus);
+        let record = |_: Response<f64>, terms: &[Term<f64>]| {
+            for (column, (term, modulus)) in columns.iter_mut().zip(terms.iter().zip(&prony.moduli)) {
+                column.push(term.force / modulus);
             }
-        })?;
-        if !is_single {
-            return Err(Error::Returns { curve });
-        }
+        };
+        let stiffness = problem.stiffness(curve, values);
+        part.respond(curve, prony, contact_point, stiffness, &mut Roots::default(), record)?;
         for (of_term, column) in basis.iter_mut().zip(columns) {
             of_term.push(column);
         }

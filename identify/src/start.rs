@@ -83,7 +83,7 @@ fn elastic_modulus(problem: &Problem<'_>, values: &[f64]) -> f64 {
 }
 
 /// Standard deviation of the noise, from second differences.
-fn scatter(data: &[f64]) -> f64 {
+pub(crate) fn scatter(data: &[f64]) -> f64 {
     let differences = data.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
     (differences.sum::<f64>() / (6.0 * data.len().saturating_sub(2).max(1) as f64)).sqrt()
 }

@@ -92,7 +92,7 @@ fn wrong_models_are_flagged() {
     let cone = ElasticStates::cone(1.0).unwrap();
     let two_times = [("Einf", 0.25), ("E1", 0.4), ("tau1", 0.03), ("E2", 0.35), ("tau2", 1.0)];
     let power = [("E1", 0.6), ("alpha", 0.3)];
-    let flagged = |fit: &Fit| fit.warnings().contains(&FitWarning::Misfit);
+    let flagged = |fit: &Fit| fit.warnings().iter().any(|warning| matches!(warning, FitWarning::Misfit { .. }));
     let share = |truth: Model, values: &[(&str, f64)], fitted: Model, tip: &std::sync::Arc<ElasticStates>| {
         let (real, assumed) = (experiment(&sphere), experiment(tip));
         let fitting = Identification::new(fitted).contact_point(Nuisance::Fitted);

@@ -1,8 +1,11 @@
 //! Parameters are found again.
 
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Experiment, Identification, Model, Nuisance, Protocol};
 
+use crate::random::normal;
 use crate::scenes::scene;
 
 /// Number of random scenes: `RECOVERY_SCENES`, or fewer.
@@ -83,4 +86,38 @@ fn states_need_not_reach_as_deep_as_the_drive() {
     for (name, value) in body {
         assert!((fit.estimate(name).unwrap().value / value - 1.0).abs() < 1e-6, "{name}");
     }
+}
+
+/// Without noise, through a spring and with 1 nm of scatter of the drive, retraction included: forces are computed on a drive that is sampled 16
+/// times as densely, so that errors of the fit are those of its intervals.
+#[test]
+fn intervals_between_samples_cost_little() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let body = [("E0", 4.0e3), ("Einf", 1.0e3), ("tau", 0.5)];
+    let zener = Identification::new(Model::Zener);
+    let tips = [
+        ("cone", ElasticStates::cone(0.7).unwrap(), 1e-5),
+        ("punch", ElasticStates::punch(2.0e-6).unwrap(), 1e-6),
+        ("sphere", ElasticStates::sphere(5.0e-6).unwrap(), 1e-5),
+    ];
+    let mut errors = Vec::new();
+    for (name, tip, limit) in tips {
+        for count in [250_u32, 500, 1000] {
+            let times: Vec<f64> = (0..=count).map(|k| 3.0 * f64::from(k) / f64::from(count)).collect();
+            let at = |t: f64| 1.0e-6 * (2.0 * t).min(1.0).min(3.0 - t) - 0.1e-6;
+            let drive: Vec<f64> = times.iter().map(|&t| at(t) + 1e-9 * normal(&mut rng)).collect();
+            let protocol = Protocol::new(times, drive).unwrap();
+            let fine = protocol.resampled(16 * count as usize).unwrap();
+            let experiment = |protocol: Protocol| Experiment::new(protocol, tip.clone()).with_spring(0.05).unwrap();
+            let samples = zener.respond(&experiment(fine), &body).unwrap();
+            let force = samples.iter().step_by(16).map(|sample| sample.force).collect();
+            let fit = zener.fit(&[Curve::new(experiment(protocol), force).unwrap()]).unwrap();
+            let error = |(name, truth): (&str, f64)| (fit.estimate(name).unwrap().value / truth - 1.0).abs();
+            let worst = body.map(error).into_iter().fold(0.0, f64::max);
+            println!("{name}, {count} points: {worst:.1e}");
+            errors.push(worst);
+            assert!(count < 1000 || worst < limit, "{name}: {worst:e}");
+        }
+    }
+    assert_eq!(errors.len(), 9);
 }

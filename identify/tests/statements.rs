@@ -102,7 +102,7 @@ fn data_that_do_not_contain_a_time_are_named() {
             };
             assert!(fit.warnings().iter().any(is_about), "{:?} {:?}", fit.warnings(), fit.estimates());
             let best =
-                ranked(vec![fit, Identification::new(Model::Elastic).fit(std::slice::from_ref(&curve)).unwrap()]);
+                ranked([Ok(fit), Identification::new(Model::Elastic).fit(std::slice::from_ref(&curve))]).unwrap();
             assert_eq!(best[0].0.model(), Model::Elastic);
         }
         Err(error) => assert!(matches!(error, Error::NotConverged { .. }), "{error}"),

@@ -1,9 +1,12 @@
 //! Tests of the public interface.
 
 mod bounds;
+mod coverage;
 mod data;
 mod drainage;
 mod dynamic;
+mod instruments;
+mod nested;
 mod noise;
 mod protocols;
 mod random;

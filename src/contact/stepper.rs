@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::contact::moving::indenter_buffer::IndenterBuffer;
 use crate::contact::read::view::View;
-use crate::contact::{Computation, Scene, StepReport};
+use crate::contact::{Computation, Scene, State, StepReport};
 use crate::error::Result;
 use crate::geometry::{Gap, Missed};
 use crate::load::Load;
@@ -77,6 +77,25 @@ impl ViscoelasticContact {
     /// The gap before the bodies deform.
     pub(crate) fn initial_gap(&self) -> &Gap {
         self.computation.state.indenter.gap()
+    }
+
+    /// The same contact with a pressure on the whole grid in the place of its own; `None` where it does not compute all of these cells.
+    pub(crate) fn with_pressure(&self, pressure: &[f64]) -> Option<ViscoelasticContact> {
+        let mut contact = self.clone();
+        let State { region, current, .. } = &mut contact.computation.state;
+        let n2 = region.whole_grid().cells()[1];
+        let pressed = |k: usize| pressure[k] > 0.0;
+        if (0..pressure.len()).any(|k| pressed(k) && region.find([k / n2, k % n2]).is_none()) {
+            return None;
+        }
+        current.contact_cells = (0..pressure.len()).filter(|k| pressed(*k)).count();
+        for (k, own) in current.solution.pressure.iter_mut().enumerate() {
+            let [i, j] = region.cell(k);
+            *own = pressure[i * n2 + j];
+        }
+        contact.computation.state.sum_up();
+        contact.view.refresh(&contact.computation.state);
+        Some(contact)
     }
 
     /// Takes over the state of a steady motion, of which it has the fields but not the past.

@@ -1,5 +1,6 @@
 //! What a run asks of its contact.
 
+use std::collections::VecDeque;
 use std::fmt::Debug;
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
@@ -29,6 +30,59 @@ pub struct Course<'a> {
     pub cancelled: Option<&'a AtomicBool>,
 }
 
+/// Fields that a run is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldRequest<'a> {
+    pub history: &'a dyn LoadHistory,
+    pub accuracy: f64,
+    /// Start and end of the run.
+    pub start: f64,
+    pub until: f64,
+    /// Times at which fields are asked for.
+    pub times: &'a [f64],
+}
+
+/// Times at which steps end for fields, the tolerance of adaptive steps, and whether the contacts at the starts of the last steps are kept.
+#[derive(Debug)]
+pub struct Prepared {
+    pub stops: Vec<f64>,
+    pub tolerance: f64,
+    pub keeps_starts: bool,
+}
+
+/// Finds fields to an accuracy.
+pub trait FieldFinder<C>: Debug + Send + Sync {
+    /// Looks at the run before its first step.
+    fn prepare(&mut self, contact: &C, request: &FieldRequest<'_>) -> Result<Prepared>;
+
+    /// A contact of the last step with its field to the accuracy, where it does not have it itself.
+    fn with_field(&self, contact: &C, moment: &Moment<'_, C>) -> Result<(Option<C>, FieldReport)>;
+}
+
+/// A time of a run at which a field is asked for.
+#[derive(Debug)]
+pub struct Moment<'a, C> {
+    pub history: &'a dyn LoadHistory,
+    /// Whether a jump of the load at this time has been taken.
+    pub after: bool,
+    /// Ends of the steps so far, and the contacts at the starts of the last ones, if they are kept.
+    pub ends: &'a [f64],
+    pub starts: &'a VecDeque<C>,
+}
+
+/// How exact the pressure of a [`Sample`](crate::run::Sample) is, and what it took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct FieldReport {
+    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force of the run, if that is more. `None` if there
+    /// is no estimate.
+    pub error: Option<f64>,
+    /// Number of elastic contacts that were solved for it, with those for the whole run before its first field.
+    pub elastic_contacts: usize,
+    /// Convolutions that these took.
+    pub convolutions: usize,
+}
+
 /// A contact that runs drive. It is public for bounds only: this module is private.
 pub trait Driven: Contact + Debug {
     /// The control of the steps, and what the run has found so far.
@@ -50,6 +104,9 @@ pub trait Driven: Contact + Debug {
 
     /// The contact at a time within the last step, under the load of the history, and the report of the step to that time.
     fn within(&self, control: &Self::Control, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)>;
+
+    /// Lowers the tolerance of the adaptive steps.
+    fn tighten(control: &mut Self::Control, tolerance: f64);
 
     /// Number of adaptive steps rejected for their error.
     fn rejected(control: &Self::Control) -> u64;

@@ -69,6 +69,10 @@ pub struct ErrorBudget {
     /// recovers, or a force jumps up, it includes the error of the cells that the body may meet. `None` before the first
     /// step.
     pub pressure: Option<f64>,
+    /// Greatest estimated error in time of the fields that were sampled so far, Σ |δp| over Σ p
+    /// ([`Run::fields_to`](crate::run::Run::fields_to)). The L2 error is about twice as large, relative to the field, and the error of the
+    /// greatest pressure five times. `None` if none has an estimate.
+    pub field: Option<f64>,
     /// Errors due to the mesh in the present state; `None` without contact, for a contact that the cells do not
     /// resolve, and where [ranks](crate::parallel) share out the rows.
     pub mesh: Option<MeshError>,
@@ -83,7 +87,9 @@ pub struct ErrorBudget {
 impl fmt::Display for ErrorBudget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let known = |error: Option<f64>| error.map_or("not estimated".into(), |error| format!("{error:.1e}"));
-        write!(f, "error in time {} (pressure {}), mesh: ", known(self.time), known(self.pressure))?;
+        write!(f, "error in time {} (pressure {}), ", known(self.time), known(self.pressure))?;
+        self.field.map_or(Ok(()), |field| write!(f, "fields {field:.1e}, "))?;
+        f.write_str("mesh: ")?;
         match self.mesh {
             Some(mesh) => write!(f, "{mesh}")?,
             None => f.write_str("not estimated")?,

@@ -114,7 +114,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             let beyond: Vec<f64> = looks.iter().map(|look| look.beyond[k]).collect();
             let Some(after) = event.follow(&beyond).filter(|_| searches) else { continue };
             let ends = [after - 1, after].map(|look| (looks[look].time, beyond[look]));
-            let time = crossing_within(ends, same, |time| Ok(event.beyond(&self.within_step(time)?)))?;
+            let time = crossing_within(ends, same, |time| Ok(event.beyond(&self.sample_within_step(time)?.0)))?;
             if time <= to - same && first.is_none_or(|(_, earlier)| time < earlier) {
                 first = Some((k, time));
             }
@@ -126,7 +126,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     fn looks(&self, events: &[Event<C>], start: &C) -> Result<Vec<Look>> {
         let (mut looks, end) = (vec![Look::of(events, start)], Look::of(events, self.contact()));
         for turn in turns(history_of(&self.history), start.time(), end.time) {
-            let turn = Look::of(events, &self.within_step(turn)?);
+            let turn = Look::of(events, &self.sample_within_step(turn)?.0);
             self.look_until(events, &mut looks, turn, 0)?;
         }
         self.look_until(events, &mut looks, end, 0)?;
@@ -140,7 +140,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             looks.push(end);
             return Ok(());
         }
-        let middle = Look::of(events, &self.within_step(time)?);
+        let middle = Look::of(events, &self.sample_within_step(time)?.0);
         let ends = [&looks[looks.len() - 1], &middle, &end];
         let hides = (0..events.len()).any(|k| hides_crossings(ends.map(|look| look.beyond[k])));
         let halved = if hides { halved + 1 } else { HALVINGS };

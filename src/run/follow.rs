@@ -11,6 +11,7 @@ use crate::load::LoadHistory;
 use crate::run::autosave::Autosave;
 use crate::run::driven::Course;
 use crate::run::event::Event;
+use crate::run::field::RunFields;
 use crate::run::progress::{Progress, RunProgress, Stepping};
 use crate::run::{OwnedOrBorrowed, RunContact};
 
@@ -73,7 +74,7 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
     pub(super) history: RunHistory<'a>,
     stepping: Stepping,
-    until: f64,
+    pub(super) until: f64,
     pub(super) progress: Progress,
     pub(super) control: C::Control,
     /// Times at which steps end, and at which states within steps are sampled.
@@ -85,6 +86,7 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
+    pub(super) fields: Option<RunFields<C>>,
     #[cfg(feature = "checkpoint")]
     pub(super) autosave: Option<Autosave>,
 }
@@ -141,6 +143,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             events: Vec::new(),
             cancelled: None,
             last: None,
+            fields: None,
             #[cfg(feature = "checkpoint")]
             autosave: None,
         }
@@ -219,6 +222,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Takes the next step and keeps its report for [`Run::samples`].
     pub(super) fn take_next(&mut self) -> Result<Option<StepReport>> {
         self.last = None;
+        self.prepare_fields()?;
         let start = self.contact.time();
         let mut report = if self.events.is_empty() { self.take_step()? } else { self.take_until_event()? };
         if let Some(report) = report.as_mut().filter(|report| report.time >= self.until) {
@@ -226,6 +230,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         }
         self.last = report.map(|report| (start, report));
         report.iter().for_each(|report| self.progress.count(report));
+        self.keep_step();
         Ok(report)
     }
 

@@ -61,6 +61,10 @@ impl Driven for ViscoelasticContact {
         Ok((contact, report))
     }
 
+    fn tighten(control: &mut StepControl, tolerance: f64) {
+        control.tolerance = control.tolerance.min(tolerance);
+    }
+
     fn rejected(control: &StepControl) -> u64 {
         control.rejected
     }
@@ -110,6 +114,7 @@ impl Run<'_> {
         ErrorBudget {
             time: worst.map(|worst| worst.time),
             pressure: worst.map(|worst| worst.pressure),
+            field: self.worst_field(),
             mesh: self.contact.mesh_error().unwrap_or_default(),
             max_mesh: mesh,
             solver: worst.map_or(0.0, |worst| worst.residual),

@@ -15,6 +15,8 @@ pub(crate) mod driven;
 mod error_budget;
 mod event;
 mod events;
+pub(crate) mod field;
+mod fields;
 mod follow;
 mod halves;
 mod in_space;
@@ -30,6 +32,7 @@ mod steady;
 mod step_control;
 
 pub use crate::ascending::Times;
+pub use driven::FieldReport;
 pub use error_budget::ErrorBudget;
 pub use event::{Crossing, Event};
 pub use follow::Run;

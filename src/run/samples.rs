@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::run::FieldReport;
 use crate::run::RunContact;
 use crate::run::follow::{Run, history_of};
 use crate::run::progress::SAME_TIME;
@@ -15,6 +16,7 @@ pub struct Sample<'a, C: RunContact = ViscoelasticContact> {
     report: StepReport,
     at_end: bool,
     is_asked_for: bool,
+    field: Option<FieldReport>,
 }
 
 impl<C: RunContact> Sample<'_, C> {
@@ -32,6 +34,11 @@ impl<C: RunContact> Sample<'_, C> {
     /// Whether this is the end of the step: it takes no work.
     pub fn is_end_of_step(&self) -> bool {
         self.at_end
+    }
+
+    /// How exact its pressure is, if fields were asked for ([`Run::fields_to`]).
+    pub fn field(&self) -> Option<FieldReport> {
+        self.field
     }
 
     /// Whether a time to sample was given here; false for an end of a step between such times.
@@ -82,14 +89,18 @@ impl<C: RunContact> Run<'_, C> {
             let Some(next) = next else {
                 left = None;
                 let is_asked_for = self.sampled.after((end - same).next_down()).is_some_and(|next| next <= end + same);
-                let contact = Cow::Borrowed(self.contact());
-                return Some(Ok(Sample { contact, report: whole, at_end: true, is_asked_for }));
+                let field = if is_asked_for { self.with_field(self.contact(), whole.dt == 0.0) } else { Ok(None) };
+                return Some(field.map(|field| {
+                    let (contact, field) = field.map_or((None, None), |(contact, report)| (contact, Some(report)));
+                    let contact = contact.map_or(Cow::Borrowed(self.contact()), Cow::Owned);
+                    Sample { contact, report: whole, at_end: true, is_asked_for, field }
+                }));
             };
             // times of two rules that agree but for rounding are one
             time = next + same;
-            Some(self.sample_within_step(next).map(|(contact, report)| {
+            Some(self.field_within_step(next).map(|(contact, report, field)| {
                 let report = StepReport { time_error: whole.time_error, ..report };
-                Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true }
+                Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true, field }
             }))
         })
     }
@@ -120,10 +131,10 @@ impl<C: RunContact> Run<'_, C> {
     /// # Errors
     /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
     pub fn within_step(&self, time: f64) -> Result<C> {
-        Ok(self.sample_within_step(time)?.0)
+        Ok(self.field_within_step(time)?.0)
     }
 
-    fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
+    pub(super) fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
         self.contact.within(&self.control, history_of(&self.history), time)
     }
 }

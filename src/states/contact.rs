@@ -272,6 +272,11 @@ impl StatesContact {
         (self.time, self.reduced_time) = (other.time, other.reduced_time);
     }
 
+    /// Puts other elastic states of the same surface in the place of its own.
+    pub(super) fn exchange(&mut self, states: Arc<ElasticStates>) {
+        self.states = states;
+    }
+
     pub(crate) fn reset_differences(&mut self) {
         self.levels.reset_differences();
     }

@@ -8,6 +8,7 @@ use crate::states::curve::{ElasticState, ElasticStates};
 use crate::states::pressed::Pressed;
 
 /// A contact that jumps from state to state, each solved from the last one.
+#[derive(Debug)]
 pub(super) struct ElasticContact(ViscoelasticContact);
 
 /// A state and its pressure.
@@ -19,6 +20,18 @@ pub(super) struct Solved {
 impl ElasticContact {
     pub(super) fn new(scene: &Builder) -> Result<ElasticContact> {
         scene.clone().build().map(ElasticContact)
+    }
+
+    /// Of an undisturbed contact of unit compliance.
+    pub(super) fn of(contact: ViscoelasticContact) -> ElasticContact {
+        ElasticContact(contact)
+    }
+
+    /// Pressure, approach and area of the contact under a load, and the convolutions that they took.
+    pub(super) fn pressed(&mut self, load: Load) -> Result<(Pressed, f64, f64, usize)> {
+        let report = self.0.step(0.0, load)?;
+        let contact = &self.0;
+        Ok((Pressed::new(contact.pressure()), contact.approach(), contact.contact_area(), report.convolutions))
     }
 
     pub(super) fn grid(&self) -> &Grid {

@@ -1,9 +1,10 @@
 //! Fields of a contact on elastic states.
 
-use crate::error::{Result, StatesError};
+use crate::error::{Result, StatesError, within};
 use crate::load::Load;
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
+use crate::states::twin::Profile;
 
 /// Fields of a [`StatesContact`], one value for each cell of the grid of the sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +21,7 @@ pub struct StatesFields {
 impl StatesContact {
     /// The pressure \[Pa\] from the states that the sweep kept
     /// ([`Sweep::keep_pressures`](crate::states::Sweep::keep_pressures)), linear in the level between them: one value
-    /// for each cell of the grid.
+    /// for each cell of the grid, to the accuracy of the sweep.
     ///
     /// # Errors
     /// [`StatesError::NoPressures`] if none were kept.
@@ -40,12 +41,18 @@ impl StatesContact {
         Ok(field)
     }
 
-    /// All fields, exact: by an elastic contact at the level of each group, from the smallest to the largest.
+    /// All fields to an `accuracy`, the error of the pressure in L1 over the force: from elastic contacts at a few levels, chosen
+    /// by what the same levels leave of the error on a ball and on a cone, from the smallest to the largest. Measured over random scenes, they
+    /// are 7 contacts for 1e-2 and 20 for 1e-3 in the median, each some 5 convolutions from the one before, and five fields of memory. The
+    /// L2 error is about twice as large, relative to the field, and the error of the greatest pressure five times. An accuracy of 0 takes
+    /// every group of levels. The steps that were taken count as exact: a run has
+    /// [`Run::fields_to`](crate::run::Run::fields_to).
     ///
     /// # Errors
-    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
+    /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given as a table; as
     /// [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
-    pub fn fields(&self) -> Result<StatesFields> {
+    pub fn fields(&self, accuracy: f64) -> Result<StatesFields> {
+        within("accuracy of the fields", accuracy, (0.0..=0.1).contains(&accuracy), "in [0, 0.1]")?;
         let states = self.states();
         let mut elastic = states.elastic_contact()?;
         let apart = elastic.under(Load::Force { normal: 0.0, tilt: states.tilt })?;
@@ -54,8 +61,15 @@ impl StatesContact {
             StatesFields { pressure: vec![0.0; cells], displacement: vec![0.0; cells], gap: vec![0.0; cells] };
         apart.gap_into(&mut fields.gap)?;
         let (mut before, mut gap) = (fields.clone(), vec![0.0; cells]);
-        for (top, traction, displacement) in self.levels.groups() {
-            let elastic = elastic.under(Load::Force { normal: top, tilt: states.tilt })?;
+        let (tractions, displacements) =
+            (Profile::new(self.tractions()), Profile::new(self.levels.groups().map(|(top, _, w)| (top, w))));
+        let mut levels = tractions.cuts(0.0, accuracy).0;
+        levels.extend(displacements.cuts(0.0, accuracy).0);
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        let shares = tractions.means(&levels).zip(displacements.means(&levels));
+        for ((level, traction), (_, displacement)) in shares {
+            let elastic = elastic.under(Load::Force { normal: level, tilt: states.tilt })?;
             elastic.gap_into(&mut gap)?;
             let parts = [
                 (traction, &mut fields.pressure, &mut before.pressure, elastic.pressure()),

@@ -38,6 +38,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
+mod beside;
 mod closed_forms;
 mod contact;
 mod control;
@@ -50,9 +51,11 @@ mod outside;
 mod pressed;
 mod reach;
 mod run;
+mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
 mod sweep;
+mod twin;
 
 pub use crate::error::StatesError;
 pub use contact::StatesContact;

@@ -134,6 +134,9 @@ impl Driven for StatesContact {
         Ok((contact, report))
     }
 
+    // steps on levels are free: fields have a run of their own
+    fn tighten(_: &mut StatesControl, _: f64) {}
+
     fn rejected(control: &StatesControl) -> u64 {
         control.steps.record.rejected
     }

@@ -42,6 +42,8 @@ const LINEAR_LEVEL: f64 = 1e-6;
 const FINEST: f64 = 1.001;
 /// Greatest fall of a pressure, over the greatest pressure, that is taken for an error of a solver of this tolerance.
 const FALL_OVER_TOLERANCE: f64 = 1e2;
+/// The error of a pressure counts relative to this part of the greatest load at least.
+const LEAST_LOAD: f64 = 0.01;
 /// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
 const SAFETY: f64 = 2.0;
 
@@ -74,7 +76,9 @@ impl Sweep {
         self
     }
 
-    /// Error of the depth δ between two states, relative to √(δ δ_last), with δ_last the greatest depth (default: 1e-4).
+    /// Error of the depth δ between two states, relative to √(δ δ_last), with δ_last the greatest depth (default: 1e-4). Where
+    /// [pressures are kept](Sweep::keep_pressures), the error of the pressure in L1, over the load or a hundredth of the greatest, is no greater:
+    /// some 20 states a decade of the level for 1e-2, and 80 for 1e-3.
     pub fn accuracy(mut self, accuracy: f64) -> Sweep {
         self.accuracy = accuracy;
         self
@@ -94,7 +98,7 @@ impl Sweep {
     }
 
     /// Keeps the pressure of every state, 12 bytes for each of its cells in contact, for
-    /// [`StatesContact::pressure`](crate::states::StatesContact::pressure).
+    /// [`StatesContact::pressure`](crate::states::StatesContact::pressure), with states so near that it has the [accuracy](Sweep::accuracy).
     pub fn keep_pressures(mut self) -> Sweep {
         self.keep_pressures = true;
         self
@@ -144,6 +148,7 @@ impl Sweep {
             at,
             rest: Rest { approach: 0.0, tilt },
             last_depth: 0.0,
+            last_level: 0.0,
             first_level: 0.0,
             accuracy,
             max_states: self.max_states,
@@ -191,6 +196,7 @@ struct Solver<P> {
     at: [f64; 2],
     rest: Rest,
     last_depth: f64,
+    last_level: f64,
     /// The level from which the contact only grows.
     first_level: f64,
     accuracy: f64,
@@ -239,7 +245,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     /// first pass but the last, contacts of these levels and below are held or free as a whole.
     fn sweep(&mut self, last: f64) -> Result<()> {
         let mut states = self.first_pass(last)?;
-        self.last_depth = self.depth(&states[0].state);
+        (self.last_depth, self.last_level) = (self.depth(&states[0].state), last);
         let ended = states.iter().position(|solved| self.add(solved).is_break());
         states.truncate(ended.map_or(states.len(), |last| last + 1));
         self.error = if states.len() > 1 { 0.0 } else { f64::INFINITY };
@@ -307,7 +313,10 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         }
         let curve = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
         let middle = Rc::new(self.solve((lower.state.level * upper.state.level).sqrt())?);
-        let error = curve.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
+        let mut error = curve.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
+        if self.kept.is_some() {
+            error = error.max(self.error_of_pressure([&lower, &middle, &upper]));
+        }
         if SAFETY * error <= self.accuracy || upper.state.level < FINEST * lower.state.level {
             self.check_growth(&lower, &middle)?;
             self.check_growth(&middle, &upper)?;
@@ -317,6 +326,17 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
             pairs.extend([Pair::new(&middle, &upper, top, error), Pair::new(&lower, &middle, top, error)]);
         }
         Ok(self.add(&middle))
+    }
+
+    /// Σ |δp| of the pressure in the middle from the line through both others, over its load, or over a part of the greatest load.
+    fn error_of_pressure(&self, [lower, middle, upper]: [&Solved; 3]) -> f64 {
+        let (grid, [low, level, high]) = (self.elastic.grid(), [lower, middle, upper].map(|solved| solved.state.level));
+        let (share, mut off) = ((level - low) / (high - low), vec![0.0; grid.len()]);
+        for (solved, share) in [(lower, 1.0 - share), (upper, share), (middle, -1.0)] {
+            solved.pressure.add_to(share, &mut off);
+        }
+        let sum: f64 = off.iter().map(|off| off.abs()).sum();
+        sum * grid.cell_area() / level.max(LEAST_LOAD * self.last_level)
     }
 
     /// Nowhere may the pressure fall while the load grows.

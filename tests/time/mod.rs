@@ -3,6 +3,7 @@
 mod adaptive;
 mod cancelled;
 mod cost;
+mod fields;
 mod fixed_steps;
 mod follow;
 mod honest;

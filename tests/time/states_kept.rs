@@ -159,7 +159,7 @@ fn states_in_files_are_the_states() {
             true => assert_eq!(one.pressure().unwrap(), other.pressure().unwrap()),
             false => assert!(no_pressures(one.pressure().unwrap_err()) && no_pressures(other.pressure().unwrap_err())),
         }
-        assert!(matches!(other.fields().unwrap_err(), Error::States(StatesError::NoScene)));
+        assert!(matches!(other.fields(0.0).unwrap_err(), Error::States(StatesError::NoScene)));
         let bytes = std::fs::read(&path).unwrap();
         for cut in (0..bytes.len()).step_by(1 + bytes.len() / 60) {
             std::fs::write(&path, &bytes[..cut]).unwrap();

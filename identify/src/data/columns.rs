@@ -14,9 +14,10 @@ const fn wanted(name: &'static str, words: &'static [&'static str], quantity: Qu
 const TIME: WantedColumn = WantedColumn { by_unit: true, ..wanted("time", &["t", "time"], Quantity::TIME) };
 const FORCE: WantedColumn =
     WantedColumn { by_unit: true, ..wanted("force", &["f", "force", "load", "p"], Quantity::FORCE) };
-const DEFLECTION: WantedColumn = wanted("deflection", &["deflection", "defl", "cantilever"], Quantity::LENGTH);
+const DEFLECTION: WantedColumn =
+    wanted("deflection", &["deflection", "defl", "vdeflection", "cantilever"], Quantity::LENGTH);
 const DRIVE: WantedColumn =
-    wanted("drive", &["z", "zsnsr", "drive", "position", "piezo", "base", "stage"], Quantity::LENGTH);
+    wanted("drive", &["z", "zsnsr", "height", "drive", "position", "piezo", "base", "stage"], Quantity::LENGTH);
 const DEPTH: WantedColumn =
     wanted("depth", &["depth", "indentation", "δ", "delta", "h", "displacement into"], Quantity::LENGTH);
 

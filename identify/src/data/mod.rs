@@ -26,8 +26,8 @@ pub use error::DataError;
 /// |---|---|---|
 /// | time | t, time; or the only column with a unit of time | ascending |
 /// | force | f, force, load, p; or the only column with a unit of force | positive where it presses |
-/// | deflection | deflection, defl, cantilever | of the spring, in place of the force |
-/// | drive | z, zsnsr, drive, position, piezo, base, stage | position of the base of the spring, growing toward the sample |
+/// | deflection | deflection, defl, vdeflection, cantilever | of the spring, in place of the force |
+/// | drive | z, zsnsr, height, drive, position, piezo, base, stage | position of the base of the spring, growing toward the sample |
 /// | depth | depth, indentation, δ, delta, h, displacement into | of the tip, measured independently of the force |
 ///
 /// A file may have drive and depth: a curve takes one of them. The depth of an atomic force microscope is made from the noisy

@@ -26,25 +26,27 @@ impl Fit {
         };
         let at = at.ok_or_else(unknown)?;
         let mut problem = self.problem()?;
-        let best = problem.coordinates(&self.values);
+        let best = self.estimates().len();
         let points = problem.len();
-        let freedom = if self.identification.sigma().is_some() { 1e6 } else { (points - best.len()) as f64 };
+        let freedom = if self.identification.sigma().is_some() { 1e6 } else { (points - best) as f64 };
         let threshold = self.sum + self.sigma * self.sigma * fisher(confidence, freedom);
         let index = problem.parameters.iter().enumerate().filter(|(_, p)| p.is_free).nth(at).map(|(index, _)| index);
         let index = index.ok_or_else(unknown)?;
         let parameter = problem.parameters[index].clone();
-        let deviation = self.estimates[at].deviation / parameter.unit;
+        // at a limit, a factor of e
+        let deviation = self.estimates[at].deviation.min(parameter.unit);
         problem.parameters[index].is_free = false;
-        let centre = best[at];
+        let centre = parameter.scale.forward(self.values[index]);
         let mut limits = [0.0; 2];
         for (limit, side) in limits.iter_mut().zip([-1.0, 1.0]) {
-            let mut others: Vec<f64> = best.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, x)| *x).collect();
+            let mut values = self.values.clone();
             // excess of the sum of squares over the threshold, at a distance in standard deviations
             let mut excess = |distance: f64| -> f64 {
-                problem.parameters[index].given = Some(parameter.value(centre + side * distance * deviation));
-                match self.identification.minimum(&problem, others.clone()) {
+                values[index] = parameter.scale.back(centre + side * distance * deviation);
+                problem.parameters[index].given = Some(values[index]);
+                match self.identification.minimum(&problem, problem.coordinates(&values)) {
                     Ok(minimum) => {
-                        others = minimum.coordinates;
+                        values = problem.values(&minimum.coordinates);
                         square(&minimum.residuals) - threshold
                     }
                     Err(_) => f64::INFINITY,
@@ -59,7 +61,7 @@ impl Fit {
                 at_high = excess(high);
             }
             if at_high < 0.0 {
-                *limit = parameter.value(side * f64::INFINITY);
+                *limit = parameter.scale.back(side * f64::INFINITY);
                 continue;
             }
             for _ in 0..60 {
@@ -79,7 +81,7 @@ impl Fit {
                     (high, at_high) = (middle, value);
                 }
             }
-            *limit = parameter.value(centre + side * 0.5 * (low + high) * deviation);
+            *limit = parameter.scale.back(centre + side * 0.5 * (low + high) * deviation);
         }
         Ok(limits)
     }

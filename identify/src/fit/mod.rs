@@ -1,24 +1,30 @@
 //! What was identified.
 
+mod deviations;
 mod intervals;
 mod report;
+mod reweigh;
 mod search;
+mod variants;
 
 use faer::Mat;
 use viscocontact::rheology::Material;
 
-use crate::bounds::inverse_gram;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::forward::Sample;
 use crate::identification::Identification;
-use crate::least_squares::{Minimum, square};
-use crate::model::{Model, Prony, Scale};
-use crate::noise::Whitening;
-use crate::parameters::Kind;
+use crate::least_squares::square;
+use crate::model::{Model, Scale};
+use crate::noise::CurveNoise;
+use crate::parameters::{Kind, Parameter};
 use crate::problem::Problem;
+use crate::series::Prony;
 use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
+use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
+use search::Found;
+pub use variants::Variant;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +44,9 @@ pub struct Estimate {
     pub robust_deviation: f64,
     /// Interval of 95 % from the standard deviation.
     pub interval: [f64; 2],
+    /// The limit at which the parameter is, if the data cannot tell it from there: then the model is a simpler one. A parameter that has
+    /// no effect at the limit has an infinite deviation.
+    pub limit: Option<&'static str>,
 }
 
 /// The result of a fit.
@@ -55,14 +64,17 @@ pub struct Fit {
     residuals: Vec<Vec<f64>>,
     white: Vec<Vec<f64>>,
     sigma: f64,
-    correlation: Option<f64>,
+    noise: Vec<CurveNoise>,
     sum: f64,
     log_weight: f64,
     iterations: usize,
+    /// The least sum of squares of a model that this one contains.
+    contained: Option<(Model, f64)>,
 }
 
 impl Fit {
-    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, minimum: Minimum) -> Result<Fit> {
+    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, found: Found) -> Result<Fit> {
+        let Found { minimum, contained } = found;
         let values = problem.values(&minimum.coordinates);
         let prony = problem.prony(&values)?;
         let count = minimum.coordinates.len();
@@ -72,22 +84,33 @@ impl Fit {
         }
         let sum = square(&minimum.residuals);
         let freedom = (points - count) as f64;
-        let sigma = identification.sigma().unwrap_or((sum / freedom).sqrt());
-        let inverse = if count > 0 { inverse_gram(&minimum.jacobian)? } else { Mat::zeros(0, 0) };
+        let sigma = match identification.sigma() {
+            Some(sigma) => sigma,
+            None if identification.is_robust() => robust_deviation(&problem, &minimum.residuals, freedom),
+            None => (sum / freedom).sqrt(),
+        };
+        let free: Vec<Parameter> = problem.free().cloned().collect();
+        let scales = problem.scales(&values);
+        let (inverse, limits) = inverse(&free, &minimum.jacobian, sigma)?;
         let lengths: Vec<usize> = problem.parts.iter().map(|part| part.len()).collect();
-        let sandwich = sandwich(&minimum, &inverse, &lengths);
-        let free: Vec<_> = problem.free().cloned().collect();
+        let sandwich = &scales * sandwich(&minimum, &inverse, &lengths) * scales.transpose();
+        let covariance = &scales * &inverse * scales.transpose();
+        let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
+        let mut at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
         let estimates = free.iter().enumerate().map(|(k, parameter)| {
-            let coordinate = minimum.coordinates[k];
-            let deviation = sigma * inverse[(k, k)].sqrt();
-            let half = deviation * student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
+            // a coordinate at its limit has no deviation; its parameter may have that of another
+            let is_known = (0..count).any(|j| scales[(k, j)] != 0.0 && !limits[j]);
+            let deviation = if is_known { sigma * covariance[(k, k)].sqrt() } else { f64::INFINITY };
+            let value = values[at.next().unwrap_or_default()];
+            let on_scale = parameter.scale.forward(value);
             Estimate {
                 name: parameter.name.clone(),
-                value: parameter.value(coordinate),
+                value,
                 scale: parameter.scale,
-                deviation: deviation * parameter.unit,
-                robust_deviation: sandwich[(k, k)].sqrt() * parameter.unit,
-                interval: [coordinate - half, coordinate + half].map(|x| parameter.value(x)),
+                deviation,
+                robust_deviation: if is_known { sandwich[(k, k)].sqrt() } else { f64::INFINITY },
+                interval: [-quantile, quantile].map(|quantile| parameter.scale.back(on_scale + quantile * deviation)),
+                limit: limits[k].then(|| limit(&parameter.name, value)),
             }
         });
         let estimates = estimates.collect();
@@ -97,16 +120,18 @@ impl Fit {
             let force = problem.measured(curve, &values, response.iter().map(|sample| sample.force));
             let residual: Vec<f64> = part.data.iter().zip(&force).map(|(data, force)| data - force).collect();
             let mut of_curve = residual.clone();
-            part.whitening.apply(&mut of_curve);
+            part.whiten(&mut of_curve);
             samples.push(response);
             forces.push(force);
             residuals.push(residual);
             white.push(of_curve);
         }
-        let correlation = match problem.parts[0].whitening {
-            Whitening::Autoregressive(phi) if phi != 0.0 => Some(phi),
-            _ => None,
-        };
+        let noise = problem.parts.iter().map(|part| CurveNoise {
+            correlation: part.whitening.correlation(),
+            scale: part.scale,
+            outliers: part.outliers.clone(),
+        });
+        let noise = noise.collect();
         let curve =
             |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
         Ok(Fit {
@@ -115,18 +140,17 @@ impl Fit {
             values,
             prony,
             estimates,
-            covariance: Mat::from_fn(count, count, |i, j| {
-                sigma * sigma * inverse[(i, j)] * free[i].unit * free[j].unit
-            }),
+            covariance: Mat::from_fn(count, count, |i, j| sigma * sigma * covariance[(i, j)]),
             samples,
             forces,
             residuals,
             white,
             sigma,
-            correlation,
+            noise,
             sum,
-            log_weight: problem.parts.iter().map(|part| part.whitening.log_weight()).sum(),
+            log_weight: problem.parts.iter().map(|part| part.log_weight()).sum(),
             iterations: minimum.iterations,
+            contained,
         })
     }
 
@@ -225,13 +249,24 @@ impl Fit {
     }
 
     /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
+    /// Of several curves, the geometric mean; [`Fit::sigma_of`] is that of one.
     pub fn sigma(&self) -> f64 {
         self.sigma
     }
 
-    /// The autoregressive coefficient, if the noise has one.
+    /// Standard deviation of the noise of a curve \[N\].
+    pub fn sigma_of(&self, curve: usize) -> f64 {
+        self.sigma / self.noise.get(curve).map_or(1.0, |noise| noise.scale)
+    }
+
+    /// The autoregressive coefficient of the first curve, if the noise has one; [`Fit::autoregression_of`] is that of another curve.
     pub fn autoregression(&self) -> Option<f64> {
-        self.correlation
+        self.autoregression_of(0)
+    }
+
+    /// The autoregressive coefficient of the noise of a curve, if it has one.
+    pub fn autoregression_of(&self, curve: usize) -> Option<f64> {
+        self.noise.get(curve)?.correlation
     }
 
     /// Iterations of the search.
@@ -251,26 +286,26 @@ impl Fit {
 
     /// Correlation of residuals: a small probability means that the model is wrong, of the material or of the noise.
     pub fn correlations(&self) -> ResidualTest {
-        correlation_test(&self.white, usize::from(self.correlation.is_some()))
+        correlation_test(&self.white, self.noise.iter().filter(|noise| noise.correlation.is_some()).count())
     }
 
     /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better.
     pub fn aicc(&self) -> f64 {
         let points = self.white.iter().map(Vec::len).sum::<usize>() as f64;
         let known = self.identification.sigma();
-        let fitted =
-            self.estimates.len() + usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
-        let count = fitted as f64;
+        // of each curve
+        let of_noise = usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
+        let count = (self.estimates.len() + of_noise * self.curves.len()) as f64;
         let misfit = match known {
             Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
-            None => points * (self.sum / points).ln(),
+            None => points * ((self.sum / points).ln() + 1.0),
         };
         misfit - self.log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
     }
 
     /// The problem that was solved.
     pub(crate) fn problem(&self) -> Result<Problem<'_>> {
-        self.identification.refit_problem(&self.curves, self.correlation)
+        self.identification.refit_problem(&self.curves, &self.noise)
     }
 
     /// Values of all parameters.
@@ -295,27 +330,4 @@ impl Fit {
         self.estimate(&name)
             .map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
     }
-}
-
-/// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ, correlations of neighbours with falling weights included.
-fn sandwich(minimum: &Minimum, inverse: &Mat<f64>, lengths: &[usize]) -> Mat<f64> {
-    let count = inverse.nrows();
-    let mut middle = Mat::<f64>::zeros(count, count);
-    let mut first = 0;
-    for &len in lengths {
-        let score = |k: usize, j: usize| minimum.jacobian[(first + k, j)] * minimum.residuals[first + k];
-        let lags = (4.0 * (len as f64 / 100.0).powf(2.0 / 9.0)) as usize;
-        for lag in 0..=lags.min(len.saturating_sub(1)) {
-            let weight = (1.0 - lag as f64 / (lags + 1) as f64) * if lag == 0 { 0.5 } else { 1.0 };
-            for i in 0..count {
-                for j in 0..count {
-                    let sum: f64 = (lag..len).map(|k| score(k, i) * score(k - lag, j)).sum();
-                    middle[(i, j)] += weight * sum;
-                    middle[(j, i)] += weight * sum;
-                }
-            }
-        }
-        first += len;
-    }
-    inverse * &middle * inverse
 }

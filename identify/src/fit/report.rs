@@ -6,7 +6,10 @@ use viscocontact::contact::StepReport;
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
+use crate::error::{Error, Result};
 use crate::fit::Fit;
+use crate::model::Model;
+use crate::noise::CurveNoise;
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +17,19 @@ use crate::fit::Fit;
 #[non_exhaustive]
 pub enum FitWarning {
     /// The residuals are not independent at the level of 1 %: the model of the material, of the tip or of the noise is wrong.
-    Misfit,
+    Misfit {
+        /// Standard deviation of the residuals over that of the noise, from second differences of the force: 1 if the model is right.
+        over_noise: f64,
+        /// Standard deviation of the residuals over the greatest force.
+        over_force: f64,
+    },
+    /// A curve has a pull-off: the model has none, and [`Curve::until_release`](crate::Curve::until_release) leaves it out.
+    PullOff {
+        /// Index of the curve.
+        curve: usize,
+        /// Force below the base line \[N\].
+        force: f64,
+    },
     /// The data determine a parameter by no better than a factor of two.
     Undetermined {
         /// Name of the parameter.
@@ -24,6 +39,25 @@ pub enum FitWarning {
     Correlated {
         /// Names of the parameters.
         parameters: [String; 2],
+    },
+    /// A parameter is at a limit of the model, where the model is a simpler one.
+    AtLimit {
+        /// Name of the parameter.
+        parameter: String,
+        /// The limit.
+        limit: &'static str,
+    },
+    /// The search has failed: a simpler model that this one contains fits better.
+    AboveContained {
+        /// The simpler model.
+        model: Model,
+        /// Its sum of squares over that of this fit.
+        ratio: f64,
+    },
+    /// The autoregressive coefficient of a curve is as great as the search allows: a model that is wrong leaves such residuals.
+    Correlation {
+        /// Index of the curve.
+        curve: usize,
     },
     /// A time lies outside the times of the data, so that it is extrapolated.
     TimeOutside {
@@ -43,15 +77,34 @@ pub enum FitWarning {
 impl fmt::Display for FitWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            FitWarning::Misfit => f.write_str(
-                "the residuals are not independent: try another model of the material, the tip or the noise",
+            FitWarning::Misfit { over_noise, over_force } => write!(
+                f,
+                "the residuals are not independent: {over_noise:.2} times the noise, {:.2} % of the greatest force; see Fit::variants for what this does to the modulus",
+                100.0 * over_force
             ),
+            FitWarning::PullOff { curve, force } => {
+                write!(
+                    f,
+                    "curve {curve}: a pull-off of {force:.2e} N, which the model has not: use Curve::until_release"
+                )
+            }
             FitWarning::Undetermined { parameter } => {
                 write!(f, "{parameter} is uncertain by more than a factor of two: fix it, or measure where it matters")
             }
             FitWarning::Correlated { parameters: [one, other] } => {
                 write!(f, "only a combination of {one} and {other} is determined: fix one of them")
             }
+            FitWarning::AtLimit { parameter, limit } => write!(f, "{parameter} is at its limit: {limit}"),
+            FitWarning::AboveContained { model, ratio } => {
+                write!(
+                    f,
+                    "the search has failed: {model}, a special case, has {ratio} of the sum of squares: give start values"
+                )
+            }
+            FitWarning::Correlation { curve } => write!(
+                f,
+                "curve {curve}: the correlation of the residuals is at its bound: the model of the material or the tip is likely wrong"
+            ),
             FitWarning::TimeOutside { parameter } => {
                 write!(f, "{parameter} lies outside the times of the data: sample faster, or measure longer")
             }
@@ -62,6 +115,10 @@ impl fmt::Display for FitWarning {
 
 /// Probability below which a test of the residuals is a warning; there are two tests.
 const UNLIKELY: f64 = 0.005;
+/// Correlation of neighbours that is warned of.
+const GREAT_CORRELATION: f64 = 0.98;
+/// Sums of squares that differ by less than this fraction are of one minimum.
+const SAME_SUM: f64 = 1e-6;
 /// ln 2.
 const FACTOR_OF_TWO: f64 = std::f64::consts::LN_2;
 
@@ -72,10 +129,26 @@ impl Fit {
         if self.runs().probability < UNLIKELY && self.runs().statistic < 0.0
             || self.correlations().probability < UNLIKELY
         {
-            warnings.push(FitWarning::Misfit);
+            let [over_noise, over_force] = self.misfit();
+            warnings.push(FitWarning::Misfit { over_noise, over_force });
         }
+        if let Some((model, sum)) = self.contained.filter(|(_, sum)| *sum < (1.0 - SAME_SUM) * self.sum) {
+            warnings.push(FitWarning::AboveContained { model, ratio: sum / self.sum });
+        }
+        let is_bound = |noise: &CurveNoise| noise.correlation.is_some_and(|phi| phi > GREAT_CORRELATION);
+        let bound = self
+            .noise
+            .iter()
+            .enumerate()
+            .filter(|(_, noise)| self.identification.fits_correlation() && is_bound(noise));
+        warnings.extend(bound.map(|(curve, _)| FitWarning::Correlation { curve }));
+        let pulled = self.curves().iter().enumerate();
+        warnings.extend(pulled.filter_map(|(curve, of)| Some(FitWarning::PullOff { curve, force: of.pull_off()? })));
+        let limits = self.estimates().iter().filter_map(|estimate| Some((estimate, estimate.limit?)));
+        warnings
+            .extend(limits.map(|(estimate, limit)| FitWarning::AtLimit { parameter: estimate.name.clone(), limit }));
         let of_material = self.model().parameters();
-        let material = || self.estimates().iter().filter(|estimate| of_material.contains(&estimate.name));
+        let material = || self.estimates().iter().filter(|e| of_material.contains(&e.name) && e.limit.is_none());
         for estimate in material() {
             let parameter = estimate.name.clone();
             if estimate.deviation > FACTOR_OF_TWO {
@@ -110,16 +183,30 @@ impl Fit {
     }
 }
 
-/// Fits of the same curves, best first, each with its difference of Akaike's criterion from the best and its weight: the share of the
-/// evidence among the candidates.
-pub fn ranked(fits: Vec<Fit>) -> Vec<(Fit, f64, f64)> {
-    let mut fits = fits;
+/// Fits of the same curves, best first, each with its difference of Akaike's criterion from the best and its weight exp(−difference/2) among
+/// the candidates. Candidates that failed are left out. The criterion takes residuals as independent but for the fitted correlation.
+///
+/// # Errors
+/// [`Error::OtherData`] if fits are of different curves, or some are robust; the error of the last candidate if all failed.
+pub fn ranked(candidates: impl IntoIterator<Item = Result<Fit>>) -> Result<Vec<(Fit, f64, f64)>> {
+    let (mut fits, mut failure) = (Vec::<Fit>::new(), None);
+    for candidate in candidates {
+        match candidate {
+            Ok(fit) => fits.push(fit),
+            Err(error) => failure = Some(error),
+        }
+    }
     fits.sort_by(|a, b| a.aicc().total_cmp(&b.aicc()));
-    let best = fits.first().map_or(0.0, Fit::aicc);
-    let total: f64 = fits.iter().map(|fit| (-0.5 * (fit.aicc() - best)).exp()).sum();
+    let Some(best) = fits.first() else { return failure.map_or(Ok(Vec::new()), Err) };
+    let of_best = best.aicc();
+    let is_same = |fit: &Fit| !fit.identification.is_robust() && fit.curves == best.curves;
+    if fits.len() > 1 && !fits.iter().all(is_same) {
+        return Err(Error::OtherData);
+    }
+    let total: f64 = fits.iter().map(|fit| (-0.5 * (fit.aicc() - of_best)).exp()).sum();
     let of = |fit: Fit| {
-        let difference = fit.aicc() - best;
+        let difference = fit.aicc() - of_best;
         (fit, difference, (-0.5 * difference).exp() / total)
     };
-    fits.into_iter().map(of).collect()
+    Ok(fits.into_iter().map(of).collect())
 }

@@ -1,308 +1,356 @@
-//! One indentation: the contact grows, and then shrinks until it ends (Ting 1966).
+//! The contact of a tip under any drive (Ting 1966, 1968).
 //!
-//! While the contact grows, F(t) = ∫₀ᵗ E(t − s) df with f(δ) the elastic force of unit modulus at the depth δ. While it
-//! shrinks, it is as large as at the earlier time t₁(t) with ∫ E(t − s) dδ(s) = 0 over t₁ < s < t, and F(t) = ∫ E(t − s) df over
-//! 0 < s < t₁. This holds for every tip whose elastic contact only grows.
+//! The contact is a bed of columns (Popov & Heß, *Method of Dimensionality Reduction*, 2015): the column d touches an elastic body at
+//! the depth d, and columns up to c share the force f(c), with f the elastic force of unit modulus. A column in contact follows the
+//! tip, and its pressure is ∫ E(t − s) dδ(s). It leaves the tip where its pressure falls to zero, recovers without pressure, and
+//! touches again where the tip reaches it. The edge c(t) of the contact has no pressure, so that the force
+//! F = ∫₀ᶜ p(d, t) df′(d) does not depend on small errors of c.
 //!
-//! Between samples the depth is linear, and df/dδ is a parabola with the right ends and the right mean. Integrals of the
-//! exponentials with both are exact, for any ratio of a sampling interval to a relaxation time. A tip on a spring has the
-//! depth z − F/k.
+//! Between samples the depth is linear, and f′ is a parabola with the right ends and the right mean over the columns that touch.
+//! Integrals of the exponentials with both are exact, for any ratio of a sampling interval to a relaxation time: exact are indentations by
+//! cone and punch until the contact grows again after it has shrunk. There, and for other tips, the error falls with the square of the
+//! interval or faster. A tip on a spring has the depth z − F/k.
 
+mod shrinking;
+
+use crate::forward::column::Columns;
+use crate::forward::growth::{Growth, Term};
 use crate::forward::moments::Moments;
+use crate::forward::real::Real;
+use crate::forward::roots::Roots;
 use crate::forward::tip::{Elastic, Tip};
-use crate::forward::{Drive, Sample};
-use crate::model::Prony;
+use crate::forward::{Drive, Response, Stop};
+use crate::series::Prony;
 
-/// Depths that fall by less than this fraction of the greatest are held.
-const HELD: f64 = 1e-13;
+/// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
+const HELD: f64 = 1e-12;
 /// Roots end where they move by less than this fraction of a depth, or of an interval.
 const CONVERGED: [f64; 2] = [1e-14, 1e-11];
-/// Iterations of a root.
-const MAX_ITERATIONS: usize = 80;
 
-/// Why a cycle cannot be computed here.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Stop {
-    /// The contact grows again after it has shrunk.
-    Returns,
-    /// The depth is beyond the last elastic state.
-    Beyond(f64),
-    /// The balance of the spring found no root.
-    NoRoot,
+/// The end of an interval in which the contact grew.
+#[derive(Clone, Copy, Debug)]
+struct Node<T> {
+    time: T,
+    /// Depth of the tip \[m\].
+    depth: T,
+    /// The column at the edge \[m\], and the elastic contact up to it.
+    extent: T,
+    elastic: Elastic<T>,
+    /// Whether the column at the edge has not touched before.
+    fresh: bool,
 }
 
-/// The end of an interval.
-struct Node {
-    time: f64,
-    depth: f64,
-    elastic: Elastic,
+/// The column at the edge of the contact: that which touched after a node, at a share of the time to the next.
+#[derive(Clone, Copy, Debug)]
+struct Edge<T> {
+    node: usize,
+    share: T,
+    extent: T,
+    elastic: Elastic<T>,
 }
 
-/// A moment of the past: the interval after the node of this index, and the share of it that has passed. Depth and time are linear in the
-/// share, so that a sudden step, whose interval has no length, has its depths in order.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
-    interval: usize,
-    share: f64,
-}
-
-/// What the contact does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
-    Growing,
-    /// The contact is as large as at this place.
-    Shrinking(Place),
-    Separated,
-}
-
-/// A cycle up to the present sample.
-pub(super) struct Cycle<'a> {
-    prony: &'a Prony,
+/// A contact up to the present.
+pub(super) struct Cycle<'a, T> {
+    prony: &'a Prony<T>,
     tip: &'a Tip,
     /// 1/k of the spring \[m/N\].
-    give: f64,
-    nodes: Vec<Node>,
-    /// ∫ Eᵢ exp(−(t − s)/τᵢ) df up to each node of growing contact, by node and term.
-    forces: Vec<f64>,
-    /// ∫ Eᵢ exp(−(t − s)/τᵢ) dδ up to each node, by node and term.
-    depths: Vec<f64>,
-    /// Moments over the present interval, and over the part of an interval before a place.
-    moments: Moments,
-    part: Moments,
-    phase: Phase,
+    give: T,
+    roots: &'a mut Roots,
+    /// Intervals of growth up to the edge, with the terms at each node.
+    nodes: Vec<Node<T>>,
+    past: Vec<Term<T>>,
+    edge: Edge<T>,
+    /// Whether the last node is the present.
+    is_node: bool,
+    columns: Columns<'a, T>,
+    time: T,
+    drive: T,
+    depth: T,
+    terms: Vec<Term<T>>,
+    /// Terms at another time.
+    then: Vec<Term<T>>,
+    moments: Moments<T>,
+    part: Moments<T>,
     /// Greatest depth \[m\].
     greatest: f64,
-    /// Terms of the present force.
-    terms: Vec<f64>,
 }
 
-impl<'a> Cycle<'a> {
-    pub(super) fn new(prony: &'a Prony, tip: &'a Tip, give: f64) -> Cycle<'a> {
+impl<'a, T: Real> Cycle<'a, T> {
+    pub(super) fn new(prony: &'a Prony<T>, tip: &'a Tip, give: T, times: &'a [f64], roots: &'a mut Roots) -> Self {
+        let (zero, terms) = (T::from(0.0), vec![Term::default(); prony.moduli.len()]);
         Cycle {
             prony,
             tip,
             give,
+            roots,
             nodes: Vec::new(),
-            forces: Vec::new(),
-            depths: Vec::new(),
+            past: Vec::new(),
+            edge: Edge { node: 0, share: zero, extent: zero, elastic: tip.first() },
+            is_node: true,
+            columns: Columns::new(prony, times),
+            time: T::from(times[0]),
+            drive: zero,
+            depth: zero,
+            then: terms.clone(),
+            terms,
             moments: Moments::default(),
             part: Moments::default(),
-            phase: Phase::Growing,
             greatest: 0.0,
-            terms: vec![0.0; prony.moduli.len()],
         }
     }
 
-    /// Computes a sample for each time; `record` is given each with the terms of its force.
-    pub(super) fn follow(&mut self, drive: Drive<'_>, mut record: impl FnMut(Sample, &[f64])) -> Result<(), Stop> {
-        for (k, (&time, &z)) in drive.times.iter().zip(drive.drive).enumerate() {
-            if self.nodes.is_empty() && z > 0.0 {
-                self.touch(k, drive);
-            }
-            let sample =
-                if self.nodes.is_empty() { Sample { depth: z, ..Sample::default() } } else { self.advance(time, z)? };
-            record(sample, &self.terms);
+    /// Computes a response for each time; `record` is given each with the terms of its force.
+    pub(super) fn follow(
+        &mut self,
+        drive: Drive<'_, T>,
+        mut record: impl FnMut(Response<T>, &[Term<T>]),
+    ) -> Result<(), Stop> {
+        for (sample, (&time, &z)) in drive.times.iter().zip(drive.drive).enumerate() {
+            self.advance(sample, T::from(time), z)?;
+            let (force, depth) = (self.sum(|term| term.force), self.depth);
+            let contact_depth = if self.nodes.is_empty() { T::from(0.0) } else { self.edge.extent };
+            record(Response { force, depth, contact_depth }, &self.terms);
         }
         Ok(())
     }
 
-    /// First touch: at the zero of the drive between two samples, or at the first sample, suddenly.
-    fn touch(&mut self, sample: usize, drive: Drive<'_>) {
-        let (time, z) = (drive.times[sample], drive.drive[sample]);
-        let before = sample.checked_sub(1).map(|before| (drive.times[before], drive.drive[before]));
-        let start = before.map_or(time, |(t0, z0)| t0 + (time - t0) * z0 / (z0 - z));
-        self.nodes.push(Node { time: start, depth: 0.0, elastic: self.tip.first() });
-        self.forces.resize(self.terms.len(), 0.0);
-        self.depths.resize(self.terms.len(), 0.0);
+    fn sum(&self, of: impl Fn(Term<T>) -> T) -> T {
+        self.terms.iter().fold(T::from(0.0), |sum, &term| sum + of(term))
     }
 
-    /// Goes on to the next sample.
-    fn advance(&mut self, time: f64, z: f64) -> Result<Sample, Stop> {
-        let last = self.nodes.len() - 1;
-        let Node { time: before, depth, elastic } = self.nodes[last];
-        self.moments.set(time - before, &self.prony.rates);
-        let sample = match self.phase {
-            Phase::Growing => {
-                let held = if self.give > 0.0 { z - self.give * self.force_at(depth, elastic) } else { z };
-                // what has just touched grows
-                if last == 0 || held >= depth - HELD * self.greatest {
-                    self.grow(z)?
-                } else {
-                    self.shrink(time, z, Place { interval: last.saturating_sub(1), share: 1.0 })?
-                }
-            }
-            Phase::Shrinking(place) => {
-                // the contact grows again
-                if self.unbalance(time, z, place)? > HELD * self.scale() {
-                    return Err(Stop::Returns);
-                }
-                self.shrink(time, z, place)?
-            }
-            Phase::Separated => Sample { depth: z, ..Sample::default() },
-        };
-        let mut unbalance = 0.0;
-        for i in 0..self.terms.len() {
-            let past = self.moments.decay[i] * self.depths[last * self.terms.len() + i];
-            let now = past + self.prony.moduli[i] * (sample.depth - depth) * self.moments.moments[i][0];
-            self.depths.push(now);
-            unbalance += now;
+    /// Σ over the terms after the present interval.
+    fn decayed(&self, of: impl Fn(Term<T>) -> T) -> T {
+        let pairs = self.terms.iter().zip(&self.moments.decay);
+        pairs.fold(T::from(0.0), |sum, (&term, &decay)| sum + decay * of(term))
+    }
+
+    /// Σ Eᵢ M₀ of the present interval: the pressure of a column that the tip moves by 1 m.
+    fn stiffness(&self) -> T {
+        let pairs = self.prony.moduli.iter().zip(&self.moments.moments);
+        pairs.fold(T::from(0.0), |sum, (&modulus, moments)| sum + modulus * moments[0])
+    }
+
+    fn springs(&self) -> bool {
+        self.give.value() > 0.0
+    }
+
+    /// Advances to a sample.
+    fn advance(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
+        let is_separated = self.nodes.is_empty();
+        if is_separated && !self.touches(sample, time, z) {
+            (self.time, self.drive, self.depth) = (time, z, z);
+            return Ok(());
         }
-        // below zero, the surface recovers more slowly than the tip leaves it
-        if self.phase == Phase::Separated && unbalance > HELD * self.scale() {
-            return Err(Stop::Returns);
-        }
-        self.greatest = self.greatest.max(sample.depth);
-        if self.phase != Phase::Growing {
-            self.nodes.push(Node { time, depth: sample.depth, elastic: Elastic::default() });
-        } else {
-            let elastic = self.tip.at(sample.depth).ok_or(Stop::Beyond(sample.depth))?;
-            self.nodes.push(Node { time, depth: sample.depth, elastic });
-        }
-        Ok(sample)
-    }
-
-    /// Terms of the force at the end of the present interval, if the depth grows to `depth` in it.
-    fn force_at(&mut self, depth: f64, elastic: Elastic) -> f64 {
-        let last = self.nodes.len() - 1;
-        let node = &self.nodes[last];
-        let weights = parabola(node.depth, node.elastic, depth, elastic);
-        let past = &self.forces[last * self.terms.len()..];
-        for (i, term) in self.terms.iter_mut().enumerate() {
-            *term = self.moments.decay[i] * past[i] + self.prony.moduli[i] * dot(weights, self.moments.moments[i]);
-        }
-        self.terms.iter().sum()
-    }
-
-    /// The contact grows, or is held.
-    fn grow(&mut self, z: f64) -> Result<Sample, Stop> {
-        let from = self.nodes[self.nodes.len() - 1].depth;
-        let depth = if self.give > 0.0 { self.balanced_depth(z, from)? } else { z.max(from) };
-        let elastic = self.tip.at(depth).ok_or(Stop::Beyond(depth))?;
-        let force = self.force_at(depth, elastic);
-        self.forces.extend_from_slice(&self.terms);
-        Ok(Sample { force, depth, contact_depth: depth })
-    }
-
-    /// The depth δ with z = δ + F(δ)/k, which is at least `from`.
-    fn balanced_depth(&mut self, z: f64, from: f64) -> Result<f64, Stop> {
-        let deepest = z.max(from).min(self.tip.last_depth());
-        let mut excess = |depth: f64| {
-            let elastic = self.tip.at(depth).ok_or(Stop::Beyond(depth))?;
-            Ok(z - depth - self.give * self.force_at(depth, elastic))
-        };
-        // the spring pushes deeper than the states reach
-        if excess(deepest)? > 0.0 && deepest < z {
-            return Err(Stop::Beyond(z));
-        }
-        root([from, deepest], CONVERGED[0] * deepest, excess)
-    }
-
-    /// The contact shrinks from its extent at a place, at or before which it ends.
-    fn shrink(&mut self, time: f64, z: f64, latest: Place) -> Result<Sample, Stop> {
-        let Place { mut interval, share: mut upper } = latest;
-        // the interval in which the balance changes its sign
-        while self.unbalance(time, z, Place { interval, share: 0.0 })? < 0.0 {
-            let Some(before) = interval.checked_sub(1) else {
-                self.phase = Phase::Separated;
-                self.terms.fill(0.0);
-                return Ok(Sample { depth: z, ..Sample::default() });
-            };
-            (interval, upper) = (before, 1.0);
-        }
-        let share = root([0.0, upper], CONVERGED[1], |share| self.unbalance(time, z, Place { interval, share }))?;
-        let place = Place { interval, share };
-        self.phase = Phase::Shrinking(place);
-        let contact_depth = self.contact(time, place)?;
-        let force = self.terms.iter().sum();
-        Ok(Sample { force, depth: z - self.give * force, contact_depth })
-    }
-
-    /// The scale of the balance.
-    fn scale(&self) -> f64 {
-        self.prony.moduli.iter().sum::<f64>() * self.greatest
-    }
-
-    fn time_of(&self, place: Place) -> f64 {
-        let [a, b] = [&self.nodes[place.interval], &self.nodes[place.interval + 1]];
-        a.time + place.share * (b.time - a.time)
-    }
-
-    /// Fills the terms of the force at `time` with the contact of a place; returns the depth there.
-    fn contact(&mut self, time: f64, place: Place) -> Result<f64, Stop> {
-        let then = self.time_of(place);
-        let [a, b] = [&self.nodes[place.interval], &self.nodes[place.interval + 1]];
-        let depth = a.depth + place.share * (b.depth - a.depth);
-        let elastic = if place.share == 1.0 { b.elastic } else { self.tip.at(depth).ok_or(Stop::Beyond(depth))? };
-        let weights = parabola(a.depth, a.elastic, depth, elastic);
-        self.part.set(then - a.time, &self.prony.rates);
-        let past = &self.forces[place.interval * self.terms.len()..];
-        for (i, term) in self.terms.iter_mut().enumerate() {
-            let at = self.part.decay[i] * past[i] + self.prony.moduli[i] * dot(weights, self.part.moments[i]);
-            *term = at * (-(time - then) * self.prony.rates[i]).exp();
-        }
-        Ok(depth)
-    }
-
-    /// ∫ E(t − s) dδ from a place on, with the depth at t that balances the spring: it falls as the place gets later.
-    fn unbalance(&mut self, time: f64, z: f64, place: Place) -> Result<f64, Stop> {
+        self.moments.set(time - self.time, !is_separated, &self.prony.rates);
+        // where the tip would be, and the pressure at the edge, if the contact neither grew nor shrank
+        let (unit, stiffness) = (self.stiffness(), self.edge.elastic.stiffness);
         let mut depth = z;
-        if self.give > 0.0 {
-            self.contact(time, place)?;
-            depth -= self.give * self.terms.iter().sum::<f64>();
+        if self.springs() {
+            let excess = z - self.depth - self.give * self.decayed(|term| term.force);
+            depth = self.depth + excess / (T::from(1.0) + self.give * stiffness * unit);
         }
-        let then = self.time_of(place);
-        let [a, b] = [&self.nodes[place.interval], &self.nodes[place.interval + 1]];
-        self.part.set(then - a.time, &self.prony.rates);
-        let (last, terms) = (self.nodes.len() - 1, self.terms.len());
-        let (grown, fallen) = (place.share * (b.depth - a.depth), depth - self.nodes[last].depth);
-        let now = &self.depths[last * terms..];
-        let past = &self.depths[place.interval * terms..];
-        let of_term = |i: usize| {
-            let now = self.moments.decay[i] * now[i] + self.prony.moduli[i] * fallen * self.moments.moments[i][0];
-            let past = self.part.decay[i] * past[i] + self.prony.moduli[i] * grown * self.part.moments[i][0];
-            now - past * (-(time - then) * self.prony.rates[i]).exp()
-        };
-        Ok((0..terms).map(of_term).sum())
-    }
-}
-
-/// The root of a function that falls between two values, by the Illinois rule; the end that is nearer to a root outside.
-fn root(
-    [mut low, mut high]: [f64; 2],
-    tolerance: f64,
-    mut value: impl FnMut(f64) -> Result<f64, Stop>,
-) -> Result<f64, Stop> {
-    let (mut below, mut above) = (value(low)?, value(high)?);
-    if below <= 0.0 || above >= 0.0 {
-        return Ok(if below <= 0.0 { low } else { high });
-    }
-    let (mut last_side, mut last) = (None, f64::NAN);
-    for _ in 0..MAX_ITERATIONS {
-        let at = low + (high - low) * (below / (below - above));
-        let here = value(at)?;
-        if here == 0.0 || (at - last).abs() <= tolerance || high - low <= tolerance {
-            return Ok(at);
-        }
-        last = at;
-        let side = here > 0.0;
-        let share = if last_side == Some(side) { 0.5 } else { 1.0 };
-        if side {
-            (low, below, above) = (at, here, above * share);
+        let pressure = (self.decayed(|term| term.edge) + unit * (depth - self.depth)).value();
+        let scale: f64 = self.prony.moduli.iter().map(|modulus| modulus.value().abs()).sum::<f64>() * self.greatest;
+        if pressure > 0.0 {
+            self.grow(sample, time, z)?;
+        } else if pressure >= -HELD * scale {
+            self.hold(depth);
         } else {
-            (high, above, below) = (at, here, below * share);
+            self.shrink(sample, time, z)?;
         }
-        last_side = Some(side);
+        (self.time, self.drive) = (time, z);
+        self.greatest = self.greatest.max(self.depth.value());
+        Ok(())
     }
-    Err(Stop::NoRoot)
-}
 
-/// Coefficients of ξ⁰, ξ¹, ξ² of df/dξ over an interval: a parabola with the ends and the mean of df/dδ.
-fn parabola(from: f64, start: Elastic, to: f64, end: Elastic) -> [f64; 3] {
-    let (rise, growth) = (to - from, end.force - start.force);
-    let [a, b] = [start.stiffness * rise, end.stiffness * rise];
-    [a, 6.0 * growth - 4.0 * a - 2.0 * b, 3.0 * (a + b) - 6.0 * growth]
-}
+    /// Whether the tip touches the surface before a sample: then the time of the touch is the present.
+    fn touches(&mut self, sample: usize, time: T, z: T) -> bool {
+        let [before, after] = self.columns.next(sample);
+        if z.value() <= after.value() {
+            return false;
+        }
+        let (zero, one) = (T::from(0.0), T::from(1.0));
+        // at the first sample suddenly
+        let mut share = if sample == 0 { one } else { (before - self.drive) / (z - self.drive - after + before) };
+        if sample > 0 && !(0.0..=1.0).contains(&share.value()) {
+            share = zero;
+        }
+        self.time = self.time + share * (time - self.time);
+        self.drive = if sample == 0 { zero } else { self.drive + share * (z - self.drive) };
+        self.depth = before + share * (after - before);
+        let elastic: Elastic<T> = self.tip.first();
+        for (i, term) in self.terms.iter_mut().enumerate() {
+            let edge = self.columns.state(i, share);
+            *term = Term { tip: edge, force: elastic.stiffness * edge, edge };
+        }
+        self.columns.pop();
+        self.push(self.time, zero, elastic);
+        true
+    }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    /// The present, where the contact has grown to an edge, becomes a node.
+    fn push(&mut self, time: T, extent: T, elastic: Elastic<T>) {
+        let fresh = self.terms.iter().all(|term| term.edge.value() == 0.0);
+        self.edge = Edge { node: self.nodes.len(), share: T::from(0.0), extent, elastic };
+        self.nodes.push(Node { time, depth: self.depth, extent, elastic, fresh });
+        self.past.extend_from_slice(&self.terms);
+        self.is_node = true;
+    }
+
+    /// The tip moves to a depth at which the contact neither grows nor shrinks.
+    fn hold(&mut self, depth: T) {
+        let rise = depth - self.depth;
+        for (i, term) in self.terms.iter_mut().enumerate() {
+            let (decay, added) = (self.moments.decay[i], self.prony.moduli[i] * rise * self.moments.moments[i][0]);
+            *term = Term {
+                tip: decay * term.tip + added,
+                force: decay * term.force + self.edge.elastic.stiffness * added,
+                edge: decay * term.edge + added,
+            };
+        }
+        self.depth = depth;
+        self.is_node = false;
+    }
+
+    /// The contact grows until a sample: over one free column after the other, and then over columns that have not touched.
+    fn grow(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
+        self.settle()?;
+        let (zero, one) = (T::from(0.0), T::from(1.0));
+        let (from, length) = (self.time, time - self.time);
+        // share of the interval that has passed
+        let mut passed = zero;
+        loop {
+            let next = self.columns.next_extent();
+            let [before, after] = self.columns.next(sample);
+            let before = before + passed * (after - before);
+            // where the column at the edge would be, had it been free
+            let unit = self.stiffness();
+            let released = self.depth - self.decayed(|term| term.edge) / unit;
+            let start = (self.edge.extent, self.edge.elastic);
+            let width = next.map(|next| (next - start.0, after - released));
+            let mut sums = [[zero; 3]; 4];
+            for (i, term) in self.terms.iter().enumerate() {
+                let (modulus, moments) = (self.prony.moduli[i], self.moments.moments[i]);
+                let free = self.moments.decay[i] * term.edge + modulus * moments[0] * (released - self.depth);
+                let reached = if next.is_some() { self.columns.state(i, one) } else { zero };
+                for (sum, factor) in sums.iter_mut().zip([modulus, term.edge, free - term.edge, reached - free]) {
+                    (0..3).for_each(|k| sum[k] += factor * moments[k]);
+                }
+            }
+            let past = self.decayed(|term| term.force);
+            let is_fresh = self.nodes[self.nodes.len() - 1].fresh && next.is_none();
+            let (tip, depth_before) = (self.tip, self.depth);
+            // the share of the way to the next column, the edge, and the growth of a contact that ends with the tip at a depth
+            let at = |depth: T| {
+                let (share, extent) = match width {
+                    Some((width, travel)) if travel.value() > 0.0 => {
+                        let share = (depth - released) / travel;
+                        (share, start.0 + share * width)
+                    }
+                    Some((width, _)) => (one, start.0 + width),
+                    None => (zero, start.0 + depth - released),
+                };
+                let elastic = tip.at(extent).ok_or(Stop::Beyond(extent.value()))?;
+                let growth = Growth::new(start, (extent, elastic), depth - depth_before, is_fresh);
+                Ok((share, extent, elastic, growth))
+            };
+            let give = self.give;
+            let excess = |depth: T| {
+                let (share, .., growth) = at(depth)?;
+                let change = [0, 1, 2].map(|k| sums[2][k] + share * sums[3][k]);
+                Ok(z - depth - give * (past + growth.force(sums[0], sums[1], change)))
+            };
+            if let Some(extent) = next {
+                let left = if self.springs() { excess(after)? } else { z - after };
+                if left.value() > 0.0 {
+                    // the column is reached within the interval: its gap is linear in time
+                    let instant = self.prony.moduli.iter().fold(zero, |sum, &modulus| sum + modulus);
+                    let gap = (self.depth - before) * (one + give * self.edge.elastic.stiffness * instant);
+                    let share = if gap.value() < 0.0 { gap / (gap - left) } else { zero };
+                    let elastic = tip.at(extent).ok_or(Stop::Beyond(extent.value()))?;
+                    let depth = before + share * (after - before);
+                    let growth = Growth::new(start, (extent, elastic), depth - self.depth, false);
+                    let all = passed + share * (one - passed);
+                    self.part.set(share * (one - passed) * length, false, &self.prony.rates);
+                    self.append(from + all * length, depth, (extent, elastic), growth, |columns, i, _| {
+                        columns.state(i, all)
+                    });
+                    self.columns.pop();
+                    passed = all;
+                    self.moments.set((one - passed) * length, false, &self.prony.rates);
+                    continue;
+                }
+            }
+            let depth = if self.springs() {
+                let deepest = z.value().max(released.value());
+                let limit = tip.last_depth() + (released - start.0).value();
+                let end = if width.is_some() {
+                    after
+                } else if deepest > limit {
+                    T::from(limit)
+                } else {
+                    z
+                };
+                // the spring pushes deeper than the states reach
+                if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
+                    return Err(Stop::Beyond(z.value()));
+                }
+                self.roots.solve([released, end], CONVERGED[0] * deepest.abs(), excess)?
+            } else {
+                z
+            };
+            let (share, extent, elastic, growth) = at(depth)?;
+            std::mem::swap(&mut self.part, &mut self.moments);
+            let to_next = next.is_some();
+            self.append(time, depth, (extent, elastic), growth, |columns, i, free| {
+                if to_next { free + share * (columns.state(i, one) - free) } else { zero }
+            });
+            std::mem::swap(&mut self.part, &mut self.moments);
+            return Ok(());
+        }
+    }
+
+    /// Ends an interval of growth whose moments are those of a part. `edge` is the pressure of a term at the edge, by the columns, the term and
+    /// the pressure of the last edge, had it been free.
+    fn append(
+        &mut self,
+        time: T,
+        depth: T,
+        (extent, elastic): (T, Elastic<T>),
+        growth: Growth<T>,
+        edge: impl Fn(&Columns<'a, T>, usize, T) -> T,
+    ) {
+        let zero = T::from(0.0);
+        let (mut unit, mut pressure) = (zero, zero);
+        for (i, term) in self.terms.iter().enumerate() {
+            unit += self.prony.moduli[i] * self.part.moments[i][0];
+            pressure += self.part.decay[i] * term.edge;
+        }
+        for i in 0..self.terms.len() {
+            let (modulus, decay, moments) = (self.prony.moduli[i], self.part.decay[i], self.part.moments[i]);
+            let term = self.terms[i];
+            let free = if growth.fresh { zero } else { decay * term.edge - modulus * moments[0] * pressure / unit };
+            self.terms[i] = growth.after(term, modulus, decay, moments, edge(&self.columns, i, free));
+        }
+        (self.time, self.depth) = (time, depth);
+        self.push(time, extent, elastic);
+    }
+
+    /// Makes the present a node: cuts the interval in which the column at the edge touched, and adds one in which nothing did.
+    fn settle(&mut self) -> Result<(), Stop> {
+        if self.is_node {
+            return Ok(());
+        }
+        let edge = self.edge;
+        let at = self.look(edge.node, edge.share)?;
+        self.nodes.truncate(edge.node + 1);
+        self.past.truncate(self.nodes.len() * self.terms.len());
+        if edge.share.value() > 0.0 {
+            let fresh = self.then.iter().all(|term| term.edge.value() == 0.0);
+            self.nodes.push(Node { fresh, ..at });
+            self.past.extend_from_slice(&self.then);
+        }
+        self.push(self.time, edge.extent, edge.elastic);
+        Ok(())
+    }
 }

@@ -1,49 +1,62 @@
 //! Exact integrals of exponentials over one interval.
 
+use crate::forward::real::Real;
+
 /// A sum of exponentials over intervals of one length: what they decay by, and their moments.
 ///
 /// The moments of ξ^k, k = 0, 1, 2, under exp(−a (1 − ξ)) over 0 < ξ < 1 with a = rate × length.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Moments {
-    length: f64,
-    pub(super) decay: Vec<f64>,
-    pub(super) moments: Vec<[f64; 3]>,
+pub(super) struct Moments<T> {
+    length: T,
+    pub(super) decay: Vec<T>,
+    pub(super) moments: Vec<[T; 3]>,
 }
 
 /// Intervals whose lengths differ by less than this fraction are equal: equal samples have times that are rounded.
 const EQUAL: f64 = 1e-10;
 
-impl Moments {
-    /// Computes the moments for another length of the interval.
-    pub(super) fn set(&mut self, length: f64, rates: &[f64]) {
-        if (length - self.length).abs() <= EQUAL * length && self.decay.len() == rates.len() {
+impl<T: Real> Moments<T> {
+    /// Computes the moments for another length of the interval. The length of an interval between samples is `fixed`: it depends
+    /// on no parameter.
+    pub(super) fn set(&mut self, length: T, fixed: bool, rates: &[T]) {
+        let equal = (length.value() - self.length.value()).abs() <= EQUAL * length.value();
+        if fixed && equal && self.decay.len() == rates.len() {
             return;
         }
-        self.length = length;
+        // an interval whose length depends on parameters is never reused
+        self.length = if fixed { length } else { T::from(f64::NAN) };
         self.decay.clear();
         self.moments.clear();
-        for rate in rates {
-            self.decay.push((-rate * length).exp());
-            self.moments.push(moments(rate * length));
+        for &rate in rates {
+            let a = rate * length;
+            let of_a = moments(a.value());
+            self.decay.push((-a).exp());
+            // dMₖ/da = Mₖ₊₁ − Mₖ
+            self.moments.push([0, 1, 2].map(|k| a.mapped(of_a[k], of_a[k + 1] - of_a[k])));
         }
     }
 }
 
-/// Moments of ξ⁰, ξ¹, ξ² under exp(−a (1 − ξ)).
-fn moments(a: f64) -> [f64; 3] {
+/// Moments of ξ⁰ … ξ³ under exp(−a (1 − ξ)).
+fn moments(a: f64) -> [f64; 4] {
     if a > 1.0 {
         let zeroth = -(-a).exp_m1() / a;
         let first = (1.0 - zeroth) / a;
-        return [zeroth, first, (1.0 - 2.0 * first) / a];
+        let second = (1.0 - 2.0 * first) / a;
+        return [zeroth, first, second, (1.0 - 3.0 * second) / a];
     }
-    // M₂ = 2 Σ (−a)^j/(j + 3)!, and downward from there, where the recursion loses no digits
-    let (mut second, mut term) = (0.0, 1.0 / 3.0);
+    // M₃ = 6 Σ (−a)^j/(j + 4)!, and downward from there, where the recursion loses no digits
+    let (mut third, mut term) = (0.0, 0.25);
     for j in 0..16 {
-        second += term;
-        term *= -a / f64::from(j + 4);
+        third += term;
+        term *= -a / f64::from(j + 5);
+        if term.abs() < 1e-18 {
+            break;
+        }
     }
+    let second = (1.0 - a * third) / 3.0;
     let first = 0.5 * (1.0 - a * second);
-    [1.0 - a * first, first, second]
+    [1.0 - a * first, first, second, third]
 }
 
 #[cfg(test)]

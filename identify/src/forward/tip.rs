@@ -4,18 +4,29 @@ use std::sync::Arc;
 
 use viscocontact::states::{ElasticState, ElasticStates};
 
+use crate::forward::real::Real;
+
 /// Relative distance of the levels from which a slope is taken.
 const NEAR: f64 = 1e-4;
+/// Relative distance of the levels from which the growth of a slope is taken.
+const APART: f64 = 2e-3;
 /// Least depth, relative to the greatest: there the stiffness is taken of a tip that just touches.
 const TOUCH: f64 = 1e-6;
 
 /// Elastic contact of unit modulus at one depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Elastic {
+pub(super) struct Elastic<T> {
     /// Force over modulus \[m²\].
-    pub(super) force: f64,
+    pub(super) force: T,
     /// Growth of the force with the depth \[m\].
-    pub(super) stiffness: f64,
+    pub(super) stiffness: T,
+}
+
+impl<T: Real> Elastic<T> {
+    /// From force, stiffness and growth of the stiffness at a depth.
+    fn of(depth: T, [force, stiffness, growth]: [f64; 3]) -> Elastic<T> {
+        Elastic { force: depth.mapped(force, stiffness), stiffness: depth.mapped(stiffness, growth) }
+    }
 }
 
 /// The elastic states of a tip by depth.
@@ -48,39 +59,45 @@ impl Tip {
         Tip { states: Arc::clone(states), rest, last_depth: states.approach(last) - rest, power }
     }
 
-    /// Approach at first touch \[m\], from which depths are measured.
-    pub(super) fn rest(&self) -> f64 {
-        self.rest
-    }
-
     /// Depth of the last state \[m\].
     pub(super) fn last_depth(&self) -> f64 {
         self.last_depth
     }
 
     /// The elastic contact at a depth; `None` beyond the last state.
-    pub(super) fn at(&self, depth: f64) -> Option<Elastic> {
-        if depth <= 0.0 {
+    pub(super) fn at<T: Real>(&self, depth: T) -> Option<Elastic<T>> {
+        let at = depth.value();
+        if at <= 0.0 {
             return Some(self.first());
         }
-        if let Some([force, at, exponent]) = self.power.filter(|_| depth <= self.last_depth) {
-            let force = force * (depth / at).powf(exponent);
-            return Some(Elastic { force, stiffness: exponent * force / depth });
+        if let Some([force, unit, exponent]) = self.power.filter(|_| at <= self.last_depth) {
+            let force = force * (at / unit).powf(exponent);
+            let stiffness = exponent * force / at;
+            return Some(Elastic::of(depth, [force, stiffness, (exponent - 1.0) * stiffness / at]));
         }
-        let level = self.states.level_at(self.rest + depth.min(self.last_depth));
-        let inside = depth <= self.last_depth * (1.0 + NEAR) && level.is_finite();
-        inside.then(|| Elastic { force: level, stiffness: self.stiffness(level) })
+        let level = self.states.level_at(self.rest + at.min(self.last_depth));
+        let inside = at <= self.last_depth * (1.0 + NEAR) && level.is_finite();
+        let stiffness = self.stiffness(level);
+        // only derivatives need it
+        let growth = if T::DERIVES { self.growth(level) * stiffness } else { 0.0 };
+        inside.then(|| Elastic::of(depth, [level, stiffness, growth]))
     }
 
     /// The elastic contact at first touch: only a flat punch is stiff there. The stiffness is a secant, since a rough or layered tip rests
     /// at an approach that hides the digits of smaller depths.
-    pub(super) fn first(&self) -> Elastic {
+    pub(super) fn first<T: Real>(&self) -> Elastic<T> {
         let depth = TOUCH * self.last_depth;
         let stiffness = match self.power {
             Some([.., exponent]) if exponent > 1.0 + CLOSED => 0.0,
             _ => self.states.level_at(self.rest + depth) / depth,
         };
-        Elastic { force: 0.0, stiffness }
+        Elastic { force: T::from(0.0), stiffness: T::from(stiffness) }
+    }
+
+    /// dS/dl at a level.
+    fn growth(&self, level: f64) -> f64 {
+        let [low, high] = [1.0 - APART, 1.0 + APART].map(|factor| self.stiffness(level * factor));
+        (high - low) / (2.0 * APART * level)
     }
 
     /// dl/dδ between two levels nearby: the derivative of the curve that the states interpolate.

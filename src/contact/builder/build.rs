@@ -19,7 +19,7 @@ use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
-use crate::rheology::Material;
+use crate::rheology::{Elastic, Material};
 
 impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
@@ -38,7 +38,7 @@ impl Builder {
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
     /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     ///
-    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`]); a scene that
+    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`](crate::parallel::RanksError::Failed)); a scene that
     /// cannot be shared out is refused ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
@@ -224,6 +224,40 @@ impl Builder {
             zone_is_resolved(law, &material, &self.grid)?;
         }
         Ok(Parts { settings: self.settings, material, kernel, history, attracts })
+    }
+}
+
+impl ViscoelasticContact {
+    /// The undisturbed contact of an elastic body of unit compliance with the same indenter, solved to `tolerance`.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub(crate) fn of_unit_compliance(&self, tolerance: f64) -> Result<ViscoelasticContact> {
+        let (scene, material) = (&*self.scene, Material::incompressible(Elastic::new(0.25)?));
+        let settings = Settings { tolerance, time_rule: TimeRule::Exponential, ..scene.settings };
+        let history = history_by(&settings, &material, scene.kernel.periodic_axes())?;
+        let indenter = &self.computation.state.indenter;
+        let folded = if settings.symmetry { indenter.even_axes(&scene.grid) } else { [false; 2] };
+        let region = Region::whole(&scene.grid, folded);
+        let parts = Parts { settings, material, kernel: Arc::clone(&scene.kernel), history, attracts: false };
+        parts.footprint(1).check(&region, 0)?;
+        let Parts { settings, material, kernel, history, .. } = parts;
+        let unit = Scene {
+            grid: scene.grid.clone(),
+            limits: Limits::of(&material),
+            #[cfg(feature = "checkpoint")]
+            built: Built::default(),
+            temperature: None,
+            attraction: None,
+            softening: 0.0,
+            steady: false,
+            bodies: 1,
+            kernel,
+            material,
+            settings,
+        };
+        let computation = Computation::new(&unit, State::at_rest(Arc::clone(indenter), region, &history, false));
+        Ok(ViscoelasticContact::new(unit, computation, self.missed))
     }
 }
 

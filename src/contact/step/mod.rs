@@ -25,7 +25,7 @@ pub(in crate::contact) mod request;
 pub(in crate::contact) mod spring;
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::builder::build::cells_in_zone;
 use crate::contact::window::placement::{outgrown, region_for};
@@ -74,13 +74,29 @@ impl ViscoelasticContact {
     /// cells that the contact reaches ([`Error::OutOfMemory`]), or there is not one load per body. The contact is then
     /// unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last step.
     pub fn step<'a>(&mut self, dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
-        let loads = loads.into();
+        self.next(None, dt, loads.into().as_slice())
+    }
+
+    /// [`ViscoelasticContact::step`], ended within an iteration where another thread sets `cancelled`.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step`], and [`Error::Cancelled`].
+    pub fn step_unless<'a>(
+        &mut self,
+        cancelled: &AtomicBool,
+        dt: f64,
+        loads: impl Into<Loads<'a>>,
+    ) -> Result<StepReport> {
+        self.next(Some(cancelled), dt, loads.into().as_slice())
+    }
+
+    fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
         rows.together(|| {
-            let requested = self.request_next(dt, loads.as_slice());
+            let requested = self.request_next(dt, loads);
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
             let step = rows.agree(requested)?;
-            self.take(step)
+            self.take(Step { cancelled, ..step })
         })
     }
 

@@ -1,0 +1,96 @@
+//! Deviations of estimates.
+
+use faer::Mat;
+
+use crate::bounds::inverse_gram;
+use crate::error::Result;
+use crate::least_squares::{Minimum, square};
+use crate::model::Scale;
+use crate::parameters::Parameter;
+use crate::problem::Problem;
+
+/// A parameter is at a limit if its coordinate would have to change by so much for an effect of one standard deviation: by a factor of e¹⁰.
+const NO_EFFECT: f64 = 10.0;
+/// Relative information on a combination of parameters that is rounding.
+const SINGULAR: f64 = 1e-13;
+
+/// The standard deviation that gives, with the weighted columns, the deviations of an estimate with the weights w = 1 − u² of residuals r
+/// (P. J. Huber, *Robust Statistics*, 1981): √(Σψ²/freedom · mean w²)/mean ψ′, with ψ = w² r.
+pub(super) fn robust_deviation(problem: &Problem<'_>, weighted: &[f64], freedom: f64) -> f64 {
+    let weights = problem.parts.iter().flat_map(|part| &part.outliers);
+    let (mut square, mut slope, mut mean, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for (&weight, &residual) in weights.zip(weighted) {
+        square += (weight * residual).powi(2);
+        slope += weight * (5.0 * weight - 4.0);
+        mean += weight * weight;
+        count += 1.0;
+    }
+    (square / freedom * mean * count).sqrt() / slope
+}
+
+/// (JᵀJ)⁻¹ without the coordinates at a limit, and which ones are.
+pub(super) fn inverse(free: &[Parameter], jacobian: &Mat<f64>, sigma: f64) -> Result<(Mat<f64>, Vec<bool>)> {
+    let is_at_limit = |column: usize| {
+        let norm = jacobian.col(column).norm_l2();
+        free[column].scale != Scale::Linear && sigma > NO_EFFECT * norm
+    };
+    let limits: Vec<bool> = (0..free.len()).map(is_at_limit).collect();
+    let rest: Vec<usize> = (0..free.len()).filter(|&column| !limits[column]).collect();
+    let mut inverse = Mat::zeros(free.len(), free.len());
+    if !rest.is_empty() {
+        let part = Mat::from_fn(jacobian.nrows(), rest.len(), |row, column| jacobian[(row, rest[column])]);
+        let part = inverse_gram(&part, SINGULAR)?;
+        for (i, &row) in rest.iter().enumerate() {
+            rest.iter().enumerate().for_each(|(j, &column)| inverse[(row, column)] = part[(i, j)]);
+        }
+    }
+    Ok((inverse, limits))
+}
+
+/// What the limit of a parameter is.
+pub(super) fn limit(name: &str, value: f64) -> &'static str {
+    match name {
+        "E0" => "E0 = Einf: no relaxation",
+        "Einf" => "Einf = 0: no equilibrium",
+        "alpha" if value < 0.5 => "alpha = 0: no relaxation",
+        "alpha" => "alpha = 1: one relaxation time",
+        "stiffness" => "a rigid spring",
+        name if name.starts_with("tau") => "a time without effect, or beyond the data",
+        _ => "0",
+    }
+}
+
+/// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ: correlations of neighbours are included with falling weights (W. K. Newey & K. D. West,
+/// 1987), over as many lags as is best for autoregressive residuals (D. W. K. Andrews, 1991). Each residual is divided by 1 less its leverage (J. G.
+/// MacKinnon & H. White, 1985).
+pub(super) fn sandwich(minimum: &Minimum, inverse: &Mat<f64>, lengths: &[usize]) -> Mat<f64> {
+    let count = inverse.nrows();
+    let mut middle = Mat::<f64>::zeros(count, count);
+    let mut first = 0;
+    for &len in lengths {
+        let residuals = &minimum.residuals[first..first + len];
+        let row = |k: usize| minimum.jacobian.row(first + k);
+        let factor = |k: usize| {
+            let leverage = row(k) * inverse * row(k).transpose();
+            residuals[k] / (1.0 - leverage).max(0.1)
+        };
+        let factors: Vec<f64> = (0..len).map(factor).collect();
+        let score = |k: usize, j: usize| minimum.jacobian[(first + k, j)] * factors[k];
+        let product: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();
+        let rho = if square(residuals) > 0.0 { product / square(residuals) } else { 0.0 };
+        let lags = 1.1447 * (4.0 * rho * rho / (1.0 - rho * rho).powi(2) * len as f64).cbrt();
+        let lags = (lags.ceil() as usize).min(len / 3);
+        for lag in 0..=lags {
+            let weight = (1.0 - lag as f64 / (lags + 1) as f64) * if lag == 0 { 0.5 } else { 1.0 };
+            for i in 0..count {
+                for j in 0..count {
+                    let sum: f64 = (lag..len).map(|k| score(k, i) * score(k - lag, j)).sum();
+                    middle[(i, j)] += weight * sum;
+                    middle[(j, i)] += weight * sum;
+                }
+            }
+        }
+        first += len;
+    }
+    inverse * &middle * inverse
+}

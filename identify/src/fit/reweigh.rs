@@ -1,0 +1,139 @@
+//! The noise of each curve, from the residuals of a fit.
+
+use faer::linalg::solvers::Solve;
+use faer::{Col, Mat, Side};
+use viscocontact::numeric::least;
+
+use crate::bounds::inverse_gram;
+use crate::error::Result;
+use crate::identification::Identification;
+use crate::least_squares::{Minimum, square};
+use crate::noise::{CORRELATIONS, Whitening};
+use crate::problem::Problem;
+
+/// Correlations that are tried first.
+const TRIED: usize = 40;
+/// Change of a weight or a correlation at which the noise is found.
+const FOUND: f64 = 1e-3;
+/// Residuals beyond so many standard deviations have no weight (Tukey's biweight, 95 % as efficient as least squares under normal noise).
+const REJECTED: f64 = 4.685;
+/// Median of |x| of a standard normal variable.
+const MEDIAN: f64 = 0.6745;
+
+impl Identification {
+    /// Whether something of the noise is found from the residuals of a fit, and changes the fit.
+    pub(super) fn finds_noise(&self, problem: &Problem<'_>) -> bool {
+        self.fits_correlation() || self.is_robust() || self.finds_deviations(problem)
+    }
+
+    /// Whether each curve has a standard deviation of its own.
+    fn finds_deviations(&self, problem: &Problem<'_>) -> bool {
+        self.sigma().is_none() && problem.parts.len() > 1
+    }
+
+    /// Sets correlation and weights of each curve by the residuals at a minimum; whether they were as good as found.
+    pub(super) fn reweigh(&self, problem: &mut Problem<'_>, minimum: &Minimum) -> Result<bool> {
+        let mut bare = problem.clone();
+        for part in &mut bare.parts {
+            part.weights.fill(1.0);
+            if self.fits_correlation() {
+                part.whitening = Whitening::Autoregressive(0.0);
+            }
+        }
+        let (residuals, jacobian) = (bare.residuals(&minimum.coordinates)?, bare.jacobian(&minimum.coordinates)?);
+        let inverse =
+            inverse_gram(&minimum.jacobian, 1e-13).unwrap_or_else(|_| Mat::zeros(jacobian.ncols(), jacobian.ncols()));
+        let (mut first, mut is_found) = (0, true);
+        let mut deviations = Vec::new();
+        for part in &mut problem.parts {
+            let rows = first..first + part.len();
+            first = rows.end;
+            let mut own = residuals[rows.clone()].to_vec();
+            if self.fits_correlation() {
+                let phi = correlation(&own, &jacobian, rows.start);
+                let before = part.whitening.correlation().unwrap_or_default();
+                is_found &= (phi - before).abs() < FOUND;
+                part.whitening = Whitening::Autoregressive(phi);
+                part.whitening.apply(&mut own);
+            }
+            let leverage = |row: usize| {
+                let slopes = minimum.jacobian.row(row);
+                (slopes * &inverse * slopes.transpose()).max(0.0)
+            };
+            // of all parameters, the share that this curve determines
+            let fitted: f64 = rows.clone().map(leverage).sum();
+            let deviation = if self.is_robust() {
+                let mut sizes: Vec<f64> = own.iter().map(|r| r.abs()).collect();
+                sizes.sort_by(f64::total_cmp);
+                sizes[sizes.len() / 2] / MEDIAN
+            } else {
+                (square(&own) / (own.len() as f64 - fitted).max(1.0)).sqrt()
+            };
+            deviations.push(deviation);
+            let weight = |r: f64| {
+                let u = r / (REJECTED * deviation);
+                if self.is_robust() && deviation > 0.0 { (1.0 - u * u).max(0.0) } else { 1.0 }
+            };
+            let weights: Vec<f64> = own.iter().map(|&r| weight(r)).collect();
+            if self.is_robust() {
+                let change = weights.iter().zip(&part.outliers).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+                is_found &= change < FOUND;
+            }
+            part.outliers = weights;
+        }
+        // relative to their geometric mean
+        let mean = deviations.iter().map(|s| s.ln()).sum::<f64>() / deviations.len() as f64;
+        for (part, deviation) in problem.parts.iter_mut().zip(&deviations) {
+            let scale = if self.finds_deviations_of(deviations.len()) && mean.is_finite() {
+                mean.exp() / deviation
+            } else {
+                1.0
+            };
+            is_found &= (scale / part.scale).ln().abs() < FOUND;
+            part.scale = scale;
+            part.weights = part.outliers.iter().map(|weight| scale * weight).collect();
+        }
+        Ok(is_found)
+    }
+
+    fn finds_deviations_of(&self, curves: usize) -> bool {
+        self.sigma().is_none() && curves > 1
+    }
+}
+
+/// The autoregressive coefficient of the greatest restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971): the residuals
+/// are those of the problem that is linearised by the rows of the Jacobian from `first` on.
+fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
+    let points = residuals.len();
+    let columns: Vec<Vec<f64>> = (0..jacobian.ncols())
+        .map(|column| (0..points).map(|k| jacobian[(first + k, column)]).collect::<Vec<f64>>())
+        .filter(|column| square(column) > 0.0)
+        .map(|column| {
+            let norm = square(&column).sqrt();
+            column.into_iter().map(|slope| slope / norm).collect()
+        })
+        .collect();
+    let count = columns.len();
+    // −2 ln of the restricted likelihood
+    let unlikelihood = |phi: f64| {
+        let whitening = Whitening::Autoregressive(phi);
+        let white = |column: &[f64]| {
+            let mut column = column.to_vec();
+            whitening.apply(&mut column);
+            column
+        };
+        let (residual, columns) = (white(residuals), columns.iter().map(|c| white(c)).collect::<Vec<_>>());
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let gram = Mat::from_fn(count, count, |i, j| dot(&columns[i], &columns[j]) + if i == j { 1e-12 } else { 0.0 });
+        let Ok(factor) = gram.llt(Side::Lower) else { return f64::INFINITY };
+        let right = Col::from_fn(count, |i| dot(&columns[i], &residual));
+        let solved = factor.solve(&right);
+        let sum = square(&residual) - (0..count).map(|i| solved[i] * right[i]).sum::<f64>();
+        let determinant: f64 = (0..count).map(|i| 2.0 * factor.L()[(i, i)].ln()).sum();
+        (points - count) as f64 * sum.max(f64::MIN_POSITIVE).ln() - whitening.log_weight() + determinant
+    };
+    if points <= count || square(residuals) == 0.0 {
+        return 0.0;
+    }
+    least(CORRELATIONS[0], CORRELATIONS[1], TRIED, unlikelihood)
+}

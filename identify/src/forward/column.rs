@@ -1,0 +1,95 @@
+//! Columns that have left the tip.
+
+use crate::forward::moments::Moments;
+use crate::forward::real::Real;
+use crate::series::Prony;
+
+/// A column without pressure.
+#[derive(Clone, Copy, Debug)]
+struct Column<T> {
+    extent: T,
+    /// Depth of the tip at which it touches again \[m\].
+    surface: T,
+    /// Sample of this state.
+    sample: usize,
+}
+
+/// Columns that have left the tip and recover without pressure: those that touch again first are the last ones. Between two of them the
+/// state is linear.
+#[derive(Clone, Debug)]
+pub(super) struct Columns<'a, T> {
+    prony: &'a Prony<T>,
+    times: &'a [f64],
+    columns: Vec<Column<T>>,
+    /// Parts of the pressure, by column and term: their sum is zero.
+    states: Vec<T>,
+    moments: Moments<T>,
+    /// The state of the last column at the next sample.
+    after: Vec<T>,
+}
+
+impl<'a, T: Real> Columns<'a, T> {
+    pub(super) fn new(prony: &'a Prony<T>, times: &'a [f64]) -> Self {
+        let after = vec![T::from(0.0); prony.moduli.len()];
+        Columns { prony, times, columns: Vec::new(), states: Vec::new(), moments: Moments::default(), after }
+    }
+
+    /// A column leaves the tip at a sample.
+    pub(super) fn push(&mut self, sample: usize, extent: T, surface: T, state: impl Iterator<Item = T>) {
+        self.columns.push(Column { extent, surface, sample });
+        self.states.extend(state);
+    }
+
+    pub(super) fn pop(&mut self) {
+        if self.columns.pop().is_some() {
+            self.states.truncate(self.states.len() - self.after.len());
+        }
+    }
+
+    /// The column that touches next; `None` where no further column has touched before.
+    pub(super) fn next_extent(&self) -> Option<T> {
+        Some(self.columns.last()?.extent)
+    }
+
+    /// Surface of the column that touches next, at the sample before and at a sample; the undisturbed surface if there is none.
+    pub(super) fn next(&mut self, sample: usize) -> [T; 2] {
+        let Some(last) = self.columns.last_mut() else { return [T::from(0.0); 2] };
+        let first = self.states.len() - self.after.len();
+        let state = &mut self.states[first..];
+        self.after.copy_from_slice(state);
+        let mut surface = last.surface;
+        while last.sample < sample {
+            (last.surface, last.sample) = (surface, last.sample + 1);
+            state.copy_from_slice(&self.after);
+            let length = self.times[last.sample] - self.times[last.sample - 1];
+            self.moments.set(T::from(length), true, &self.prony.rates);
+            surface += recover(&mut self.after, self.prony, &self.moments);
+        }
+        // the state before a sample is kept
+        last.sample = sample.saturating_sub(1);
+        [last.surface, surface]
+    }
+
+    /// Part of a term of the pressure of the column that touches next, at a share of the interval of [`Columns::next`].
+    pub(super) fn state(&self, term: usize, share: T) -> T {
+        if self.columns.is_empty() {
+            return T::from(0.0);
+        }
+        let before = self.states[self.states.len() - self.after.len() + term];
+        before + share * (self.after[term] - before)
+    }
+}
+
+/// Advances a state by an interval without pressure; returns the motion of the surface.
+fn recover<T: Real>(state: &mut [T], prony: &Prony<T>, moments: &Moments<T>) -> T {
+    let (mut pressure, mut unit) = (T::from(0.0), T::from(0.0));
+    for (i, state) in state.iter().enumerate() {
+        pressure += moments.decay[i] * *state;
+        unit += prony.moduli[i] * moments.moments[i][0];
+    }
+    let rise = -pressure / unit;
+    for (i, state) in state.iter_mut().enumerate() {
+        *state = moments.decay[i] * *state + prony.moduli[i] * rise * moments.moments[i][0];
+    }
+    rise
+}

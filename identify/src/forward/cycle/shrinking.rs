@@ -1,0 +1,104 @@
+//! Steps in which the contact shrinks: columns leave the tip where their pressure falls to zero.
+
+use super::{CONVERGED, Cycle, Edge, Node};
+use crate::forward::Stop;
+use crate::forward::growth::{Growth, Term};
+use crate::forward::real::Real;
+
+impl<T: Real> Cycle<'_, T> {
+    /// The contact when the column touched that is at a share of the interval after a node; `then` has the terms.
+    pub(super) fn look(&mut self, node: usize, share: T) -> Result<Node<T>, Stop> {
+        let count = self.terms.len();
+        let past = &self.past[node * count..];
+        let a = self.nodes[node];
+        if share.value() == 0.0 || share.value() == 1.0 && self.nodes.len() > node + 1 {
+            let next = share.value() as usize;
+            self.then.copy_from_slice(&past[next * count..][..count]);
+            return Ok(self.nodes[node + next]);
+        }
+        let b = self.nodes[node + 1];
+        let [length, rise, width] =
+            [b.time - a.time, b.depth - a.depth, b.extent - a.extent].map(|whole| share * whole);
+        let extent = a.extent + width;
+        let elastic = self.tip.at(extent).ok_or(Stop::Beyond(extent.value()))?;
+        let growth = Growth::new((a.extent, a.elastic), (extent, elastic), rise, a.fresh && b.fresh);
+        self.part.set(length, false, &self.prony.rates);
+        for i in 0..count {
+            let (start, end) = (past[i], past[count + i].edge);
+            let edge = start.edge + share * (end - start.edge);
+            let (decay, moments) = (self.part.decay[i], self.part.moments[i]);
+            self.then[i] = growth.after(start, self.prony.moduli[i], decay, moments, edge);
+        }
+        Ok(Node { time: a.time + length, depth: a.depth + rise, extent, elastic, fresh: false })
+    }
+
+    /// The pressure of a column at a sample, times the length that one sample adds to it, if the tip moves so far that the spring is
+    /// balanced with the contact up to this column.
+    fn pressure(&mut self, node: usize, share: T, time: T, z: T) -> Result<[T; 3], Stop> {
+        let at = self.look(node, share)?;
+        let (mut force, mut past) = (T::from(0.0), T::from(0.0));
+        for (term, &rate) in self.then.iter().zip(&self.prony.rates) {
+            let decay = (-(rate * (time - at.time))).exp();
+            past += decay * (term.tip - term.edge);
+            force += decay * (term.force - at.elastic.stiffness * term.edge);
+        }
+        let depth = if self.springs() { z - self.give * force } else { z };
+        let (unit, tip) = (self.stiffness(), self.decayed(|term| term.tip));
+        Ok([unit * (depth - self.depth) + tip - past, depth, (past - tip) / unit])
+    }
+
+    /// The contact shrinks to the column without pressure.
+    pub(super) fn shrink(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
+        let (zero, one) = (T::from(0.0), T::from(1.0));
+        self.columns.push(sample - 1, self.edge.extent, self.depth, self.terms.iter().map(|term| term.edge));
+        let (mut node, mut upper) = (self.edge.node, self.edge.share);
+        loop {
+            if upper.value() > 0.0 && self.pressure(node, zero, time, z)?[0].value() >= 0.0 {
+                break;
+            }
+            if node == 0 {
+                return self.separate(sample, time, z);
+            }
+            (node, upper) = (node - 1, one);
+        }
+        let mut roots = std::mem::take(self.roots);
+        let share = roots.solve([zero, upper], CONVERGED[1], |share| Ok(self.pressure(node, share, time, z)?[0]));
+        *self.roots = roots;
+        let share = share?;
+        let [_, depth, _] = self.pressure(node, share, time, z)?;
+        let at = self.look(node, share)?;
+        let rise = depth - self.depth;
+        for (i, then) in self.then.iter().enumerate() {
+            let decay = (-(self.prony.rates[i] * (time - at.time))).exp();
+            let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
+            let tip = self.moments.decay[i] * self.terms[i].tip + moved;
+            let force = decay * then.force + at.elastic.stiffness * (tip - decay * then.tip);
+            self.terms[i] = Term { tip, force, edge: tip - decay * (then.tip - then.edge) };
+        }
+        self.edge = Edge { node, share, extent: at.extent, elastic: at.elastic };
+        self.depth = depth;
+        self.is_node = false;
+        self.nodes.truncate(node + 2);
+        self.past.truncate(self.nodes.len() * self.terms.len());
+        Ok(())
+    }
+
+    /// The last column leaves the tip. It is free from the sample on, where it would be without pressure.
+    fn separate(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
+        let zero = T::from(0.0);
+        let [.., rise] = self.pressure(0, zero, time, z)?;
+        let at = self.nodes[0];
+        let state = |i: usize| {
+            let (then, decay) = (self.then[i], (-(self.prony.rates[i] * (time - at.time))).exp());
+            let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
+            self.moments.decay[i] * self.terms[i].tip + moved - decay * (then.tip - then.edge)
+        };
+        self.columns.push(sample, zero, self.depth + rise, (0..self.terms.len()).map(state));
+        self.nodes.clear();
+        self.past.clear();
+        self.terms.fill(Term::default());
+        self.depth = z;
+        self.is_node = true;
+        Ok(())
+    }
+}

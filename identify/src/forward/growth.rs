@@ -1,0 +1,67 @@
+//! Terms of the force over an interval in which the contact grows.
+
+use crate::forward::real::Real;
+use crate::forward::tip::Elastic;
+
+/// One term Eᵢ exp(−t/τᵢ) of the series at one time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Term<T> {
+    /// ∫ Eᵢ exp(−(t − s)/τᵢ) dδ of the tip \[Pa m\].
+    pub(super) tip: T,
+    /// Its part of the force of the columns in contact \[N\].
+    pub(crate) force: T,
+    /// Its part of the pressure of the column at the edge \[Pa m\]: the parts of all terms cancel there.
+    pub(super) edge: T,
+}
+
+/// The columns that touch in an interval, one after the other: from the edge of the contact at its start to the edge at its end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Growth<T> {
+    /// Change of the depth of the tip \[m\].
+    rise: T,
+    /// Coefficients of ξ⁰, ξ¹, ξ² of df/dδ at the edge: a parabola with the right ends and the right mean.
+    stiffness: [T; 3],
+    /// Whether no column has touched before, so that none has a past.
+    pub(super) fresh: bool,
+}
+
+/// Extents that differ by less than this fraction have one stiffness.
+const SAME: f64 = 1e-9;
+
+impl<T: Real> Growth<T> {
+    pub(super) fn new(from: (T, Elastic<T>), to: (T, Elastic<T>), rise: T, fresh: bool) -> Growth<T> {
+        let ([a, b], width) = ([from.1.stiffness, to.1.stiffness], to.0 - from.0);
+        let mean = match width.value() > SAME * to.0.value() {
+            true => (to.1.force - from.1.force) / width,
+            false => T::from(0.5) * (a + b),
+        };
+        let six = T::from(6.0) * mean;
+        let stiffness = [a, six - T::from(4.0) * a - T::from(2.0) * b, T::from(3.0) * (a + b) - six];
+        Growth { rise, stiffness, fresh }
+    }
+
+    /// Force of terms whose moments have the sums `modulus` Σ Eᵢ Mₖ, `start` Σ qᵢ Mₖ and `change` Σ Δqᵢ Mₖ, where q is the pressure of a
+    /// column as it touches, linear in ξ from qᵢ to qᵢ + Δqᵢ:
+    /// ∫ dδ/dξ f′ exp(−a (1 − ξ)) dξ + ∫ df′/dξ q(ξ) exp(−a (1 − ξ)) dξ.
+    pub(super) fn force(&self, modulus: [T; 3], start: [T; 3], change: [T; 3]) -> T {
+        let [s0, s1, s2] = self.stiffness;
+        let tip = self.rise * (s0 * modulus[0] + s1 * modulus[1] + s2 * modulus[2]);
+        if self.fresh {
+            return tip;
+        }
+        let twice = s2 + s2;
+        tip + s1 * (start[0] + change[1]) + twice * (start[1] + change[2])
+    }
+
+    /// A term at the end of the interval, where the column at the edge has the pressure `edge`.
+    pub(super) fn after(&self, term: Term<T>, modulus: T, decay: T, moments: [T; 3], edge: T) -> Term<T> {
+        let times = |factor: T| moments.map(|moment| factor * moment);
+        let (tip, zero) = (decay * term.tip + modulus * self.rise * moments[0], T::from(0.0));
+        if self.fresh {
+            let force = decay * term.force + modulus * self.force(moments, [zero; 3], [zero; 3]);
+            return Term { tip, force, edge: zero };
+        }
+        let force = self.force(times(modulus), times(term.edge), times(edge - term.edge));
+        Term { tip, force: decay * term.force + force, edge }
+    }
+}

@@ -1,0 +1,55 @@
+//! Tips under their names.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use viscocontact::states::ElasticStates;
+
+use crate::error::{Result, positive};
+
+/// Contact radii over the radius of a sphere: the first, and the ratio of neighbours.
+const RADII: [f64; 2] = [1e-4, 1.05];
+/// Greatest contact radius over the radius of a sphere.
+const GREATEST: f64 = 0.97;
+
+/// A paraboloid r²/2R of `radius` R \[m\] at its apex: Hertz's law, which is also named a sphere ([`ElasticStates::sphere`]).
+///
+/// # Errors
+/// As [`ElasticStates::sphere`].
+pub fn paraboloid(radius: f64) -> Result<Arc<ElasticStates>> {
+    Ok(ElasticStates::sphere(radius)?)
+}
+
+/// A true sphere of `radius` R \[m\], up to a contact radius a of 0.97 R (I. N. Sneddon, Int. J. Eng. Sci. 3, 1965):
+/// δ = (a/2) ln((R + a)/(R − a)), F/E* = ((a² + R²)/2) ln((R + a)/(R − a)) − aR. A paraboloid is softer by about δ/10R at the depth δ.
+///
+/// ```
+/// use viscocontact_identify::tips::{paraboloid, sphere};
+///
+/// let [ball, hertz] = [sphere(5.0e-6)?.level_at(1.0e-6), paraboloid(5.0e-6)?.level_at(1.0e-6)];
+/// assert!((ball / hertz - 0.98).abs() < 2e-3);
+/// # Ok::<(), viscocontact_identify::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`ElasticStates::sphere`].
+pub fn sphere(radius: f64) -> Result<Arc<ElasticStates>> {
+    positive("sphere radius", radius)?;
+    let count = ((GREATEST / RADII[0]).ln() / RADII[1].ln()).ceil() as i32;
+    let row = |k: i32| {
+        let x = (RADII[0] * RADII[1].powi(k)).min(GREATEST);
+        let half = x.atanh();
+        // (1 + x²) atanh x − x, free of the cancellation
+        let level = if x < 0.1 {
+            let square = x * x;
+            x * square
+                * (4.0 / 3.0
+                    + square * (8.0 / 15.0 + square * (12.0 / 35.0 + square * (16.0 / 63.0 + square * 20.0 / 99.0))))
+        } else {
+            (1.0 + x * x) * half - x
+        };
+        (radius * radius * level, radius * x * half, 2.0 * radius * x, PI * (radius * x).powi(2))
+    };
+    let table: Vec<_> = (0..=count).map(row).collect();
+    Ok(ElasticStates::from_table(&table)?)
+}

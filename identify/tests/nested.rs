@@ -1,0 +1,133 @@
+//! Models that contain each other, on random curves.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use viscocontact::states::ElasticStates;
+use viscocontact_identify::{Curve, Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol};
+
+use crate::random::{choice, logarithmic, normal, uniform};
+
+/// Number of curves: `NESTED_CURVES`, or fewer.
+fn curves() -> u64 {
+    std::env::var("NESTED_CURVES").ok().and_then(|text| text.parse().ok()).unwrap_or(8)
+}
+
+const POWER_LAW: Model = Model::PowerLaw { cutoff: 1e-6 };
+
+/// A curve with its material.
+struct Case {
+    curve: Curve,
+    truth: Model,
+    values: Vec<f64>,
+    text: String,
+}
+
+/// A bead that approaches, or is held, or retracts too, through a spring or by its depth; the drive scatters by 1 nm.
+fn case(seed: u64) -> Case {
+    let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+    let (truth, values) = match choice(rng, &[0, 1, 2, 3]) {
+        0 => (Model::Elastic, vec![1.0e3]),
+        1 => (Model::Maxwell, vec![1.0e3, logarithmic(rng, [0.05, 5.0])]),
+        2 => (Model::Zener, vec![1.0e3, 1.0e3 * uniform(rng, [0.1, 0.9]), logarithmic(rng, [0.05, 1.0])]),
+        _ => (POWER_LAW, vec![1.0e3, uniform(rng, [0.05, 0.5])]),
+    };
+    let parts = choice(rng, &["approach", "hold", "whole"]);
+    let count = choice(rng, &[150, 300, 600]);
+    let end = match parts {
+        "approach" => 1.0,
+        "hold" => 2.0,
+        _ => 3.0,
+    };
+    let has_spring = choice(rng, &[true, false]);
+    let noise = logarithmic(rng, [3e-3, 3e-2]);
+    let times: Vec<f64> = (0..count).map(|k| end * f64::from(k) / f64::from(count - 1)).collect();
+    let at = |t: f64| 1.2e-6 * t.min(1.0).min(3.0 - t) - 0.2e-6;
+    let drive = times.iter().map(|&t| at(t) + 1e-9 * normal(rng)).collect();
+    let mut experiment = Experiment::new(Protocol::new(times, drive).unwrap(), ElasticStates::sphere(5e-6).unwrap());
+    if has_spring {
+        experiment = experiment.with_spring(logarithmic(rng, [5e-3, 5e-2])).unwrap();
+    }
+    let names = truth.parameters();
+    let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
+    let samples = Identification::new(truth).respond(&experiment, &named).unwrap();
+    let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
+    let force = samples.iter().map(|sample| sample.force + noise * greatest * normal(rng)).collect();
+    let text =
+        format!("seed {seed}: {truth:?} {values:?}, {parts}, {count} points, spring {has_spring}, noise {noise:.3}");
+    Case { curve: Curve::new(experiment, force).unwrap(), truth, values, text }
+}
+
+fn sum(fit: &Fit) -> f64 {
+    fit.residuals(0).iter().map(|residual| residual * residual).sum()
+}
+
+/// No model ends above one that it contains, and a search that starts at the truth ends where the default search does.
+#[test]
+fn searches_end_at_the_minimum() {
+    let contained = [
+        (Model::Elastic, Model::Maxwell),
+        (Model::Maxwell, Model::Zener),
+        (Model::Zener, Model::Prony(2)),
+        (Model::Elastic, POWER_LAW),
+        (Model::Zener, Model::FractionalZener),
+    ];
+    let fitting = |model: Model| Identification::new(model).contact_point(Nuisance::Fitted);
+    let (mut compared, mut above, mut apart, mut iterations) = (0, Vec::new(), Vec::new(), 0);
+    for seed in 0..curves() {
+        let Case { curve, truth, values, text } = case(seed);
+        let data = std::slice::from_ref(&curve);
+        let fit = |model: Model| fitting(model).fit(data).unwrap_or_else(|error| panic!("{text}: {model:?}: {error}"));
+        let mut fits: Vec<Fit> = Vec::new();
+        let models = [Model::Elastic, Model::Maxwell, Model::Zener, Model::Prony(2), POWER_LAW, Model::FractionalZener];
+        for model in models {
+            let start = std::time::Instant::now();
+            fits.push(fit(model));
+            let last = fits.last().unwrap();
+            if std::env::var("NESTED_VERBOSE").is_ok() {
+                println!(
+                    "{text} | {model:?}: {} its {:.3} s sum {:.6e}",
+                    last.iterations(),
+                    start.elapsed().as_secs_f64(),
+                    sum(last)
+                );
+            }
+        }
+        let of = |model: Model| fits.iter().find(|fit| fit.model() == model).unwrap();
+        for (inner, outer) in contained {
+            let ratio = sum(of(outer)) / sum(of(inner)) - 1.0;
+            compared += 1;
+            if ratio > 1e-6 || of(outer).warnings().iter().any(|w| matches!(w, FitWarning::AboveContained { .. })) {
+                above.push(format!("{text}: {outer:?} over {inner:?} by {ratio:.2e}"));
+            }
+        }
+        let mut at_truth = fitting(truth);
+        for (name, value) in truth.parameters().iter().zip(&values) {
+            at_truth = at_truth.start(name, *value);
+        }
+        let known = at_truth.fit(data);
+        let (default, known) = (
+            sum(of(truth)),
+            known.as_ref().map_or_else(
+                |error| {
+                    println!("{text}: from the truth: {error}");
+                    f64::NAN
+                },
+                sum,
+            ),
+        );
+        iterations += of(truth).iterations();
+        if (default / known - 1.0).abs() > 1e-6 || known.is_nan() {
+            apart.push(format!("{text}: default start {:.2e} above the start at the truth", default / known - 1.0));
+        }
+    }
+    println!(
+        "{compared} pairs, {} above; {} of {} starts apart; {iterations} iterations",
+        above.len(),
+        apart.len(),
+        curves()
+    );
+    assert!(compared as u64 == 5 * curves());
+    println!("{}\n{}", above.join("\n"), apart.join("\n"));
+    assert!(above.is_empty());
+    assert!(apart.len() as u64 <= curves().div_ceil(100));
+}

@@ -1,0 +1,94 @@
+//! NumPy arrays of any type, order and stride to Rust, and fields back.
+
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Any array of Python.
+pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// The values of anything that NumPy makes an array of real numbers of, row by row, and its shape.
+pub fn values(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+    let py = object.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
+    let options = PyDict::new(py);
+    options.set_item("casting", "same_kind")?;
+    options.set_item("copy", false)?;
+    options.set_item("order", "C")?;
+    let array = array.call_method(intern!(py, "astype"), ("float64",), Some(&options)).map_err(|_| {
+        let kind = array.getattr("dtype").map_or_else(|_| "?".to_owned(), |kind| kind.to_string());
+        PyTypeError::new_err(format!("{name}: an array of real numbers is needed, not of {kind}"))
+    })?;
+    let array = array.cast::<PyArrayDyn<f64>>()?;
+    Ok((array.readonly().as_array().iter().copied().collect(), array.shape().to_vec()))
+}
+
+/// The values of a sequence of numbers, none of them NaN.
+pub fn column(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let (values, shape) = values(name, object)?;
+    if shape.len() != 1 {
+        return Err(PyValueError::new_err(format!("{name}: one axis is needed, the array has the shape {shape:?}")));
+    }
+    no_nan(name, &values)?;
+    Ok(values)
+}
+
+/// The rows of a table of so many columns, none of its numbers NaN.
+pub fn table<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; N]>> {
+    let (values, shape) = values(name, object)?;
+    if shape.len() != 2 || shape[1] != N {
+        return Err(PyValueError::new_err(format!("{name}: the shape (n, {N}) is needed, the array has {shape:?}")));
+    }
+    no_nan(name, &values)?;
+    Ok(values.as_chunks::<N>().0.to_vec())
+}
+
+pub fn pairs(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
+    Ok(table(name, object)?.into_iter().map(|[a, b]| (a, b)).collect())
+}
+
+/// The values of an array of two axes, and its shape. What NaN means is for the caller to say.
+pub fn plane(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, [usize; 2])> {
+    let (values, shape) = values(name, object)?;
+    match shape[..] {
+        [n1, n2] => Ok((values, [n1, n2])),
+        _ => Err(PyValueError::new_err(format!("{name}: two axes are needed, the array has the shape {shape:?}"))),
+    }
+}
+
+/// One value for each cell, none of them NaN.
+pub fn field(name: &str, object: &Bound<'_, PyAny>, cells: [usize; 2]) -> PyResult<Vec<f64>> {
+    let (values, shape) = plane(name, object)?;
+    if shape != cells {
+        return Err(PyValueError::new_err(format!(
+            "{name}: the shape {cells:?} of the grid is needed, the array has {shape:?}"
+        )));
+    }
+    no_nan(name, &values)?;
+    Ok(values)
+}
+
+fn no_nan(name: &str, values: &[f64]) -> PyResult<()> {
+    match values.iter().position(|value| value.is_nan()) {
+        Some(index) => Err(PyValueError::new_err(format!("{name}: value {index} in the order of rows is NaN"))),
+        None => Ok(()),
+    }
+}
+
+/// A field as a new array of the shape of the grid.
+pub fn to_array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Array<'py>> {
+    values.into_pyarray(py).reshape(shape.to_vec())
+}
+
+/// A function of one number, at a number or at each value of an array: a number or an array of the same shape.
+pub fn mapped<'py>(name: &str, at: &Bound<'py, PyAny>, of: impl Fn(f64) -> f64) -> PyResult<Bound<'py, PyAny>> {
+    let py = at.py();
+    if let Ok(number) = at.extract::<f64>() {
+        return Ok(of(number).into_pyobject(py)?.into_any());
+    }
+    let (values, shape) = values(name, at)?;
+    Ok(to_array(py, values.into_iter().map(of).collect(), &shape)?.into_any())
+}

@@ -1,0 +1,190 @@
+//! The attraction between surfaces.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::UserError;
+use viscocontact::adhesion::{self as ad, Attraction as Law};
+
+use crate::arrays::mapped;
+use crate::errors::{OrRaise, raise};
+use crate::recipe::{Recipe, Reduced};
+
+/// A law of the attraction between surfaces: traction [Pa] over gap [m].
+///
+/// Laws have the `work` of separation w [J/m²] and a `range` ρ [m], or the `greatest` traction [Pa] in its place.
+///
+/// >>> law = Attraction.exponential(0.05, 0.1e-6)
+/// >>> law.work, law.range
+/// (0.05, 1e-07)
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Attraction {
+    pub law: Arc<dyn Law>,
+    recipe: Recipe,
+}
+
+/// What is given with the work: exactly one of range and greatest traction.
+fn one_of<T>(
+    range: Option<f64>,
+    greatest: Option<f64>,
+    by_range: impl FnOnce(f64) -> viscocontact::Result<T>,
+    by_traction: impl FnOnce(f64) -> viscocontact::Result<T>,
+) -> PyResult<T> {
+    match (range, greatest) {
+        (Some(range), None) => by_range(range).or_raise(),
+        (None, Some(greatest)) => by_traction(greatest).or_raise(),
+        _ => Err(PyTypeError::new_err("give range or greatest, one of them")),
+    }
+}
+
+fn made(
+    py: Python<'_>,
+    maker: &'static str,
+    work: f64,
+    keywords: &[(&str, Option<f64>)],
+    law: Arc<dyn Law>,
+) -> PyResult<Attraction> {
+    let given = PyDict::new(py);
+    for (name, value) in keywords {
+        if let Some(value) = value {
+            given.set_item(name, value)?;
+        }
+    }
+    Ok(Attraction { law, recipe: Recipe::new(py, maker, (work,))?.with_keywords(Some(&given)) })
+}
+
+#[pymethods]
+impl Attraction {
+    /// An attraction that decays exponentially with the gap: (w/ρ) exp(−h/ρ).
+    #[staticmethod]
+    #[pyo3(signature = (work, range=None, *, greatest=None))]
+    fn exponential(py: Python<'_>, work: f64, range: Option<f64>, greatest: Option<f64>) -> PyResult<Attraction> {
+        use ad::ExponentialAttraction as L;
+        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
+        made(py, "exponential", work, &[("range", range), ("greatest", greatest)], Arc::new(law))
+    }
+
+    /// The attraction of half-spaces whose molecules attract each other with the sixth power of their distance.
+    #[staticmethod]
+    #[pyo3(signature = (work, range=None, *, greatest=None))]
+    fn van_der_waals(py: Python<'_>, work: f64, range: Option<f64>, greatest: Option<f64>) -> PyResult<Attraction> {
+        use ad::VanDerWaals as L;
+        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
+        made(py, "van_der_waals", work, &[("range", range), ("greatest", greatest)], Arc::new(law))
+    }
+
+    /// An attraction that falls linearly with the gap, to zero at twice the range.
+    #[staticmethod]
+    #[pyo3(signature = (work, range=None, *, greatest=None))]
+    fn linear_softening(py: Python<'_>, work: f64, range: Option<f64>, greatest: Option<f64>) -> PyResult<Attraction> {
+        use ad::LinearSoftening as L;
+        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
+        made(py, "linear_softening", work, &[("range", range), ("greatest", greatest)], Arc::new(law))
+    }
+
+    /// The constant attraction of Dugdale and Maugis up to the range, with an end of `width` over the range.
+    #[staticmethod]
+    #[pyo3(signature = (work, range=None, *, greatest=None, width=None))]
+    fn dugdale(
+        py: Python<'_>,
+        work: f64,
+        range: Option<f64>,
+        greatest: Option<f64>,
+        width: Option<f64>,
+    ) -> PyResult<Attraction> {
+        use ad::Dugdale as L;
+        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
+        let law = width.map_or(Ok(law), |width| law.with_width(width)).or_raise()?;
+        made(py, "dugdale", work, &[("range", range), ("greatest", greatest), ("width", width)], Arc::new(law))
+    }
+
+    /// Your own law: functions of the gap [m], 0 or more: the traction [Pa], which never grows with the gap, and the energy [J/m²], its
+    /// integral from the gap to infinity.
+    ///
+    /// An exception of a function comes out of the step that needed it.
+    #[staticmethod]
+    fn function(py: Python<'_>, traction: Py<PyAny>, energy: Py<PyAny>) -> PyResult<Attraction> {
+        let recipe = Recipe::new(py, "function", (traction.clone_ref(py), energy.clone_ref(py)))?;
+        let law = OwnLaw { traction, energy, failure: Mutex::default() };
+        let _ = (law.traction(0.0), law.energy(0.0));
+        match law.failure() {
+            Some(failure) => Err(raise(&failure.into())),
+            None => Ok(Attraction { law: Arc::new(law), recipe }),
+        }
+    }
+
+    /// Traction [Pa] at gaps [m].
+    fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("gap", gap, |gap| self.law.traction(gap))
+    }
+
+    /// Energy [J/m²] that opens the gap [m] to infinity.
+    fn energy<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("gap", gap, |gap| self.law.energy(gap))
+    }
+
+    /// Work of separation [J/m²].
+    #[getter]
+    fn work(&self) -> f64 {
+        self.law.work()
+    }
+
+    /// Range: work over the greatest traction [m].
+    #[getter]
+    fn range(&self) -> f64 {
+        self.law.range()
+    }
+
+    /// Tabor's number of a sphere of `radius` [m] on a body of contact `modulus` E* [Pa].
+    fn tabor_number(&self, radius: f64, modulus: f64) -> PyResult<f64> {
+        ad::tabor_number(&*self.law, radius, modulus).or_raise()
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.get().recipe.repr(&slf.get_type())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}
+
+/// A law of two functions in Python.
+struct OwnLaw {
+    traction: Py<PyAny>,
+    energy: Py<PyAny>,
+    failure: Mutex<Option<UserError>>,
+}
+
+impl OwnLaw {
+    fn call(&self, function: &Py<PyAny>, gap: f64) -> f64 {
+        Python::attach(|py| function.call1(py, (gap,))?.extract(py)).unwrap_or_else(|error: PyErr| {
+            *self.failure.lock().unwrap_or_else(PoisonError::into_inner) =
+                Some(UserError::new("the attraction", error));
+            f64::NAN
+        })
+    }
+}
+
+impl Law for OwnLaw {
+    fn traction(&self, gap: f64) -> f64 {
+        self.call(&self.traction, gap)
+    }
+
+    fn energy(&self, gap: f64) -> f64 {
+        self.call(&self.energy, gap)
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+impl fmt::Debug for OwnLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a law of two functions")
+    }
+}

@@ -1,0 +1,337 @@
+//! The contact, and its steps.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::contact as ct;
+use viscocontact::{self as vc, motion};
+
+use crate::errors::OrRaise;
+use crate::grid::Grid;
+use crate::held::{Held, Options};
+use crate::interrupt::interruptible;
+use crate::kernels::axis;
+use crate::loads::{Load, loads};
+use crate::materials::Material;
+use crate::recipe::Recipe;
+use crate::reports::StepReport;
+use crate::run::Run;
+use crate::scene::builder;
+use crate::shapes::{Shape, geometries};
+
+/// Steps on more cells, ...
+const MANY_CELLS: usize = 1 << 15;
+/// ... and steps after one that took longer are computed while the thread that called listens for Ctrl-C.
+const LONG: Duration = Duration::from_millis(10);
+
+/// A rigid body, or several, pressed onto a creeping body: the pressure between them and how it evolves in time.
+///
+/// Parameters
+/// ----------
+/// grid : Grid
+/// geometry : Shape, array of the shape of the grid, or sequence of shapes
+///     The gap before deformation [m], +inf where there is nothing to touch. A sequence makes several rigid bodies, each with a load.
+/// material : Material
+///     The creeping body.
+/// counter_body : Material, optional
+///     The material of the body with the shape; it is rigid without.
+/// kernel : InfluenceKernel, optional
+///     The bodies, if they are not half-spaces.
+/// attraction : Attraction, optional
+/// temperature : TemperatureHistory, optional
+/// times : (float, float), optional
+///     The loading times over which the material is needed [s].
+/// tolerance : float, default 1e-6
+///     Of the contact problem, relative to the displacement.
+/// max_iterations : int, default 1000
+/// solver : "active_set" (default) or "polonsky_keer"
+/// time_rule : "exponential" (default), "exponential_linear", "rectangle" or "backward"
+/// edge : "refuse" (default) or "allow"
+///     What happens when contact reaches the edge of the grid.
+/// series_tolerance : float, default 1e-4
+/// history_limit : int, default 2**31
+///     Bytes of the fields of direct sums.
+/// symmetry, window : bool, default True
+///     Whether cells that symmetry gives, or that contact cannot reach, are left out.
+/// frame : "bodies" (default) or "indenter"
+///
+/// Raises ValueError if a part is not allowed, MemoryError if the contact does not fit.
+///
+/// >>> grid = Grid(64, 4e-3)
+/// >>> contact = ViscoelasticContact(grid, Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> report = contact.step(0.0, Load.force(1.0))          # dt = 0: the load jumps
+/// >>> for _ in range(10):
+/// ...     report = contact.step(0.2, Load.force(1.0))      # hold it
+/// >>> f"{report.time:.1f} s {contact.contact_area * 1e6:.2f} mm²"
+/// '2.0 s 10.03 mm²'
+/// >>> contact.pressure.shape
+/// (64, 64)
+#[pyclass(module = "viscocontact")]
+pub struct ViscoelasticContact {
+    pub held: Held<vc::ViscoelasticContact>,
+    pub recipe: Recipe,
+    cancel: Arc<AtomicBool>,
+    last: Duration,
+}
+
+impl ViscoelasticContact {
+    pub fn of(contact: vc::ViscoelasticContact, recipe: Recipe) -> ViscoelasticContact {
+        ViscoelasticContact { held: Held::Free(contact), recipe, cancel: Arc::default(), last: Duration::ZERO }
+    }
+
+    pub fn get(&self) -> PyResult<&vc::ViscoelasticContact> {
+        self.held.contact()
+    }
+
+    /// A copy of a state of this contact.
+    pub fn copy_of(&self, py: Python<'_>, contact: vc::ViscoelasticContact) -> ViscoelasticContact {
+        ViscoelasticContact::of(contact, self.recipe.again(py))
+    }
+
+    /// Computes what may take long, on the contact taken out of its run.
+    pub fn compute<T: Send>(
+        &mut self,
+        py: Python<'_>,
+        job: impl FnOnce(&mut vc::ViscoelasticContact, &AtomicBool) -> vc::Result<T> + Send,
+    ) -> PyResult<T> {
+        let ViscoelasticContact { held, cancel, last, .. } = self;
+        let contact = held.free()?;
+        timed(last, contact.grid().len(), |slow| interruptible(py, slow, cancel, || job(contact, cancel)))
+    }
+
+    /// Takes the next step of its run.
+    pub fn next(&mut self, py: Python<'_>, run: u64) -> PyResult<Option<ct::StepReport>> {
+        let ViscoelasticContact { held, cancel, last, .. } = self;
+        let (run, _) = held.run(run)?;
+        let cells = run.contact().grid().len();
+        timed(last, cells, |slow| interruptible(py, slow, cancel, || run.next_step()))
+    }
+}
+
+/// Computes what is slow if there are many cells, or the last computation was long.
+fn timed<T>(last: &mut Duration, cells: usize, compute: impl FnOnce(bool) -> T) -> T {
+    let start = Instant::now();
+    let result = compute(cells >= MANY_CELLS || *last > LONG);
+    *last = start.elapsed();
+    result
+}
+
+#[pymethods]
+impl ViscoelasticContact {
+    #[new]
+    #[pyo3(
+        signature = (grid, geometry, material, **options),
+        text_signature = "(grid, geometry, material, *, counter_body=None, kernel=None, attraction=None, temperature=None, times=None, tolerance=1e-6, max_iterations=1000, solver='active_set', time_rule='exponential', edge='refuse', series_tolerance=1e-4, history_limit=2147483648, symmetry=True, window=True, frame='bodies')"
+    )]
+    fn new(
+        py: Python<'_>,
+        grid: Bound<'_, Grid>,
+        geometry: Bound<'_, PyAny>,
+        material: Bound<'_, Material>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<ViscoelasticContact> {
+        let builder = builder(grid.get(), &geometry, material.get(), options)?;
+        let contact = py.detach(|| builder.build()).or_raise()?;
+        Ok(ViscoelasticContact::of(contact, Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options)))
+    }
+
+    /// Advances by `dt` [s] to a state that carries `load`: a `Load`, or a sequence with one for each body. `dt` = 0 is a jump.
+    ///
+    /// Ctrl-C ends the step within an iteration. A step that fails leaves the contact as it was.
+    ///
+    /// Raises ValueError if the load is not allowed or contact reaches the edge of the grid, ConvergenceError if the solver does not
+    /// converge.
+    ///
+    /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.elastic(1e6)))
+    /// >>> contact.step(0.0, Load.force(float("nan")))
+    /// Traceback (most recent call last):
+    /// ValueError: ...
+    /// >>> contact.time, contact.force
+    /// (0.0, 0.0)
+    fn step(&mut self, py: Python<'_>, dt: f64, load: &Bound<'_, PyAny>) -> PyResult<StepReport> {
+        let loads = loads(load)?;
+        self.compute(py, |contact, cancel| contact.step_unless(cancel, dt, &loads)).map(StepReport)
+    }
+
+    /// A step in which the indenter and the grid move over the bodies by whole cells along x1 and x2. Needs frame="indenter".
+    fn step_over(
+        &mut self,
+        py: Python<'_>,
+        cells: [isize; 2],
+        dt: f64,
+        load: &Bound<'_, PyAny>,
+    ) -> PyResult<StepReport> {
+        let loads = loads(load)?;
+        self.compute(py, |contact, _| contact.step_over(cells, dt, &loads)).map(StepReport)
+    }
+
+    /// A step at whose end `shape` is where `position(t)` [m] puts it, a function of time that returns (x1, x2), or a pair of start
+    /// [m] and velocity [m/s]; `track` adds the gap of a fixed shape. The bodies do not move.
+    ///
+    /// Returns the report and (position, lateral force [N], power [W]).
+    #[pyo3(signature = (shape, position, dt, load, *, track=None))]
+    #[allow(clippy::type_complexity)]
+    fn step_along(
+        &mut self,
+        py: Python<'_>,
+        shape: &Shape,
+        position: Bound<'_, PyAny>,
+        dt: f64,
+        load: &Load,
+        track: Option<&Shape>,
+    ) -> PyResult<(StepReport, ([f64; 2], [f64; 2], f64))> {
+        let shape = Arc::clone(&shape.geometry);
+        let mut travel = if position.is_callable() {
+            let function = position.unbind();
+            let at = move |t: f64| Python::attach(|py| function.call1(py, (t,))?.extract::<[f64; 2]>(py));
+            motion::Travel::new(shape, motion::FnPath::fallible(at))
+        } else {
+            let (start, velocity) = position.extract()?;
+            motion::Travel::new(shape, motion::Straight::new(start, velocity).or_raise()?)
+        };
+        if let Some(track) = track {
+            travel = travel.over(Arc::clone(&track.geometry));
+        }
+        let load = load.load;
+        let report = self.compute(py, |contact, _| contact.step_along(&travel, dt, load))?;
+        Ok((StepReport(report.step), (report.position, report.lateral_force, report.power)))
+    }
+
+    /// Moves the indenter steadily along an axis (0 or 1) with `velocity` [m/s], by steps of whole cells, until the state is steady.
+    /// Needs frame="indenter". `SteadySliding` finds the state at once.
+    ///
+    /// Returns the change of the pressure over the last contact length, and the distance travelled [m].
+    #[pyo3(signature = (along, velocity, load, *, tolerance=1e-3, max_distance=None))]
+    fn toward_steady(
+        &mut self,
+        py: Python<'_>,
+        along: usize,
+        velocity: f64,
+        load: &Load,
+        tolerance: f64,
+        max_distance: Option<f64>,
+    ) -> PyResult<(f64, f64)> {
+        let motion = vc::run::SteadyMotion::new(axis(along)?, velocity, load.load)
+            .with_tolerance(tolerance)
+            .with_max_distance(max_distance);
+        let cancel = Arc::clone(&self.cancel);
+        self.compute(py, |contact, _| {
+            let mut run = contact.toward_steady(motion)?.cancelled_by(cancel);
+            while run.next_step()?.is_some() {}
+            Ok((run.change(), run.distance()))
+        })
+    }
+
+    /// Follows a load to the time `until` [s]: an iterator over the reports of the steps.
+    ///
+    /// Parameters
+    /// ----------
+    /// load : LoadHistory, Load (held), sequence of (time, load), or function of time that returns a Load
+    /// until : float
+    /// tolerance : float, default 1e-3
+    ///     Steps are as long as their estimated error in time allows.
+    /// dt : float, optional
+    ///     Equal steps of this length instead [s].
+    /// stop_at : times, optional
+    ///     Where steps end too: a sequence of times [s], or `Times`.
+    /// sample_at : times, optional
+    ///     Times at which `Run.samples` and `Run.table` give the state. Samples leave the steps as they are.
+    /// progress : function, optional
+    ///     Called after each step with the share of the time that is over; the run ends with `Cancelled` where it returns False.
+    /// autosave : (path, seconds), optional
+    ///     Saves the run to a checkpoint as often.
+    ///
+    /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+    /// >>> history = [(0, Load.force(0)), (0.5, Load.force(0.5)), (1, Load.force(0.1))]
+    /// >>> for report in contact.follow(history, until=1.0, tolerance=1e-2):
+    /// ...     area = contact.contact_area
+    /// >>> report.time
+    /// 1.0
+    #[pyo3(signature = (load, until, *, tolerance=None, dt=None, stop_at=None, sample_at=None, progress=None, autosave=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn follow(
+        slf: Bound<'_, Self>,
+        load: &Bound<'_, PyAny>,
+        until: f64,
+        tolerance: Option<f64>,
+        dt: Option<f64>,
+        stop_at: Option<Bound<'_, PyAny>>,
+        sample_at: Option<Bound<'_, PyAny>>,
+        progress: Option<Py<PyAny>>,
+        autosave: Option<(std::path::PathBuf, f64)>,
+    ) -> PyResult<Run> {
+        let options = Options::new(load, until, tolerance, dt, stop_at, sample_at, progress, autosave)?;
+        let mut contact = slf.borrow_mut();
+        let cancel = Arc::clone(&contact.cancel);
+        let run = contact.held.follow(&options, cancel)?;
+        Ok(Run::in_space(slf.clone().unbind(), run, options))
+    }
+
+    /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.
+    fn set_geometry(&mut self, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
+        let contact = self.held.free()?;
+        let shapes = geometries(contact.grid(), geometry)?;
+        let shapes: Vec<&dyn vc::geometry::Geometry> = shapes.iter().map(|shape| &**shape as _).collect();
+        py.detach(|| contact.set_geometries(&shapes)).or_raise()
+    }
+
+    /// The state as it is, to come back to by `restore`.
+    ///
+    /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+    /// >>> _ = contact.step(0.0, Load.force(0.5))
+    /// >>> before = contact.snapshot()
+    /// >>> _ = contact.step(1.0, Load.force(0.2))
+    /// >>> contact.restore(before)
+    /// >>> contact.time
+    /// 0.0
+    fn snapshot(&self) -> PyResult<Snapshot> {
+        self.get().map(|contact| Snapshot(contact.snapshot()))
+    }
+
+    /// Goes back to a state. Raises ValueError if the snapshot is of another contact.
+    fn restore(&mut self, snapshot: &Snapshot) -> PyResult<()> {
+        self.held.free()?.restore(&snapshot.0).or_raise()
+    }
+
+    /// The contact at a time [s] within the last step, its ends included.
+    fn within_step(&self, py: Python<'_>, time: f64) -> PyResult<ViscoelasticContact> {
+        let contact = self.get()?;
+        let within = py.detach(|| contact.within_step(time)).or_raise()?;
+        Ok(self.copy_of(py, within))
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> PyResult<ViscoelasticContact> {
+        let contact = self.get()?;
+        Ok(self.copy_of(py, py.detach(|| contact.clone())))
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: Bound<'_, PyAny>) -> PyResult<ViscoelasticContact> {
+        self.__copy__(py)
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let of = self.get()?;
+        let ([n1, n2], time, force, approach) = (of.grid().cells(), of.time(), of.force(), of.approach());
+        Ok(format!("ViscoelasticContact({n1} × {n2} cells, time={time} s, force={force:e} N, approach={approach:e} m)"))
+    }
+}
+
+/// A state of a contact in memory.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Snapshot(ct::Snapshot);
+
+#[pymethods]
+impl Snapshot {
+    /// The time of the state [s].
+    #[getter]
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Snapshot(time={} s)", self.0.time())
+    }
+}

@@ -1,0 +1,273 @@
+//! Measured indentation curves, and the experiments behind them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::IntoPyArray;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact_identify as id;
+
+use crate::arrays::{Array, column, to_array};
+use crate::errors::{OrRaise, choice};
+use crate::measured::text_format;
+use crate::states::ElasticStates;
+
+/// A drive and the tip that it presses onto the sample, before the force is measured.
+///
+/// Parameters
+/// ----------
+/// times : sequence of float
+///     Ascending [s].
+/// drive : sequence of float
+///     The depth of the tip, or with `stiffness` the position of the base that carries it [m].
+/// tip : ElasticStates
+/// stiffness : float, optional
+///     Of the spring between base and tip [N/m]: the cantilever.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Experiment(pub id::Experiment);
+
+impl Experiment {
+    fn of(protocol: id::Protocol, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Experiment> {
+        let experiment = id::Experiment::new(protocol, Arc::clone(&tip.states));
+        stiffness
+            .map_or(Ok(experiment.clone()), |stiffness| experiment.with_spring(stiffness))
+            .or_raise()
+            .map(Experiment)
+    }
+}
+
+#[pymethods]
+impl Experiment {
+    #[new]
+    #[pyo3(signature = (times, drive, tip, *, stiffness=None))]
+    fn new(
+        times: &Bound<'_, PyAny>,
+        drive: &Bound<'_, PyAny>,
+        tip: &ElasticStates,
+        stiffness: Option<f64>,
+    ) -> PyResult<Experiment> {
+        let protocol = id::Protocol::new(column("times", times)?, column("drive", drive)?).or_raise()?;
+        Experiment::of(protocol, tip, stiffness)
+    }
+
+    /// From 0 to `depth` [m], held there, and back, within the `durations` of rise, hold and fall [s], sampled at `interval` [s].
+    #[staticmethod]
+    #[pyo3(signature = (depth, durations, interval, tip, *, stiffness=None))]
+    fn trapezoid(
+        depth: f64,
+        durations: [f64; 3],
+        interval: f64,
+        tip: &ElasticStates,
+        stiffness: Option<f64>,
+    ) -> PyResult<Experiment> {
+        Experiment::of(id::Protocol::trapezoid(depth, durations, interval).or_raise()?, tip, stiffness)
+    }
+
+    /// The times [s].
+    #[getter]
+    fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        self.0.protocol().times().to_vec().into_pyarray(py).into_any()
+    }
+
+    /// The drive [m].
+    #[getter]
+    fn drive<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        self.0.protocol().drive().to_vec().into_pyarray(py).into_any()
+    }
+}
+
+/// A measured curve: an experiment and the force [N] at each of its times, positive where it presses.
+///
+/// Raises ValueError if the lengths differ or a value is NaN.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Curve(pub id::Curve);
+
+#[pymethods]
+impl Curve {
+    #[new]
+    fn new(experiment: &Experiment, force: &Bound<'_, PyAny>) -> PyResult<Curve> {
+        id::Curve::new(experiment.0.clone(), column("force", force)?).or_raise().map(Curve)
+    }
+
+    /// The experiment.
+    #[getter]
+    fn experiment(&self) -> Experiment {
+        Experiment(self.0.experiment().clone())
+    }
+
+    /// The force [N].
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let force = self.0.force().to_vec();
+        let n = force.len();
+        to_array(py, force, &[n])
+    }
+
+    /// Checks points, signs and units; raises ValueError with the cure.
+    fn check(&self) -> PyResult<()> {
+        self.0.check().or_raise()
+    }
+
+    /// The complex contact modulus of an oscillation of the drive at `frequency` [Hz] in a window of times [s], with its drive at first
+    /// touch [m]: E′ + iE″ [Pa] and the standard errors of both.
+    fn complex_modulus(
+        &self,
+        frequency: f64,
+        window: (f64, f64),
+        contact_point: f64,
+    ) -> PyResult<(numpy::Complex64, (f64, f64))> {
+        let of = self.0.complex_modulus(frequency, window.0..window.1, contact_point).or_raise()?;
+        Ok((numpy::Complex64::new(of.storage, of.loss), (of.storage_error, of.loss_error)))
+    }
+
+    /// The elastic modulus of the approach: "modulus" [Pa], "offset" [N], "contact_point" [m].
+    #[pyo3(signature = (contact_point=None))]
+    fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let of = py.detach(|| id::usual::loading_modulus(&self.0, contact_point)).or_raise()?;
+        let all = PyDict::new(py);
+        all.set_item("modulus", of.modulus)?;
+        all.set_item("offset", of.offset)?;
+        all.set_item("contact_point", of.contact_point)?;
+        Ok(all)
+    }
+
+    /// The relaxation of a hold as E∞ + E₁ exp(−t/τ), with the `correction` of its ramp ("step", "half_ramp" or "factor"): "equilibrium",
+    /// "relaxing" [Pa], "time" [s].
+    #[pyo3(signature = (contact_point=0.0, correction="factor"))]
+    fn hold_relaxation<'py>(
+        &self,
+        py: Python<'py>,
+        contact_point: f64,
+        correction: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        use id::usual::RampCorrection::{Factor, HalfRamp, Step};
+        let correction =
+            choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
+        let of = py.detach(|| id::usual::hold_relaxation(&self.0, contact_point, correction)).or_raise()?;
+        let all = PyDict::new(py);
+        all.set_item("equilibrium", of.equilibrium)?;
+        all.set_item("relaxing", of.relaxing)?;
+        all.set_item("time", of.time)?;
+        Ok(all)
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.force().len()
+    }
+}
+
+/// The columns of a measured curve, from arrays or a text file with headings.
+///
+/// Parameters
+/// ----------
+/// times : sequence of float
+///     [s]
+/// force, deflection, drive, depth : sequence of float, optional
+///     Force [N], positive where it presses; deflection of the spring, position of its base, depth of the tip [m].
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Recording(id::Recording);
+
+#[pymethods]
+impl Recording {
+    #[new]
+    #[pyo3(signature = (times, *, force=None, deflection=None, drive=None, depth=None))]
+    fn new(
+        times: &Bound<'_, PyAny>,
+        force: Option<&Bound<'_, PyAny>>,
+        deflection: Option<&Bound<'_, PyAny>>,
+        drive: Option<&Bound<'_, PyAny>>,
+        depth: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Recording> {
+        let times = column("times", times)?;
+        let n = times.len();
+        let given = |name: &str, values: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Vec<f64>>> {
+            let Some(values) = values.map(|values| column(name, values)).transpose()? else { return Ok(None) };
+            let m = values.len();
+            if m == n {
+                Ok(Some(values))
+            } else {
+                Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")))
+            }
+        };
+        let mut recording = id::Recording::new(times);
+        if let Some(force) = given("force", force)? {
+            recording = recording.with_force(force);
+        }
+        if let Some(deflection) = given("deflection", deflection)? {
+            recording = recording.with_deflection(deflection);
+        }
+        if let Some(drive) = given("drive", drive)? {
+            recording = recording.with_drive(drive);
+        }
+        if let Some(depth) = given("depth", depth)? {
+            recording = recording.with_depth(depth);
+        }
+        Ok(Recording(recording))
+    }
+
+    /// Reads a text file whose headings name the columns and their units.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, decimal_comma=None))]
+    fn from_csv(py: Python<'_>, path: PathBuf, decimal_comma: Option<bool>) -> PyResult<Recording> {
+        py.detach(|| id::Recording::from_csv(path, text_format(decimal_comma))).or_raise().map(Recording)
+    }
+
+    /// The same with the other sign of force and deflection.
+    fn flip_force(&self) -> Recording {
+        Recording(self.0.clone().flip_force())
+    }
+
+    /// The same with the other sign of drive and depth.
+    fn flip_drive(&self) -> Recording {
+        Recording(self.0.clone().flip_drive())
+    }
+
+    /// A column by its name: "times", "force", "deflection", "drive" or "depth"; None without it.
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let names = [("times", 0), ("force", 1), ("deflection", 2), ("drive", 3), ("depth", 4)];
+        let column = match choice("name", name, &names)? {
+            0 => Some(self.0.times()),
+            1 => self.0.force(),
+            2 => self.0.deflection(),
+            3 => self.0.drive(),
+            _ => self.0.depth(),
+        };
+        Ok(column.map(|column| column.to_vec().into_pyarray(py).into_any()))
+    }
+
+    /// The curve of a `tip`: with the depth as its drive, or with `stiffness` [N/m] the position of the base of a spring.
+    #[pyo3(signature = (tip, *, stiffness=None))]
+    fn curve(&self, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Curve> {
+        match stiffness {
+            Some(stiffness) => self.0.spring_curve(&tip.states, stiffness),
+            None => self.0.depth_curve(&tip.states),
+        }
+        .or_raise()
+        .map(Curve)
+    }
+}
+
+/// The model of a name: "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]) or "fractional_zener".
+pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
+    if let Ok((name, terms)) = given.extract::<(String, usize)>()
+        && name == "prony"
+    {
+        return Ok(id::Model::Prony(terms));
+    }
+    if let Ok((name, cutoff)) = given.extract::<(String, f64)>()
+        && name == "power_law"
+    {
+        return Ok(id::Model::PowerLaw { cutoff });
+    }
+    let needed = "model: a name, (\"prony\", terms) or (\"power_law\", cutoff) is needed";
+    let name: String = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
+    let models = [
+        ("elastic", id::Model::Elastic),
+        ("maxwell", id::Model::Maxwell),
+        ("zener", id::Model::Zener),
+        ("fractional_zener", id::Model::FractionalZener),
+    ];
+    choice("model", &name, &models)
+}

@@ -1,0 +1,118 @@
+//! Errors of the crate as the exceptions that a Python programmer expects, in the crate's words.
+
+use std::error::Error as StdError;
+use std::io;
+use std::sync::{Mutex, PoisonError};
+
+use pyo3::create_exception;
+use pyo3::exceptions::{
+    PyException, PyFileExistsError, PyFileNotFoundError, PyMemoryError, PyNotImplementedError, PyOSError,
+    PyPermissionError, PyRuntimeError, PyValueError,
+};
+use pyo3::prelude::*;
+use viscocontact::{Error, ErrorKind};
+use viscocontact_identify::Error as IdentifyError;
+
+create_exception!(
+    viscocontact,
+    Cancelled,
+    PyException,
+    "The call was ended by its caller: a report of progress returned False."
+);
+create_exception!(
+    viscocontact,
+    ConvergenceError,
+    PyRuntimeError,
+    "A search did not converge, or needs shorter steps than there are. The message says which, with its numbers."
+);
+
+/// Raises the errors of both crates.
+pub trait OrRaise<T> {
+    fn or_raise(self) -> PyResult<T>;
+}
+
+impl<T> OrRaise<T> for Result<T, Error> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(|error| raise(&error))
+    }
+}
+
+impl<T> OrRaise<T> for Result<T, IdentifyError> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(|error| match &error {
+            IdentifyError::Contact(error) => raise(error),
+            IdentifyError::NotConverged { .. } => ConvergenceError::new_err(error.to_string()),
+            IdentifyError::Unwritable { .. } => PyOSError::new_err(with_causes(&error)),
+            _ => PyValueError::new_err(with_causes(&error)),
+        })
+    }
+}
+
+/// The exception of an error: that of the user's own function, if it raised one; else by kind.
+pub fn raise(error: &Error) -> PyErr {
+    if let Some(raised) = raised().or_else(|| raised_by_user(error)) {
+        return raised;
+    }
+    let text = with_causes(error);
+    match error.kind() {
+        ErrorKind::File => match error.io_kind() {
+            Some(io::ErrorKind::NotFound) => PyFileNotFoundError::new_err(text),
+            Some(io::ErrorKind::PermissionDenied) => PyPermissionError::new_err(text),
+            Some(io::ErrorKind::AlreadyExists) => PyFileExistsError::new_err(text),
+            _ => PyOSError::new_err(text),
+        },
+        ErrorKind::Memory => PyMemoryError::new_err(text),
+        ErrorKind::Cancelled => Cancelled::new_err(text),
+        ErrorKind::Convergence => ConvergenceError::new_err(text),
+        ErrorKind::Unsupported => PyNotImplementedError::new_err(text),
+        _ => PyValueError::new_err(text),
+    }
+}
+
+/// The message, and those of its causes that it does not repeat.
+fn with_causes(error: &dyn StdError) -> String {
+    let (mut text, mut cause) = (error.to_string(), error.source());
+    while let Some(error) = cause {
+        let more = error.to_string();
+        if !text.contains(&more) {
+            text = format!("{text}: {more}");
+        }
+        cause = error.source();
+    }
+    text
+}
+
+/// The exception that a function of the user raised, among the causes of an error.
+fn raised_by_user(error: &Error) -> Option<PyErr> {
+    let mut cause: Option<&(dyn StdError + 'static)> = error.source();
+    while let Some(error) = cause {
+        if let Some(raised) = error.downcast_ref::<PyErr>() {
+            return Some(Python::attach(|py| raised.clone_ref(py)));
+        }
+        cause = error.source();
+    }
+    None
+}
+
+/// The last exception of a Python function for which the crate has no way to return an error; the function then gives NaN, which the
+/// crate refuses.
+pub fn raised_number<T>(result: PyResult<T>, nan: T) -> T {
+    result.unwrap_or_else(|error| {
+        *RAISED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+        nan
+    })
+}
+
+static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
+
+fn raised() -> Option<PyErr> {
+    RAISED.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// The option of this name, or an error that lists the names.
+pub fn choice<T: Copy>(field: &str, name: &str, options: &[(&str, T)]) -> PyResult<T> {
+    options.iter().find(|(option, _)| *option == name).map(|&(_, value)| value).ok_or_else(|| {
+        let names: Vec<String> = options.iter().map(|(option, _)| format!("{option:?}")).collect();
+        PyValueError::new_err(format!("{field} = {name:?} is not allowed: it must be one of {}", names.join(", ")))
+    })
+}

@@ -1,0 +1,92 @@
+//! The grid of a contact.
+
+use pyo3::prelude::*;
+
+use crate::arrays::{Array, to_array};
+use crate::errors::OrRaise;
+
+/// A number, or a number for each axis.
+#[derive(FromPyObject)]
+pub enum PerAxis<T> {
+    Both([T; 2]),
+    Same(T),
+}
+
+impl<T: Copy> PerAxis<T> {
+    pub fn both(self) -> [T; 2] {
+        match self {
+            PerAxis::Both(both) => both,
+            PerAxis::Same(same) => [same; 2],
+        }
+    }
+}
+
+/// A rectangular grid of equal cells in the plane of contact, centred on the origin.
+///
+/// Parameters
+/// ----------
+/// cells : int or (int, int)
+///     Number of cells along x1 and x2; one number makes both.
+/// lengths : float or (float, float)
+///     Sides of the whole grid [m].
+///
+/// Raises ValueError if a count is zero, or a length not finite and positive.
+///
+/// >>> grid = Grid((64, 32), (4e-3, 2e-3))
+/// >>> grid
+/// Grid([64, 32], [0.004, 0.002])
+/// >>> x1, x2 = grid.coordinates()
+/// >>> x1.shape, x2.shape, (x1 + x2).shape
+/// ((64, 1), (1, 32), (64, 32))
+#[pyclass(frozen, eq, module = "viscocontact")]
+#[derive(PartialEq)]
+pub struct Grid(pub viscocontact::Grid);
+
+#[pymethods]
+impl Grid {
+    #[new]
+    fn new(cells: PerAxis<usize>, lengths: PerAxis<f64>) -> PyResult<Grid> {
+        viscocontact::Grid::new(cells.both(), lengths.both()).or_raise().map(Grid)
+    }
+
+    /// Number of cells along x1 and x2: the shape of every field.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        self.0.cells().into()
+    }
+
+    /// Sides of the whole grid [m].
+    #[getter]
+    fn lengths(&self) -> (f64, f64) {
+        self.0.lengths().into()
+    }
+
+    /// Sides of a cell [m].
+    #[getter]
+    fn spacing(&self) -> (f64, f64) {
+        self.0.spacing().into()
+    }
+
+    /// Area of a cell [m²].
+    #[getter]
+    fn cell_area(&self) -> f64 {
+        self.0.cell_area()
+    }
+
+    /// Centres of the cells along x1, of shape (n1, 1), and along x2, of shape (1, n2) [m]: sums of functions of them have the
+    /// shape of the grid.
+    fn coordinates<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
+        let [n1, n2] = self.0.cells();
+        let x1 = (0..n1).map(|i| self.0.center(i, 0)[0]).collect();
+        let x2 = (0..n2).map(|j| self.0.center(0, j)[1]).collect();
+        Ok((to_array(py, x1, &[n1, 1])?, to_array(py, x2, &[1, n2])?))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Grid({:?}, {:?})", self.0.cells(), self.0.lengths())
+    }
+
+    fn __getnewargs__(&self) -> ((usize, usize), (f64, f64)) {
+        (self.shape(), self.lengths())
+    }
+}

@@ -1,0 +1,221 @@
+//! A contact, or the run that owns it; what a run is asked for.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::prelude::*;
+use viscocontact::contact::Contact;
+use viscocontact::load::LoadHistory;
+use viscocontact::rheology::{Elastic, Material};
+use viscocontact::run::{self as vr, Crossing, RunContact, Stepping};
+use viscocontact::states::{ElasticStates, StatesContact as InStates};
+use viscocontact::{self as vc, ViscoelasticContact as InSpace};
+
+use crate::arrays::column;
+use crate::errors::OrRaise;
+use crate::loads::history;
+
+/// Times at which steps end or states are sampled, counted from the start of a run.
+///
+/// A sequence of times [s] does as well. `+` joins them.
+///
+/// >>> Times.every(0.1) + Times.decades(1e-6, 10)
+/// Times(...)
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Times(vr::Times);
+
+#[pymethods]
+impl Times {
+    /// The multiples of an `interval` [s].
+    #[staticmethod]
+    fn every(interval: f64) -> Times {
+        Times(vr::Times::every(interval))
+    }
+
+    /// The time `first` [s], and so many in each decade beyond.
+    #[staticmethod]
+    fn decades(first: f64, per_decade: usize) -> Times {
+        Times(vr::Times::decades(first, per_decade))
+    }
+
+    fn __add__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
+        Ok(Times(self.0.clone().and(times("times", other)?)))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "Times(...)"
+    }
+}
+
+fn times(name: &str, given: &Bound<'_, PyAny>) -> PyResult<vr::Times> {
+    match given.cast::<Times>() {
+        Ok(times) => Ok(times.get().0.clone()),
+        Err(_) => Ok(column(name, given)?.into()),
+    }
+}
+
+/// What a run is asked for.
+pub struct Options {
+    history: Arc<dyn LoadHistory>,
+    stepping: Stepping,
+    until: f64,
+    stop_at: Option<vr::Times>,
+    pub sample_at: Option<vr::Times>,
+    pub progress: Option<Py<PyAny>>,
+    autosave: Option<(PathBuf, Duration)>,
+}
+
+impl Options {
+    #[allow(clippy::too_many_arguments)]
+    pub fn new(
+        load: &Bound<'_, PyAny>,
+        until: f64,
+        tolerance: Option<f64>,
+        dt: Option<f64>,
+        stop_at: Option<Bound<'_, PyAny>>,
+        sample_at: Option<Bound<'_, PyAny>>,
+        progress: Option<Py<PyAny>>,
+        autosave: Option<(PathBuf, f64)>,
+    ) -> PyResult<Options> {
+        let stepping = match (dt, tolerance) {
+            (Some(dt), None) => Stepping::fixed(dt),
+            (None, tolerance) => Stepping::adaptive(tolerance.unwrap_or(1e-3)),
+            _ => return Err(PyTypeError::new_err("give dt or tolerance, not both")),
+        };
+        let autosave = autosave.map(|(path, every)| {
+            let every = Duration::try_from_secs_f64(every);
+            every.map(|every| (path, every)).map_err(|_| PyTypeError::new_err("autosave: (path, seconds), seconds ≥ 0"))
+        });
+        Ok(Options {
+            history: history(load)?,
+            stepping,
+            until,
+            stop_at: stop_at.map(|given| times("stop_at", &given)).transpose()?,
+            sample_at: sample_at.map(|given| times("sample_at", &given)).transpose()?,
+            progress,
+            autosave: autosave.transpose()?,
+        })
+    }
+
+    /// Refuses times that a run would refuse, which would take the contact with it.
+    fn check(&self) -> vc::Result<()> {
+        let small = InStates::new(&ElasticStates::sphere(1.0)?, &Material::incompressible(Elastic::new(1.0)?))?;
+        let run = small.into_follow(Arc::clone(&self.history), self.stepping, self.until);
+        let run = run.stop_at(self.stop_at.clone().unwrap_or_default())?;
+        run.sample_at(self.sample_at.clone().unwrap_or_default()).map(drop)
+    }
+}
+
+/// A contact that a run can lead.
+pub trait Led: RunContact + Contact + 'static {
+    fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, Self>;
+    fn state(&self) -> [f64; 4];
+    fn max_pressure_or_nan(&self) -> f64;
+}
+
+impl Led for InSpace {
+    fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, InSpace> {
+        self.into_follow(history, stepping, until)
+    }
+
+    fn state(&self) -> [f64; 4] {
+        [self.time(), self.force(), self.approach(), self.contact_area()]
+    }
+
+    fn max_pressure_or_nan(&self) -> f64 {
+        self.max_pressure()
+    }
+}
+
+impl Led for InStates {
+    fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, InStates> {
+        self.into_follow(history, stepping, until)
+    }
+
+    fn state(&self) -> [f64; 4] {
+        [self.time(), self.force(), self.approach(), self.contact_area()]
+    }
+
+    fn max_pressure_or_nan(&self) -> f64 {
+        f64::NAN
+    }
+}
+
+/// A contact, or the run that owns it.
+pub enum Held<C: Led> {
+    Free(C),
+    Run(Box<vr::Run<'static, C>>, u64),
+    Lost,
+}
+
+/// Number of the next run.
+static NEXT: AtomicU64 = AtomicU64::new(0);
+
+impl<C: Led> Held<C> {
+    pub fn contact(&self) -> PyResult<&C> {
+        match self {
+            Held::Free(contact) => Ok(contact),
+            Held::Run(run, _) => Ok(run.contact()),
+            Held::Lost => Err(lost()),
+        }
+    }
+
+    /// The contact, taken out of its run, which ends.
+    pub fn free(&mut self) -> PyResult<&mut C> {
+        if let Held::Run(..) = self
+            && let Held::Run(run, _) = std::mem::replace(self, Held::Lost)
+        {
+            *self = Held::Free(run.into_contact());
+        }
+        match self {
+            Held::Free(contact) => Ok(contact),
+            _ => Err(lost()),
+        }
+    }
+
+    /// The run of this number.
+    pub fn run(&mut self, number: u64) -> PyResult<(&mut vr::Run<'static, C>, u64)> {
+        match self {
+            Held::Run(run, own) if *own == number => Ok((run, number)),
+            _ => Err(PyRuntimeError::new_err("the run is over: its contact went on by another run or step")),
+        }
+    }
+
+    pub fn run_ref(&self, number: u64) -> PyResult<&vr::Run<'static, C>> {
+        match self {
+            Held::Run(run, own) if *own == number => Ok(run),
+            _ => Err(PyRuntimeError::new_err("the run is over: its contact went on by another run or step")),
+        }
+    }
+
+    /// Begins a run, and returns its number.
+    pub fn follow(&mut self, options: &Options, cancel: Arc<AtomicBool>) -> PyResult<u64> {
+        options.check().or_raise()?;
+        self.free()?;
+        let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let run = contact.led(Arc::clone(&options.history), options.stepping, options.until).cancelled_by(cancel);
+        let run = run.stop_at(options.stop_at.clone().unwrap_or_default()).or_raise()?;
+        let mut run = run.sample_at(options.sample_at.clone().unwrap_or_default()).or_raise()?;
+        if let Some((path, every)) = &options.autosave {
+            run = run.autosave_to(path, *every);
+        }
+        *self = Held::Run(Box::new(run), number);
+        Ok(number)
+    }
+
+    pub fn stop_when(&mut self, number: u64, quantity: fn(&C) -> f64, crossing: Crossing) -> PyResult<()> {
+        self.run(number)?;
+        let Held::Run(run, _) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
+        *self = Held::Run(Box::new(run.stop_when(quantity, crossing).or_raise()?), number);
+        Ok(())
+    }
+}
+
+/// The error of a contact that a panic has lost.
+fn lost() -> PyErr {
+    PyRuntimeError::new_err("the contact was lost in a step that panicked: please report the panic")
+}

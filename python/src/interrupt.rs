@@ -1,0 +1,93 @@
+//! Ctrl-C while Rust computes.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::prelude::*;
+use viscocontact as vc;
+use viscocontact::Result;
+
+use crate::errors::{OrRaise, raise};
+
+/// Time between two looks for a signal.
+const LISTEN: Duration = Duration::from_millis(50);
+
+/// Computes without the GIL. Python handles signals on the thread that called, so what is `slow` is computed on another one, while this
+/// one listens, and sets the flag of the computation where a handler raises: KeyboardInterrupt comes out. What is not slow is computed
+/// at once.
+pub fn interruptible<T: Send>(
+    py: Python<'_>,
+    slow: bool,
+    cancel: &AtomicBool,
+    job: impl FnOnce() -> Result<T> + Send,
+) -> PyResult<T> {
+    if !slow {
+        return py.detach(job).or_raise();
+    }
+    py.detach(|| {
+        thread::scope(|scope| {
+            let (send, receive) = channel();
+            let worker = scope.spawn(move || send.send(job()).is_ok());
+            let mut raised = None;
+            loop {
+                match receive.recv_timeout(LISTEN) {
+                    Ok(result) => {
+                        cancel.store(false, Ordering::Relaxed);
+                        return raised.map_or_else(|| Ok(result), Err);
+                    }
+                    Err(RecvTimeoutError::Disconnected) => {
+                        let Err(panic) = worker.join() else { unreachable!("the result was sent") };
+                        std::panic::resume_unwind(panic);
+                    }
+                    Err(RecvTimeoutError::Timeout) if raised.is_none() => {
+                        raised = Python::attach(|py| py.check_signals()).err();
+                        cancel.store(raised.is_some(), Ordering::Relaxed);
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
+                }
+            }
+        })
+    })?
+    .or_raise()
+}
+
+/// Listens for Ctrl-C, and to a report of progress that may end a call, between two problems.
+pub struct Listener {
+    progress: Option<Py<PyAny>>,
+    raised: Option<PyErr>,
+}
+
+impl Listener {
+    pub fn new(progress: Option<Py<PyAny>>) -> Listener {
+        Listener { progress, raised: None }
+    }
+
+    pub fn goes_on(&mut self, done: impl for<'py> pyo3::call::PyCallArgs<'py>) -> ControlFlow<()> {
+        let asked = Python::attach(|py| {
+            py.check_signals()?;
+            match &self.progress {
+                Some(progress) => Ok(progress.call1(py, done)?.extract::<bool>(py).unwrap_or(true)),
+                None => Ok(true),
+            }
+        });
+        match asked {
+            Ok(true) => ControlFlow::Continue(()),
+            Ok(false) => ControlFlow::Break(()),
+            Err(error) => {
+                self.raised = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    /// The result of the call, or what was raised meanwhile.
+    pub fn result<T>(self, result: vc::Result<T>) -> PyResult<T> {
+        match self.raised {
+            Some(raised) => Err(raised),
+            None => result.map_err(|error| raise(&error)),
+        }
+    }
+}

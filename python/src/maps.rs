@@ -1,0 +1,347 @@
+//! Measured and generated surfaces.
+
+use std::fs::File;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
+use viscocontact::{FileError, TextFormat};
+
+use crate::arrays::{Array, mapped, plane, table, to_array};
+use crate::errors::{OrRaise, choice, raise};
+use crate::grid::{Grid, PerAxis};
+use crate::shapes::Shape;
+
+/// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
+///
+/// Parameters
+/// ----------
+/// heights : array of shape (n1, n2)
+///     Heights [m], positive out of the material, x1 along the first axis; NaN where none was measured. A gap of the pair is the
+///     greatest height minus each height.
+/// lengths : float or (float, float)
+///     Sides of the rectangle of all points [m], a whole cell for each point.
+/// periodic : bool
+///     Whether the map repeats, with `lengths` as its periods.
+///
+/// Missing heights must be decided before a contact: `filled()` interpolates them, `masked()` leaves nothing to touch there.
+/// Raises ValueError if a height is infinite, or none is known.
+///
+/// >>> import numpy as np
+/// >>> map = HeightMap(np.random.default_rng(0).normal(size=(32, 32)) * 1e-6, 1e-3, periodic=True)
+/// >>> map.shape, map.missing
+/// ((32, 32), 0)
+/// >>> level = map.leveled("tilt")
+#[pyclass(frozen, extends = Shape, module = "viscocontact")]
+pub struct HeightMap(Arc<geo::HeightMap>);
+
+impl HeightMap {
+    /// A map that is made again from its heights, whatever its file was.
+    fn made(py: Python<'_>, map: geo::HeightMap) -> PyResult<Py<HeightMap>> {
+        Py::new(py, HeightMap::parts(py, map)?)
+    }
+
+    fn parts(py: Python<'_>, map: geo::HeightMap) -> PyResult<PyClassInitializer<HeightMap>> {
+        let map = Arc::new(map);
+        let center = map.center();
+        let shape = if center == [0.0; 2] {
+            let heights = to_array(py, map.heights().to_vec(), &map.cells())?;
+            Shape::made(py, "", (heights, map.lengths(), map.is_periodic()), Arc::clone(&map) as _)?
+        } else {
+            let centered = HeightMap::made(py, (*map).clone().centered_at([0.0; 2]).or_raise()?)?;
+            Shape::made(py, "centered_at", (centered, center), Arc::clone(&map) as _)?
+        };
+        Ok(PyClassInitializer::from(shape).add_subclass(HeightMap(map)))
+    }
+
+    /// What the method `maker` makes of a map.
+    fn changed<'py>(
+        slf: &Bound<'py, Self>,
+        maker: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+        change: impl FnOnce(geo::HeightMap) -> viscocontact::Result<geo::HeightMap> + Send,
+    ) -> PyResult<Py<HeightMap>> {
+        let (py, map) = (slf.py(), (*slf.get().0).clone());
+        let map = Arc::new(py.detach(|| change(map)).or_raise()?);
+        let shape = Shape::made(py, maker, arguments, Arc::clone(&map) as _)?;
+        Py::new(py, PyClassInitializer::from(shape).add_subclass(HeightMap(map)))
+    }
+}
+
+#[pymethods]
+impl HeightMap {
+    #[new]
+    #[pyo3(signature = (heights, lengths, periodic=false))]
+    fn new(
+        py: Python<'_>,
+        heights: &Bound<'_, PyAny>,
+        lengths: PerAxis<f64>,
+        periodic: bool,
+    ) -> PyResult<PyClassInitializer<HeightMap>> {
+        let (heights, cells) = plane("heights", heights)?;
+        let map = geo::HeightMap::new(cells, lengths.both(), heights).or_raise()?;
+        HeightMap::parts(py, if periodic { map.periodic() } else { map })
+    }
+
+    /// Reads a map: SDF, SUR, PRO, GSF and X3P files by their content, in metres; NPY files and text (matrices, or with `points`
+    /// lines of x, y and height) need `unit`, and matrices `lengths` [m].
+    ///
+    /// Raises OSError if the file cannot be read or understood, and says where.
+    ///
+    /// >>> HeightMap.read("no_such_file.sdf")
+    /// Traceback (most recent call last):
+    /// FileNotFoundError: ...
+    #[staticmethod]
+    #[pyo3(signature = (path, *, lengths=None, unit=None, points=false, profile=false, decimal_comma=None, missing_height=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        lengths: Option<PerAxis<f64>>,
+        unit: Option<&str>,
+        points: bool,
+        profile: bool,
+        decimal_comma: Option<bool>,
+        missing_height: Option<f64>,
+    ) -> PyResult<Py<HeightMap>> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let file = File::open(&path).map_err(|error| {
+            raise(
+                &FileError::Unreadable {
+                    file: path.display().to_string(),
+                    reason: error.to_string(),
+                    kind: Some(error.kind()),
+                }
+                .into(),
+            )
+        })?;
+        let unit = unit.map(|unit| unit.parse::<LengthUnit>().or_raise()).transpose()?;
+        let mut format = TextFormat::default();
+        if let Some(comma) = decimal_comma {
+            format = format.with_decimal_comma(comma);
+        }
+        if let Some(height) = missing_height {
+            format = format.with_missing_height(height);
+        }
+        let lengths = lengths.map(PerAxis::both);
+        let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
+        let map = match ending.as_str() {
+            "sdf" => py.detach(|| geo::HeightMap::from_sdf(file)),
+            "sur" | "pro" => py.detach(|| geo::HeightMap::from_sur(file)),
+            "x3p" => py.detach(|| geo::HeightMap::from_x3p(file)),
+            "gsf" => py.detach(|| match unit {
+                Some(unit) => geo::HeightMap::from_gsf_with(file, unit),
+                None => geo::HeightMap::from_gsf(file),
+            }),
+            _ => {
+                let unit = unit.ok_or_else(|| needs("the unit of its numbers, such as unit=\"um\""))?;
+                if points {
+                    py.detach(|| geo::HeightMap::from_xyz(file, unit, unit, format))
+                } else if profile {
+                    py.detach(|| geo::HeightMap::from_profile(file, unit, unit, format))
+                } else {
+                    let lengths = lengths.ok_or_else(|| needs("the lengths of its sides in m, as lengths=(l1, l2)"))?;
+                    if ending == "npy" {
+                        py.detach(|| geo::HeightMap::from_npy(file, lengths, unit))
+                    } else {
+                        py.detach(|| geo::HeightMap::from_text(file, lengths, unit, format))
+                    }
+                }
+            }
+        };
+        HeightMap::made(py, map.or_raise()?)
+    }
+
+    /// A map of points (x, y, height) [m] on a regular grid in any order: an array of shape (n, 3).
+    #[staticmethod]
+    fn from_points(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<HeightMap>> {
+        let points: Vec<[f64; 3]> = table("points", points)?;
+        HeightMap::made(py, py.detach(|| geo::HeightMap::from_points(&points)).or_raise()?)
+    }
+
+    /// The heights [m], of the shape of the map; NaN where one is missing.
+    #[getter]
+    fn heights<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        to_array(py, self.0.heights().to_vec(), &self.0.cells())
+    }
+
+    /// Number of points along x1 and x2.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        self.0.cells().into()
+    }
+
+    /// Sides of the rectangle of all points [m].
+    #[getter]
+    fn lengths(&self) -> (f64, f64) {
+        self.0.lengths().into()
+    }
+
+    /// Number of missing heights.
+    #[getter]
+    fn missing(&self) -> usize {
+        self.0.missing()
+    }
+
+    /// The grid whose cells have the points of the map as their centres.
+    #[getter]
+    fn grid(&self) -> Grid {
+        Grid(self.0.grid())
+    }
+
+    /// The map with missing heights filled by harmonic interpolation.
+    fn filled(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "filled", (slf.clone(),), geo::HeightMap::filled)
+    }
+
+    /// The map with nothing to touch where heights are missing.
+    fn masked(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "masked", (slf.clone(),), |map| Ok(map.masked()))
+    }
+
+    /// The map less the "mean", "tilt" or "curvature" that fits it best.
+    #[pyo3(signature = (form="tilt"))]
+    fn leveled(slf: &Bound<'_, Self>, form: &str) -> PyResult<Py<HeightMap>> {
+        let forms = [("mean", Form::Mean), ("tilt", Form::Tilt), ("curvature", Form::Curvature)];
+        let chosen = choice("form", form, &forms)?;
+        HeightMap::changed(slf, "leveled", (slf.clone(), form), |map| map.leveled(chosen))
+    }
+
+    /// The part of `shape` points that begins at the point `first`.
+    fn cropped(slf: &Bound<'_, Self>, first: [usize; 2], shape: [usize; 2]) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "cropped", (slf.clone(), first, shape), |map| map.cropped(first, shape))
+    }
+
+    /// The mirror image along the chosen axes.
+    fn flipped(slf: &Bound<'_, Self>, along: [bool; 2]) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "flipped", (slf.clone(), along), |map| Ok(map.flipped(along)))
+    }
+
+    /// The map with x1 and x2 exchanged.
+    fn transposed(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "transposed", (slf.clone(),), |map| Ok(map.transposed()))
+    }
+
+    /// The map with peaks and valleys exchanged, as on a replica.
+    fn inverted(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "inverted", (slf.clone(),), |map| Ok(map.inverted()))
+    }
+
+    /// The map with all heights multiplied by `factor`.
+    fn scaled(slf: &Bound<'_, Self>, factor: f64) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "scaled", (slf.clone(), factor), |map| map.scaled(factor))
+    }
+
+    /// The map with its middle at the point `center` [m].
+    fn centered_at(slf: &Bound<'_, Self>, center: [f64; 2]) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "centered_at", (slf.clone(), center), |map| map.centered_at(center))
+    }
+
+    /// The map repeated along both axes, its lengths being the periods.
+    fn periodic(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
+        HeightMap::changed(slf, "periodic", (slf.clone(),), |map| Ok(map.periodic()))
+    }
+
+    /// The map interpolated at the cells of a grid, and the error of that: rms [m], greatest [m], rms over the rms height.
+    fn resampled(&self, py: Python<'_>, grid: &Grid) -> PyResult<(Py<HeightMap>, (f64, f64, f64))> {
+        let new = py.detach(|| self.0.resampled(&grid.0)).or_raise()?;
+        let error = (new.error.rms, new.error.max, new.error.of_rms_height);
+        Ok((HeightMap::made(py, new.map)?, error))
+    }
+
+    /// Mean, rms height, skewness, kurtosis, rms slope, rms slopes along x1 and x2, and rms curvature, in SI units.
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let of = py.detach(|| self.0.statistics()).or_raise()?;
+        let all = PyDict::new(py);
+        let single = [
+            ("mean", of.mean),
+            ("rms_height", of.rms_height),
+            ("skewness", of.skewness),
+            ("kurtosis", of.kurtosis),
+            ("rms_slope", of.rms_slope),
+            ("rms_curvature", of.rms_curvature),
+        ];
+        for (name, value) in single {
+            all.set_item(name, value)?;
+        }
+        all.set_item("rms_slopes", PyTuple::new(py, of.rms_slopes)?)?;
+        Ok(all)
+    }
+
+    /// Wave numbers [rad/m] and the radial mean of the power spectral density of the heights [m⁴], as rows.
+    fn power_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let rows = py.detach(|| self.0.power_spectrum()).or_raise()?;
+        let n = rows.len();
+        to_array(py, rows.into_iter().flat_map(|(q, c)| [q, c]).collect(), &[n, 2])
+    }
+
+    /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
+    fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
+        mapped("x1", x1, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN))
+    }
+
+    /// Writes the map by the ending of the path: `.sdf` (all digits), `.gsf` (single precision) or `.npy`, in m.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let kinds = [("sdf", 0), ("gsf", 1), ("npy", 2)];
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let kind = choice("ending of the path", &ending, &kinds)?;
+        let file = File::create(&path)?;
+        py.detach(|| match kind {
+            0 => self.0.write_sdf(file),
+            1 => self.0.write_gsf(file),
+            _ => self.0.write_npy(file),
+        })
+        .or_raise()
+    }
+
+    /// A self-affine random surface of whole periods, of the lengths of `grid`: a periodic map.
+    ///
+    /// Waves run from `longest` to `shortest` [m] with the Hurst exponent `hurst`; longer than `roll_off` their spectrum is flat. Give
+    /// `rms_slope` or `rms_height` [m]. `anisotropy` is (ratio, direction [rad]). The same seed gives the same surface everywhere.
+    ///
+    /// >>> HeightMap.rough(Grid(64, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.1, seed=3).statistics()["rms_slope"].__round__(3)
+    /// 0.1
+    #[staticmethod]
+    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, seed=0))]
+    #[allow(clippy::too_many_arguments)]
+    fn rough(
+        py: Python<'_>,
+        grid: Bound<'_, Grid>,
+        longest: f64,
+        shortest: f64,
+        rms_slope: Option<f64>,
+        rms_height: Option<f64>,
+        hurst: f64,
+        roll_off: Option<f64>,
+        anisotropy: Option<(f64, f64)>,
+        seed: u64,
+    ) -> PyResult<Py<HeightMap>> {
+        let roughness = match (rms_slope, rms_height) {
+            (Some(slope), None) => Roughness::RmsSlope(slope),
+            (None, Some(height)) => Roughness::RmsHeight(height),
+            _ => return Err(PyTypeError::new_err("give rms_slope or rms_height, one of them")),
+        };
+        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed).with_hurst(hurst);
+        if let Some(roll_off) = roll_off {
+            spec = spec.with_roll_off(roll_off);
+        }
+        if let Some((ratio, direction)) = anisotropy {
+            spec = spec.with_anisotropy(Anisotropy::new(ratio, direction));
+        }
+        let on = &grid.get().0;
+        let rough = py.detach(|| geo::Rough::new(on, spec)).or_raise()?;
+        let keywords = PyDict::new(py);
+        keywords.set_item("rms_slope", rms_slope)?;
+        keywords.set_item("rms_height", rms_height)?;
+        keywords.set_item("hurst", hurst)?;
+        keywords.set_item("roll_off", roll_off)?;
+        keywords.set_item("anisotropy", anisotropy)?;
+        keywords.set_item("seed", seed)?;
+        let map = HeightMap(Arc::new(rough.height_map().clone()));
+        let shape = Shape::made(py, "rough", (grid, longest, shortest), Arc::new(rough))?.with_keywords(&keywords);
+        Py::new(py, PyClassInitializer::from(shape).add_subclass(map))
+    }
+}

@@ -1,0 +1,158 @@
+//! Materials: a rheology and the response in volume.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::rheology as rh;
+
+use crate::arrays::mapped;
+use crate::errors::OrRaise;
+use crate::recipe::{Recipe, Reduced};
+use crate::rheology::Rheology;
+
+/// A rheology that was measured in tension: what it gives as J(t) is the strain of a rod under unit tension, and its moduli are Young's.
+///
+/// A `Material` of it needs `nu` or `bulk_modulus`.
+///
+/// >>> Material(Tension(Rheology.relaxing(3e6, 1.5e6, 0.1)), nu=0.49)
+/// Material(Tension(Rheology.relaxing(3000000.0, 1500000.0, 0.1)), nu=0.49)
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Tension(pub Py<Rheology>);
+
+#[pymethods]
+impl Tension {
+    #[new]
+    fn new(rheology: Py<Rheology>) -> Tension {
+        Tension(rheology)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("Tension({})", self.0.bind(py).repr()?))
+    }
+
+    fn __getnewargs__(&self, py: Python<'_>) -> (Py<Rheology>,) {
+        (self.0.clone_ref(py),)
+    }
+}
+
+/// A body of a contact: a rheology in shear and the response in volume.
+///
+/// Parameters
+/// ----------
+/// rheology : Rheology or Tension
+///     The shear creep, or the creep of a rod.
+/// nu : float
+///     Poisson's ratio, constant in time; 0.5, the default in shear, is incompressible.
+/// bulk_modulus : float
+///     A bulk that is elastic instead [Pa].
+/// bulk_ratio : float
+///     A bulk that relaxes in proportion to the shear: the share c of B(t)/B(0) = 1 − c (1 − G(t)/G(0)).
+///
+/// >>> pmma = Material(Rheology.relaxing(1e9, 0.5e9, 10.0), nu=0.35)
+/// >>> pmma.contact_compliance(0.0) * 1e9
+/// 0.325
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Material {
+    pub material: rh::Material,
+    recipe: Recipe,
+}
+
+impl Material {
+    pub fn by(recipe: Recipe, material: rh::Material) -> Material {
+        Material { material, recipe }
+    }
+}
+
+#[pymethods]
+impl Material {
+    #[new]
+    #[pyo3(signature = (rheology, *, nu=None, bulk_modulus=None, bulk_ratio=None))]
+    fn new(
+        py: Python<'_>,
+        rheology: Bound<'_, PyAny>,
+        nu: Option<f64>,
+        bulk_modulus: Option<f64>,
+        bulk_ratio: Option<f64>,
+    ) -> PyResult<Material> {
+        let material = if let Ok(rod) = rheology.cast::<Tension>() {
+            let rod = rh::Tension(Arc::clone(&rod.get().0.get().body));
+            match (nu, bulk_modulus, bulk_ratio) {
+                (Some(nu), None, None) => rh::Material::from_tension(rod, nu),
+                (None, Some(bulk), None) => rh::Material::from_tension_elastic_bulk(rod, bulk),
+                _ => return Err(PyTypeError::new_err("a rheology in tension needs nu or bulk_modulus, one of them")),
+            }
+        } else {
+            let needed = "a Rheology or a Tension is needed";
+            let body = Arc::clone(&rheology.cast::<Rheology>().map_err(|_| PyTypeError::new_err(needed))?.get().body);
+            match (nu, bulk_modulus, bulk_ratio) {
+                (None, None, None) => Ok(rh::Material::incompressible(body)),
+                (Some(nu), None, None) => rh::Material::constant_poisson(body, nu),
+                (None, Some(bulk), None) => rh::Material::elastic_bulk(body, bulk),
+                (None, Some(bulk), Some(ratio)) => rh::Material::relaxing_bulk(body, bulk, ratio),
+                _ => return Err(PyTypeError::new_err("give nu, or bulk_modulus, or bulk_modulus and bulk_ratio")),
+            }
+        };
+        let keywords = PyDict::new(py);
+        for (name, value) in [("nu", nu), ("bulk_modulus", bulk_modulus), ("bulk_ratio", bulk_ratio)] {
+            if let Some(value) = value {
+                keywords.set_item(name, value)?;
+            }
+        }
+        let recipe = Recipe::new(py, "", (rheology,))?.with_keywords(Some(&keywords));
+        Ok(Material { material: material.or_raise()?, recipe })
+    }
+
+    /// A material of the library of published ones (`published_materials`), with a constant Poisson's ratio.
+    ///
+    /// Raises ValueError with the known names.
+    #[staticmethod]
+    fn published(py: Python<'_>, name: &str, nu: f64) -> PyResult<Material> {
+        let material = rh::library::find(name).and_then(|found| found.material(nu)).or_raise()?;
+        Ok(Material { material, recipe: Recipe::new(py, "published", (name, nu))? })
+    }
+
+    /// The two bodies as one: both deform, and their compliances add up.
+    fn against(slf: Bound<'_, Self>, other: Bound<'_, Material>) -> PyResult<Material> {
+        let material = slf.get().material.clone().against(other.get().material.clone());
+        Ok(Material { material, recipe: Recipe::new(slf.py(), "against", (slf, other))? })
+    }
+
+    /// The material with exponential series fitted over the times from `first` to `last` [s].
+    #[pyo3(signature = (first, last, tolerance=1e-4))]
+    fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Material> {
+        let py = slf.py();
+        let material = &slf.get().material;
+        let material = py.detach(|| material.fitted(first..=last, tolerance)).or_raise()?;
+        Ok(Material { material, recipe: Recipe::new(py, "fitted", (slf, first, last, tolerance))? })
+    }
+
+    /// C(t) [1/Pa] at times [s], 1/E* of an elastic body: a float, or an array of the shape of `t`.
+    fn contact_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("t", t, |t| self.material.contact_compliance(t))
+    }
+
+    /// The errors of series that were fitted, a line each.
+    #[getter]
+    fn fit_reports(&self) -> Vec<String> {
+        self.material.fit_reports().map(ToString::to_string).collect()
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.get().recipe.repr(&slf.get_type())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}
+
+/// Names, descriptions and references of the published materials.
+///
+/// >>> sorted(published_materials())[:1]  # doctest: +ELLIPSIS
+/// ['...']
+#[pyfunction]
+pub fn published_materials() -> std::collections::BTreeMap<&'static str, (&'static str, &'static str)> {
+    rh::library::all().iter().map(|material| (material.name, (material.description, material.reference))).collect()
+}

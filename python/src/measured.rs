@@ -1,0 +1,289 @@
+//! Measured creep, relaxation and dynamic moduli; temperature.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::TextFormat;
+use viscocontact::rheology::{self as rh, Experiment, Units};
+
+use crate::arrays::column;
+use crate::errors::{OrRaise, choice};
+use crate::materials::Tension;
+use crate::recipe::{Recipe, Reduced};
+use crate::rheology::Rheology;
+use crate::temperature::TimeTemperature;
+
+const EXPERIMENTS: [(&str, Experiment); 4] = [
+    ("creep", Experiment::Creep),
+    ("relaxation", Experiment::Relaxation),
+    ("dynamic", Experiment::Dynamic),
+    ("storage", Experiment::Storage),
+];
+
+/// A table of measured creep, relaxation or dynamic moduli; `fit` makes a `Rheology` of it.
+///
+/// >>> t = [0.1, 0.3, 1.0, 3.0, 10.0, 100.0]
+/// >>> creep = Measurements.creep(t, [1.05e-6, 1.14e-6, 1.39e-6, 1.78e-6, 1.99e-6, 2.00e-6])
+/// >>> body = creep.fit()
+/// >>> abs(body.creep_compliance(5.0) / 1.92e-6 - 1) < 1e-2
+/// True
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Measurements {
+    measurements: rh::Measurements,
+    recipe: Recipe,
+}
+
+fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
+    let (x, y) = (column(names[0], x)?, column(names[1], y)?);
+    if x.len() != y.len() {
+        return Err(PyValueError::new_err(format!(
+            "{}: {} given, {} needed, one for each of {}",
+            names[1],
+            y.len(),
+            x.len(),
+            names[0]
+        )));
+    }
+    Ok(x.into_iter().zip(y).collect())
+}
+
+#[pymethods]
+impl Measurements {
+    /// Creep: times ≥ 0 [s] and compliances [1/Pa], in any order.
+    #[staticmethod]
+    fn creep(py: Python<'_>, times: Bound<'_, PyAny>, compliances: Bound<'_, PyAny>) -> PyResult<Measurements> {
+        let measurements =
+            rh::Measurements::creep(&together(["times", "compliances"], &times, &compliances)?).or_raise()?;
+        Ok(Measurements { measurements, recipe: Recipe::new(py, "creep", (times, compliances))? })
+    }
+
+    /// Relaxation: times ≥ 0 [s] and moduli [Pa], in any order.
+    #[staticmethod]
+    fn relaxation(py: Python<'_>, times: Bound<'_, PyAny>, moduli: Bound<'_, PyAny>) -> PyResult<Measurements> {
+        let measurements = rh::Measurements::relaxation(&together(["times", "moduli"], &times, &moduli)?).or_raise()?;
+        Ok(Measurements { measurements, recipe: Recipe::new(py, "relaxation", (times, moduli))? })
+    }
+
+    /// Dynamic moduli: angular frequencies [rad/s], storage and loss moduli [Pa], in any order.
+    #[staticmethod]
+    fn dynamic(
+        py: Python<'_>,
+        omega: Bound<'_, PyAny>,
+        storage: Bound<'_, PyAny>,
+        loss: Bound<'_, PyAny>,
+    ) -> PyResult<Measurements> {
+        let first = together(["omega", "storage"], &omega, &storage)?;
+        let second = together(["omega", "loss"], &omega, &loss)?;
+        let rows: Vec<_> = first.into_iter().zip(second).map(|((x, storage), (_, loss))| (x, storage, loss)).collect();
+        let measurements = rh::Measurements::dynamic(&rows).or_raise()?;
+        Ok(Measurements { measurements, recipe: Recipe::new(py, "dynamic", (omega, storage, loss))? })
+    }
+
+    /// Storage moduli alone: angular frequencies [rad/s] and moduli [Pa], in any order.
+    #[staticmethod]
+    fn storage(py: Python<'_>, omega: Bound<'_, PyAny>, storage: Bound<'_, PyAny>) -> PyResult<Measurements> {
+        let measurements = rh::Measurements::storage(&together(["omega", "storage"], &omega, &storage)?).or_raise()?;
+        Ok(Measurements { measurements, recipe: Recipe::new(py, "storage", (omega, storage))? })
+    }
+
+    /// Reads a text file of an `experiment` ("creep", "relaxation", "dynamic" or "storage").
+    ///
+    /// Numbers are in SI units, which headings must agree with; `units="headings"` takes the units that each heading names, and
+    /// `units=(abscissa, value)` their sizes in SI.
+    ///
+    /// Raises OSError if the file cannot be read, ValueError if its table is not allowed, with the line.
+    #[staticmethod]
+    #[pyo3(signature = (experiment, path, *, units=None, decimal_comma=None))]
+    fn from_csv(
+        py: Python<'_>,
+        experiment: &str,
+        path: PathBuf,
+        units: Option<Bound<'_, PyAny>>,
+        decimal_comma: Option<bool>,
+    ) -> PyResult<Measurements> {
+        let kind = choice("experiment", experiment, &EXPERIMENTS)?;
+        let (of_file, format) = (of_units(units.as_ref())?, text_format(decimal_comma));
+        let measurements = py.detach(|| rh::Measurements::from_csv(kind, &path, of_file, format)).or_raise()?;
+        let keywords = PyDict::new(py);
+        keywords.set_item("units", units)?;
+        keywords.set_item("decimal_comma", decimal_comma)?;
+        let recipe = Recipe::new(py, "from_csv", (experiment, path))?.with_keywords(Some(&keywords));
+        Ok(Measurements { measurements, recipe })
+    }
+
+    /// The same with the relative standard deviation of the values stated.
+    fn with_scatter(slf: Bound<'_, Self>, scatter: f64) -> PyResult<Measurements> {
+        let measurements = slf.get().measurements.clone().with_scatter(scatter).or_raise()?;
+        Ok(Measurements { measurements, recipe: Recipe::new(slf.py(), "with_scatter", (slf, scatter))? })
+    }
+
+    /// The body of the table, fitted by an exponential series. `extrapolated` lets it go on beyond the last time.
+    ///
+    /// Raises ConvergenceError if no series fits.
+    #[pyo3(signature = (extrapolated=false))]
+    fn fit(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
+        let (py, measurements) = (slf.py(), &slf.get().measurements);
+        let series = py.detach(|| measurements.fit()).or_raise()?;
+        Ok(series_of(Recipe::of::<Measurements>(py, "fit", (slf.clone(), extrapolated))?, series, extrapolated))
+    }
+
+    /// `fit` of a table measured in tension.
+    #[pyo3(signature = (extrapolated=false))]
+    fn fit_tension(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Tension> {
+        let py = slf.py();
+        Ok(Tension(Py::new(py, Measurements::_rod(slf, extrapolated)?)?))
+    }
+
+    /// The creep of the rod, for pickle.
+    fn _rod(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
+        let (py, measurements) = (slf.py(), &slf.get().measurements);
+        let series = py.detach(|| measurements.fit_tension()).or_raise()?.0;
+        Ok(series_of(Recipe::of::<Measurements>(py, "_rod", (slf.clone(), extrapolated))?, series, extrapolated))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("{:?}", self.measurements)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}
+
+fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rheology {
+    Rheology::by(recipe, Arc::new(if extrapolated { series.extrapolated() } else { series }))
+}
+
+pub fn text_format(decimal_comma: Option<bool>) -> TextFormat {
+    decimal_comma.map_or(TextFormat::default(), |comma| TextFormat::default().with_decimal_comma(comma))
+}
+
+fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
+    match units {
+        None => Ok(Units::SI),
+        Some(units) if units.extract::<&str>().is_ok_and(|text| text == "headings") => Ok(Units::OF_HEADINGS),
+        Some(units) => {
+            let (abscissa, value) =
+                units.extract().map_err(|_| PyTypeError::new_err("units: \"headings\" or (abscissa, value)"))?;
+            Units::new(abscissa, value).or_raise()
+        }
+    }
+}
+
+/// Measurements at several temperatures, shifted along the axis of time (or frequency) to one curve.
+///
+/// Parameters
+/// ----------
+/// reference : float
+///     The temperature of the curve [K].
+/// isotherms : sequence of (temperature [K], Measurements)
+/// law : TimeTemperature, optional
+///     A known law; else the shifts are found from the data.
+/// vertical_shifts : bool
+///     Whether the values may be shifted too.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct MasterCurve(rh::MasterCurve);
+
+#[pymethods]
+impl MasterCurve {
+    #[new]
+    #[pyo3(signature = (reference, isotherms, *, law=None, vertical_shifts=false))]
+    fn new(
+        py: Python<'_>,
+        reference: f64,
+        isotherms: Vec<(f64, Bound<'_, Measurements>)>,
+        law: Option<&TimeTemperature>,
+        vertical_shifts: bool,
+    ) -> PyResult<MasterCurve> {
+        let isotherms = isotherms
+            .into_iter()
+            .map(|(temperature, measured)| rh::Isotherm::new(temperature, measured.get().measurements.clone()));
+        let isotherms = isotherms.collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        let curve = py.detach(|| match law {
+            Some(law) => rh::MasterCurve::with_law(&law.law, isotherms),
+            None if vertical_shifts => rh::MasterCurve::with_vertical_shifts(reference, isotherms),
+            None => rh::MasterCurve::new(reference, isotherms),
+        });
+        curve.or_raise().map(MasterCurve)
+    }
+
+    /// The isotherms of a text file with a column of the temperature in K or °C, as `Measurements.from_csv` reads them: a sequence of
+    /// (temperature [K], Measurements) is what `MasterCurve` takes. This makes the curve at once.
+    #[staticmethod]
+    #[pyo3(signature = (experiment, path, reference, *, units=None, decimal_comma=None, vertical_shifts=false))]
+    fn from_csv(
+        py: Python<'_>,
+        experiment: &str,
+        path: PathBuf,
+        reference: f64,
+        units: Option<&Bound<'_, PyAny>>,
+        decimal_comma: Option<bool>,
+        vertical_shifts: bool,
+    ) -> PyResult<MasterCurve> {
+        let experiment = choice("experiment", experiment, &EXPERIMENTS)?;
+        let (units, format) = (of_units(units)?, text_format(decimal_comma));
+        let curve = py.detach(|| {
+            let table = viscocontact::input::TextTable::open(path, format)?;
+            let isotherms = rh::Isotherm::from_table(experiment, &table, units)?;
+            if vertical_shifts {
+                rh::MasterCurve::with_vertical_shifts(reference, isotherms)
+            } else {
+                rh::MasterCurve::new(reference, isotherms)
+            }
+        });
+        curve.or_raise().map(MasterCurve)
+    }
+
+    /// Temperature [K], shift factor a_T and standard error of log₁₀ a_T of each isotherm.
+    #[getter]
+    fn shift_factors(&self) -> Vec<(f64, f64, f64)> {
+        let (factors, errors) = (self.0.shift_factors(), self.0.shift_errors());
+        factors
+            .into_iter()
+            .zip(errors)
+            .map(|((temperature, factor), (_, error))| (temperature, factor, error))
+            .collect()
+    }
+
+    /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`.
+    fn wlf(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
+        let law = self.0.wlf().or_raise()?;
+        let [c1, c2] = law.wlf_constants().unwrap_or([f64::NAN; 2]);
+        TimeTemperature::wlf(py, c1, c2, law.reference())
+    }
+
+    /// The Arrhenius law through the shift factors.
+    fn arrhenius(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
+        let law = self.0.arrhenius().or_raise()?;
+        TimeTemperature::arrhenius(py, law.activation_energy().unwrap_or(f64::NAN), law.reference())
+    }
+
+    /// The body at the reference temperature.
+    #[pyo3(signature = (extrapolated=false))]
+    fn fit(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
+        let (py, curve) = (slf.py(), &slf.get().0);
+        let series = py.detach(|| curve.fit()).or_raise()?;
+        Ok(series_of(Recipe::of::<MasterCurve>(py, "fit", (slf.clone(), extrapolated))?, series, extrapolated))
+    }
+
+    /// The points of the curve: reduced times [s] or angular frequencies [rad/s] and values, by function.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (x, function, value) in self.0.points() {
+            let name = format!("{function:?}").to_lowercase();
+            let rows = match all.get_item(&name)? {
+                Some(rows) => rows.cast_into::<pyo3::types::PyList>()?,
+                None => {
+                    let rows = pyo3::types::PyList::empty(py);
+                    all.set_item(&name, &rows)?;
+                    rows
+                }
+            };
+            rows.append((x, value))?;
+        }
+        Ok(all)
+    }
+}

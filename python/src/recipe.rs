@@ -1,0 +1,103 @@
+//! How an object was made: its repr, its pickle and its copies are the call that made it.
+
+use pyo3::PyTypeInfo;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple, PyType};
+
+/// A call of a class, or of one of its static methods.
+pub struct Recipe {
+    /// The class of the method, if it is not that of the object.
+    class: Option<Py<PyType>>,
+    maker: &'static str,
+    arguments: Py<PyTuple>,
+    keywords: Option<Py<PyDict>>,
+}
+
+/// What `__reduce__` returns: the function that makes the object again, and its arguments.
+pub type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>));
+
+impl Recipe {
+    /// `maker` is the name of a static method; empty for the class itself.
+    pub fn new<'py>(
+        py: Python<'py>,
+        maker: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+    ) -> PyResult<Recipe> {
+        Ok(Recipe { class: None, maker, arguments: arguments.into_pyobject(py)?.unbind(), keywords: None })
+    }
+
+    /// A call of a method of another class than the object's.
+    pub fn of<'py, T: PyTypeInfo>(
+        py: Python<'py>,
+        maker: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+    ) -> PyResult<Recipe> {
+        Ok(Recipe { class: Some(py.get_type::<T>().unbind()), ..Recipe::new(py, maker, arguments)? })
+    }
+
+    fn class<'py>(&self, object: Bound<'py, PyType>) -> Bound<'py, PyType> {
+        let py = object.py();
+        self.class.as_ref().map_or(object, |class| class.bind(py).clone())
+    }
+
+    pub fn with_keywords(self, keywords: Option<&Bound<'_, PyDict>>) -> Recipe {
+        Recipe { keywords: keywords.map(|keywords| keywords.clone().unbind()), ..self }
+    }
+
+    pub fn again(&self, py: Python<'_>) -> Recipe {
+        Recipe {
+            class: self.class.as_ref().map(|class| class.clone_ref(py)),
+            maker: self.maker,
+            arguments: self.arguments.clone_ref(py),
+            keywords: self.keywords.as_ref().map(|keywords| keywords.clone_ref(py)),
+        }
+    }
+
+    pub fn reduce<'py>(&self, class: Bound<'py, PyType>) -> PyResult<Reduced<'py>> {
+        let py = class.py();
+        let class = self.class(class);
+        let again = py.import("viscocontact._native")?.getattr("_again")?;
+        let keywords = self.keywords.as_ref().map(|keywords| keywords.clone_ref(py));
+        Ok((again, (class, self.maker, self.arguments.clone_ref(py), keywords)))
+    }
+
+    /// The call in one line; of arrays their shape alone.
+    pub fn repr(&self, class: &Bound<'_, PyType>) -> PyResult<String> {
+        let (py, class) = (class.py(), self.class(class.clone()));
+        let mut shown: Vec<String> =
+            self.arguments.bind(py).iter().map(|value| shown(&value)).collect::<PyResult<_>>()?;
+        if let Some(keywords) = &self.keywords {
+            for (name, value) in keywords.bind(py) {
+                shown.push(format!("{name}={}", self::shown(&value)?));
+            }
+        }
+        if self.maker == "__add__" {
+            return Ok(shown.join(" + "));
+        }
+        let dot = if self.maker.is_empty() { "" } else { "." };
+        Ok(format!("{}{dot}{}({})", class.name()?, self.maker, shown.join(", ")))
+    }
+}
+
+fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if value.hasattr("dtype")?
+        && let Ok(shape) = value.getattr("shape")?.extract::<Vec<usize>>()
+    {
+        return Ok(format!("<array {shape:?}>"));
+    }
+    let text = value.repr()?.to_string();
+    Ok(if text.chars().count() > 60 { format!("{}…", text.chars().take(59).collect::<String>()) } else { text })
+}
+
+/// Makes an object again: for pickle.
+#[pyfunction]
+#[pyo3(name = "_again")]
+pub fn again<'py>(
+    class: Bound<'py, PyType>,
+    maker: &str,
+    arguments: Bound<'py, PyTuple>,
+    keywords: Option<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let maker = if maker.is_empty() { class.into_any() } else { class.getattr(maker)? };
+    maker.call(arguments, keywords.as_ref())
+}

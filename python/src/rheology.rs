@@ -1,0 +1,249 @@
+//! Rheologies: the shear creep of bodies.
+
+use std::sync::Arc;
+
+use numpy::{Complex64, IntoPyArray, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
+
+use crate::arrays::{mapped, pairs, values};
+use crate::errors::{OrRaise, raise};
+use crate::recipe::{Recipe, Reduced};
+
+/// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
+///
+/// Its static methods make the models; moduli are in Pa, times in s, compliances in 1/Pa. A `Material` adds the response in volume.
+///
+/// >>> rubber = Rheology.prony(1e6, [(5e6, 1e-3), (2e6, 0.1)])
+/// >>> rubber.creep_compliance(0.0) * 8e6
+/// 1.0
+/// >>> rubber
+/// Rheology.prony(1000000.0, [(5000000.0, 0.001), (2000000.0, 0.1)])
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Rheology {
+    pub body: Arc<dyn Body>,
+    recipe: Recipe,
+}
+
+impl Rheology {
+    pub fn made<'py>(
+        py: Python<'py>,
+        maker: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+        body: Arc<dyn Body>,
+    ) -> PyResult<Rheology> {
+        Ok(Rheology { body, recipe: Recipe::new(py, maker, arguments)? })
+    }
+
+    pub fn by(recipe: Recipe, body: Arc<dyn Body>) -> Rheology {
+        Rheology { body, recipe }
+    }
+
+    fn spectrum(&self) -> PyResult<CreepSpectrum> {
+        self.body.creep_spectrum().ok_or_else(|| {
+            PyValueError::new_err("this rheology has no exact exponential series: take fitted(first, last, tolerance)")
+        })
+    }
+}
+
+#[pymethods]
+impl Rheology {
+    /// An elastic body of shear modulus `g` [Pa]: J = 1/G.
+    #[staticmethod]
+    fn elastic(py: Python<'_>, g: f64) -> PyResult<Rheology> {
+        Rheology::made(py, "elastic", (g,), Arc::new(rh::Elastic::new(g).or_raise()?))
+    }
+
+    /// Spring `g` [Pa] and dashpot in series, of `relaxation_time` [s]: a fluid.
+    #[staticmethod]
+    fn maxwell(py: Python<'_>, g: f64, relaxation_time: f64) -> PyResult<Rheology> {
+        let body = rh::Maxwell::with_time(g, relaxation_time).or_raise()?;
+        Rheology::made(py, "maxwell", (g, relaxation_time), Arc::new(body))
+    }
+
+    /// Spring `g` [Pa] and dashpot in parallel, of `retardation_time` [s]: no elastic response.
+    #[staticmethod]
+    fn kelvin_voigt(py: Python<'_>, g: f64, retardation_time: f64) -> PyResult<Rheology> {
+        let body = rh::KelvinVoigt::with_time(g, retardation_time).or_raise()?;
+        Rheology::made(py, "kelvin_voigt", (g, retardation_time), Arc::new(body))
+    }
+
+    /// A spring `g` [Pa] in series with a spring `g_k` [Pa] and a dashpot in parallel, of `retardation_time` [s]: the standard linear
+    /// solid.
+    #[staticmethod]
+    fn zener(py: Python<'_>, g: f64, g_k: f64, retardation_time: f64) -> PyResult<Rheology> {
+        let body = rh::Zener::with_time(g, g_k, retardation_time).or_raise()?;
+        Rheology::made(py, "zener", (g, g_k, retardation_time), Arc::new(body))
+    }
+
+    /// The standard linear solid whose modulus relaxes from `glassy` to `rubbery` [Pa] with `relaxation_time` [s].
+    #[staticmethod]
+    fn relaxing(py: Python<'_>, glassy: f64, rubbery: f64, relaxation_time: f64) -> PyResult<Rheology> {
+        let body = rh::Zener::relaxing(glassy, rubbery, relaxation_time).or_raise()?;
+        Rheology::made(py, "relaxing", (glassy, rubbery, relaxation_time), Arc::new(body))
+    }
+
+    /// A Maxwell element (modulus `g` [Pa], `relaxation_time` [s]) and a Kelvin–Voigt element (`g_k` [Pa], `retardation_time` [s]) in
+    /// series.
+    #[staticmethod]
+    fn burgers(py: Python<'_>, g: f64, relaxation_time: f64, g_k: f64, retardation_time: f64) -> PyResult<Rheology> {
+        let body = rh::Burgers::with_times((g, relaxation_time), (g_k, retardation_time)).or_raise()?;
+        Rheology::made(py, "burgers", (g, relaxation_time, g_k, retardation_time), Arc::new(body))
+    }
+
+    /// A Prony series G(t) = G∞ + Σ G_k exp(−t/τ_k): the `equilibrium` modulus [Pa] (0 for a fluid) and rows (modulus [Pa], relaxation
+    /// time [s]).
+    #[staticmethod]
+    fn prony(py: Python<'_>, equilibrium: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
+        let body = rh::GeneralizedMaxwell::new(equilibrium, &pairs("terms", &terms)?).or_raise()?;
+        Rheology::made(py, "prony", (equilibrium, terms), Arc::new(body))
+    }
+
+    /// A Prony series as finite-element programs write it: the `glassy` modulus [Pa] and rows (share g_k, relaxation time [s]).
+    #[staticmethod]
+    fn prony_of_glassy(py: Python<'_>, glassy: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
+        let rows: Vec<_> = shares(&terms)?;
+        let body = rh::GeneralizedMaxwell::prony(glassy, &rows).or_raise()?;
+        Rheology::made(py, "prony_of_glassy", (glassy, terms), Arc::new(body))
+    }
+
+    /// A Prony series relative to the `rubbery` modulus [Pa]: rows (share g_k, relaxation time [s]).
+    #[staticmethod]
+    fn prony_of_rubbery(py: Python<'_>, rubbery: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
+        let rows: Vec<_> = shares(&terms)?;
+        let body = rh::GeneralizedMaxwell::prony_long_term(rubbery, &rows).or_raise()?;
+        Rheology::made(py, "prony_of_rubbery", (rubbery, terms), Arc::new(body))
+    }
+
+    /// A creep series J(t) = J_g + φ t + Σ J_k (1 − exp(−t/λ_k)): `glassy` compliance [1/Pa], `fluidity` [1/(Pa·s)], rows (compliance
+    /// [1/Pa], retardation time [s]).
+    #[staticmethod]
+    fn generalized_kelvin(py: Python<'_>, glassy: f64, fluidity: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
+        let body = rh::GeneralizedKelvin::new(glassy, fluidity, &pairs("terms", &terms)?).or_raise()?;
+        Rheology::made(py, "generalized_kelvin", (glassy, fluidity, terms), Arc::new(body))
+    }
+
+    /// A springpot J(t) = J₁ (t/t₁)^α: `compliance` J₁ [1/Pa] at `time` t₁ [s], `exponent` α.
+    #[staticmethod]
+    fn power_law(py: Python<'_>, compliance: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::PowerLaw::new(compliance, time, exponent).or_raise()?;
+        Rheology::made(py, "power_law", (compliance, time, exponent), Arc::new(body))
+    }
+
+    /// A spring `g` [Pa] and a springpot in series that creeps as much as the spring at `time` [s].
+    #[staticmethod]
+    fn fractional_maxwell(py: Python<'_>, g: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::FractionalMaxwell::with_time(g, time, exponent).or_raise()?;
+        Rheology::made(py, "fractional_maxwell", (g, time, exponent), Arc::new(body))
+    }
+
+    /// Findley's form J = J₀ + m tⁿ: `glassy` J₀ [1/Pa], `coefficient` m, `exponent` n.
+    #[staticmethod]
+    fn findley(py: Python<'_>, glassy: f64, coefficient: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::FractionalMaxwell::findley(glassy, coefficient, exponent).or_raise()?;
+        Rheology::made(py, "findley", (glassy, coefficient, exponent), Arc::new(body))
+    }
+
+    /// The standard linear solid with a springpot of `exponent` in place of the dashpot, of retardation `time` [s].
+    #[staticmethod]
+    fn fractional_zener(py: Python<'_>, g: f64, g_k: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::FractionalZener::new(g, g_k, time, exponent).or_raise()?;
+        Rheology::made(py, "fractional_zener", (g, g_k, time, exponent), Arc::new(body))
+    }
+
+    /// A stretched exponential J(t) = J_g + ΔJ [1 − exp(−(t/λ)^β)].
+    #[staticmethod]
+    fn kww(py: Python<'_>, glassy: f64, retarded: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::Kww::new(glassy, retarded, time, exponent).or_raise()?;
+        Rheology::made(py, "kww", (glassy, retarded, time, exponent), Arc::new(body))
+    }
+
+    /// Logarithmic creep J(t) = J_g + c ln(1 + t/λ).
+    #[staticmethod]
+    fn log_creep(py: Python<'_>, glassy: f64, strength: f64, time: f64) -> PyResult<Rheology> {
+        let body = rh::LogCreep::new(glassy, strength, time).or_raise()?;
+        Rheology::made(py, "log_creep", (glassy, strength, time), Arc::new(body))
+    }
+
+    /// Log-power creep J(t) = J_g + c ln(1 + (t/λ)ⁿ).
+    #[staticmethod]
+    fn slow_creep(py: Python<'_>, glassy: f64, strength: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::SlowCreep::new(glassy, strength, time, exponent).or_raise()?;
+        Rheology::made(py, "slow_creep", (glassy, strength, time, exponent), Arc::new(body))
+    }
+
+    /// Your own shear creep compliance: a function of the time t ≥ 0 [s] that returns J [1/Pa], never decreasing.
+    ///
+    /// An exception of the function comes out of the call that needed the compliance.
+    ///
+    /// >>> own = Rheology.function(lambda t: 1e-6 * (1 + t**0.3))
+    /// >>> own.creep_compliance(1.0)
+    /// 2e-06
+    #[staticmethod]
+    fn function(py: Python<'_>, creep_compliance: Py<PyAny>) -> PyResult<Rheology> {
+        let kept = creep_compliance.clone_ref(py);
+        let call = move |t: f64| Python::attach(|py| creep_compliance.call1(py, (t,))?.extract::<f64>(py));
+        Rheology::made(py, "function", (kept,), Arc::new(rh::FnRheology::fallible(call)))
+    }
+
+    /// This body fitted by an exponential series over the times from `first` to `last` [s] within a relative error.
+    #[pyo3(signature = (first, last, tolerance=1e-4))]
+    fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Rheology> {
+        let (py, body) = (slf.py(), Arc::clone(&slf.get().body));
+        let series = py.detach(|| body.series(first..=last, tolerance)).or_raise()?;
+        Rheology::made(py, "fitted", (slf, first, last, tolerance), Arc::new(series))
+    }
+
+    /// J(t) [1/Pa] at times [s]: a float, or an array of the shape of `t`.
+    fn creep_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let compliance = mapped("t", t, |t| self.body.creep_compliance(t))?;
+        match self.body.failure() {
+            Some(failure) => Err(raise(&failure.into())),
+            None => Ok(compliance),
+        }
+    }
+
+    /// G(t) [Pa] at times [s], without an immediate dashpot. Raises ValueError without an exponential series (`fitted`).
+    fn relaxation_modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let spectrum = self.spectrum()?.relaxation();
+        mapped("t", t, |t| spectrum.modulus(t))
+    }
+
+    /// G*(ω) = G′ + i G″ [Pa] at angular frequencies [rad/s], an array of complex numbers. Raises ValueError without an exponential
+    /// series (`fitted`).
+    fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let spectrum = self.spectrum()?;
+        let (values, shape) = values("omega", omega)?;
+        let moduli: Vec<Complex64> = values.into_iter().map(|omega| spectrum.complex_modulus(omega)).collect();
+        Ok(moduli.into_pyarray(py).reshape(shape)?.into_any())
+    }
+
+    /// The exact exponential series of J(t): glassy compliance [1/Pa], fluidity [1/(Pa·s)], rows (compliance, retardation time); None
+    /// if there is none.
+    #[getter]
+    #[allow(clippy::type_complexity)]
+    fn creep_spectrum(&self) -> Option<(f64, f64, Vec<(f64, f64)>)> {
+        let spectrum = self.body.creep_spectrum()?;
+        Some((spectrum.glassy(), spectrum.fluidity(), spectrum.terms().to_vec()))
+    }
+
+    /// The error of the series, if it was fitted, in one line.
+    #[getter]
+    fn fit_report(&self) -> Option<String> {
+        self.body.fit_report().map(|report| report.to_string())
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.get().recipe.repr(&slf.get_type())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}
+
+fn shares(terms: &Bound<'_, PyAny>) -> PyResult<Vec<rh::PronyTerm>> {
+    Ok(pairs("terms", terms)?.into_iter().map(|(share, time)| rh::PronyTerm { share, time }).collect())
+}

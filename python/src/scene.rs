@@ -1,0 +1,134 @@
+//! The parts of a contact, by keyword.
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::contact::{Builder, Edge, Frame, Settings, Solver, TimeRule};
+use viscocontact::{self as vc, ViscoelasticContact};
+
+use crate::attraction::Attraction;
+use crate::errors::choice;
+use crate::grid::Grid;
+use crate::kernels::InfluenceKernel;
+use crate::materials::Material;
+use crate::shapes::geometries;
+use crate::temperature::TemperatureHistory;
+
+/// Changes a setting if it is one of the keyword `name`.
+fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Settings>> {
+    let text = || value.extract::<String>();
+    Ok(Some(match name {
+        "tolerance" => settings.with_tolerance(value.extract()?),
+        "max_iterations" => settings.with_max_iterations(value.extract()?),
+        "series_tolerance" => settings.with_series_tolerance(value.extract()?),
+        "history_limit" => settings.with_history_limit(value.extract()?),
+        "symmetry" => settings.with_symmetry(value.extract()?),
+        "window" => settings.with_window(value.extract()?),
+        "solver" => {
+            let solvers = [("active_set", Solver::ActiveSet), ("polonsky_keer", Solver::PolonskyKeer)];
+            settings.with_solver(choice(name, &text()?, &solvers)?)
+        }
+        "time_rule" => {
+            let rules = [
+                ("exponential", TimeRule::Exponential),
+                ("exponential_linear", TimeRule::ExponentialLinear),
+                ("rectangle", TimeRule::Rectangle),
+                ("backward", TimeRule::Backward),
+            ];
+            settings.with_time_rule(choice(name, &text()?, &rules)?)
+        }
+        "edge" => settings.with_edge(choice(name, &text()?, &[("refuse", Edge::Refuse), ("allow", Edge::Allow)])?),
+        "frame" => {
+            settings.with_frame(choice(name, &text()?, &[("bodies", Frame::Bodies), ("indenter", Frame::Indenter)])?)
+        }
+        _ => return Ok(None),
+    }))
+}
+
+/// The settings of keywords, each of which must be one.
+pub fn settings(base: Settings, given: &Bound<'_, PyDict>) -> PyResult<Settings> {
+    given.iter().try_fold(base, |settings, (name, value)| {
+        let name: String = name.extract()?;
+        setting(settings, &name, &value)?.ok_or_else(|| unexpected(&name))
+    })
+}
+
+fn unexpected(name: &str) -> PyErr {
+    PyTypeError::new_err(format!("got an unexpected keyword argument '{name}'"))
+}
+
+/// A builder of the parts: of the required ones, and of `options` by the names of the crate. A value of None is the default.
+pub fn builder(
+    grid: &Grid,
+    geometry: &Bound<'_, PyAny>,
+    material: &Material,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Builder> {
+    let shapes = geometries(&grid.0, geometry)?;
+    let [first, others @ ..] = &shapes[..] else {
+        return Err(PyTypeError::new_err("geometry: at least one shape is needed"));
+    };
+    // the gap of a function in Python is evaluated here, with the GIL
+    let mut builder = ViscoelasticContact::builder(grid.0.clone()).geometry(first).material(material.material.clone());
+    for shape in others {
+        builder = builder.another_body(shape);
+    }
+    let mut changed = Settings::default();
+    for (name, value) in options.into_iter().flatten() {
+        let name: String = name.extract()?;
+        if value.is_none() {
+            continue;
+        }
+        if let Some(settings) = setting(changed, &name, &value)? {
+            changed = settings;
+            continue;
+        }
+        builder = match &*name {
+            "counter_body" => builder.counter_body(value.cast::<Material>()?.get().material.clone()),
+            "kernel" => builder.kernel(value.cast::<InfluenceKernel>()?.get().kernel.clone()),
+            "attraction" => builder.attraction(value.cast::<Attraction>()?.get().law.clone()),
+            "temperature" => builder.temperature(value.cast::<TemperatureHistory>()?.get().history.clone()),
+            "times" => {
+                let (first, last): (f64, f64) = value.extract()?;
+                builder.times(first..=last)
+            }
+            _ => return Err(unexpected(&name)),
+        };
+    }
+    Ok(builder.settings(changed))
+}
+
+/// Bytes that a contact takes, before it is built.
+///
+/// Takes the arguments of `ViscoelasticContact`.
+///
+/// >>> need = memory(Grid(256, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> need["total"] > need["state"] > 0
+/// True
+#[pyfunction]
+#[pyo3(signature = (grid, geometry, material, **options))]
+pub fn memory<'py>(
+    py: Python<'py>,
+    grid: &Grid,
+    geometry: &Bound<'py, PyAny>,
+    material: &Material,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    use crate::errors::OrRaise;
+    let memory: vc::contact::Memory = builder(grid, geometry, material, options)?.memory().or_raise()?;
+    let all = PyDict::new(py);
+    all.set_item("computed_cells", memory.computed_cells)?;
+    let parts = [
+        ("grid", memory.grid),
+        ("state", memory.state),
+        ("history", memory.history),
+        ("solver", memory.solver),
+        ("kernel", memory.kernel),
+        ("each_step", memory.each_step),
+        ("total", memory.total()),
+    ];
+    for (name, bytes) in parts {
+        all.set_item(name, bytes)?;
+    }
+    Ok(all)
+}

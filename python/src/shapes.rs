@@ -1,0 +1,204 @@
+//! Shapes: the gap between the bodies before they deform.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use vc::geometry::{self as geo, Geometry};
+use viscocontact as vc;
+
+use crate::arrays::{Array, plane, to_array};
+use crate::errors::OrRaise;
+use crate::grid::Grid;
+use crate::recipe::{Recipe, Reduced};
+
+/// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
+///
+/// Its static methods make shapes; `+` superposes them, `shifted` moves them. Lengths are in metres.
+///
+/// >>> ball = Shape.sphere(10e-3)
+/// >>> rough_ball = ball + Shape.wavy(1e-6, 0.2e-3).shifted((0.1e-3, 0))
+/// >>> ball.gap(Grid(2, 2e-3))
+/// array([[2.5e-05, 2.5e-05],
+///        [2.5e-05, 2.5e-05]])
+#[pyclass(frozen, subclass, module = "viscocontact")]
+pub struct Shape {
+    pub geometry: Arc<dyn Geometry>,
+    recipe: Recipe,
+}
+
+impl Shape {
+    /// The shape that the static method `maker` makes of `arguments`.
+    pub fn made<'py>(
+        py: Python<'py>,
+        maker: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+        geometry: Arc<dyn Geometry>,
+    ) -> PyResult<Shape> {
+        Ok(Shape { geometry, recipe: Recipe::new(py, maker, arguments)? })
+    }
+
+    pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> Shape {
+        Shape { recipe: self.recipe.with_keywords(Some(keywords)), ..self }
+    }
+}
+
+/// A gap given cell by cell.
+#[derive(Debug)]
+struct GapOnCells {
+    grid: vc::Grid,
+    gap: Vec<f64>,
+}
+
+impl Geometry for GapOnCells {
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+        let ([n1, n2], spacing) = (self.grid.cells(), self.grid.spacing());
+        let index =
+            |x: f64, axis: usize, n: usize| ((x / spacing[axis] + 0.5 * n as f64).floor().max(0.0) as usize).min(n - 1);
+        self.gap[index(x1, 0, n1) * n2 + index(x2, 1, n2)]
+    }
+
+    fn fill_gap_at(&self, grid: &vc::Grid, by: [f64; 2], gap: &mut [f64]) {
+        if *grid == self.grid && by == [0.0; 2] {
+            return gap.copy_from_slice(&self.gap);
+        }
+        let n2 = grid.cells()[1];
+        for (k, value) in gap.iter_mut().enumerate() {
+            let [x1, x2] = grid.center(k / n2, k % n2);
+            *value = self.initial_gap(x1 - by[0], x2 - by[1]);
+        }
+    }
+}
+
+#[pymethods]
+impl Shape {
+    /// A sphere of `radius` [m], as a paraboloid: r²/2R.
+    #[staticmethod]
+    fn sphere(py: Python<'_>, radius: f64) -> PyResult<Shape> {
+        Shape::made(py, "sphere", (radius,), Arc::new(geo::Sphere::new(radius).or_raise()?))
+    }
+
+    /// A cylinder of `radius` [m] along x2, as a parabola: x1²/2R.
+    #[staticmethod]
+    fn cylinder(py: Python<'_>, radius: f64) -> PyResult<Shape> {
+        Shape::made(py, "cylinder", (radius,), Arc::new(geo::Cylinder::new(radius).or_raise()?))
+    }
+
+    /// A paraboloid of the radii of curvature `r1` and `r2` [m] along x1 and x2.
+    #[staticmethod]
+    fn ellipsoid(py: Python<'_>, r1: f64, r2: f64) -> PyResult<Shape> {
+        Shape::made(py, "ellipsoid", (r1, r2), Arc::new(geo::Ellipsoid::new(r1, r2).or_raise()?))
+    }
+
+    /// A cone whose flank rises by `tan_beta` per unit of radius.
+    #[staticmethod]
+    fn cone(py: Python<'_>, tan_beta: f64) -> PyResult<Shape> {
+        Shape::made(py, "cone", (tan_beta,), Arc::new(geo::Cone::new(tan_beta).or_raise()?))
+    }
+
+    /// A flat punch with a circular face of `radius` [m]; nothing to touch outside.
+    #[staticmethod]
+    fn circular_punch(py: Python<'_>, radius: f64) -> PyResult<Shape> {
+        Shape::made(py, "circular_punch", (radius,), Arc::new(geo::FlatPunch::circular(radius).or_raise()?))
+    }
+
+    /// A flat punch with a rectangular face of full `sides` along x1 and x2 [m].
+    #[staticmethod]
+    fn rectangular_punch(py: Python<'_>, sides: [f64; 2]) -> PyResult<Shape> {
+        Shape::made(py, "rectangular_punch", (sides,), Arc::new(geo::FlatPunch::rectangular(sides).or_raise()?))
+    }
+
+    /// A wave along x1, A (1 − cos 2πx1/λ), of `amplitude` A and `wavelength` λ [m]; a pair of each makes the sum of a wave along x1
+    /// and one along x2.
+    #[staticmethod]
+    fn wavy(py: Python<'_>, amplitude: Bound<'_, PyAny>, wavelength: Bound<'_, PyAny>) -> PyResult<Shape> {
+        let wave = match (amplitude.extract(), wavelength.extract()) {
+            (Ok(amplitudes), Ok(wavelengths)) => geo::Wavy::in_two_directions(amplitudes, wavelengths),
+            _ => geo::Wavy::new(amplitude.extract()?, wavelength.extract()?),
+        };
+        Shape::made(py, "wavy", (amplitude, wavelength), Arc::new(wave.or_raise()?))
+    }
+
+    /// A gap [m] for each cell of `grid`: any array of its shape, `+inf` where there is nothing to touch.
+    ///
+    /// Raises ValueError if the shapes differ, or a value is NaN.
+    ///
+    /// >>> grid = Grid(4, 1e-3)
+    /// >>> x1, x2 = grid.coordinates()
+    /// >>> Shape.gap_on(grid, (x1**2 + x2**2) / 2e-2)
+    /// Shape.gap_on(Grid([4, 4], [0.001, 0.001]), <array [4, 4]>)
+    #[staticmethod]
+    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Bound<'_, PyAny>) -> PyResult<Shape> {
+        let on = grid.get().0.clone();
+        let values = crate::arrays::field("gap", &gap, on.cells())?;
+        let copy = to_array(py, values.clone(), &on.cells())?;
+        Shape::made(py, "gap_on", (grid, copy), Arc::new(GapOnCells { grid: on, gap: values }))
+    }
+
+    /// A gap by a function of the coordinates x1 and x2 [m], two floats, that returns a float [m].
+    ///
+    /// An exception of the function comes out of the call that needed the gap.
+    #[staticmethod]
+    fn function(py: Python<'_>, gap: Py<PyAny>) -> PyResult<Shape> {
+        let kept = gap.clone_ref(py);
+        let call = move |x1: f64, x2: f64| Python::attach(|py| gap.call1(py, (x1, x2))?.extract::<f64>(py));
+        Shape::made(py, "function", (kept,), Arc::new(geo::FnGeometry::fallible(call)))
+    }
+
+    /// This shape with its origin at the point `by` [m].
+    fn shifted(slf: Bound<'_, Self>, by: [f64; 2]) -> PyResult<Shape> {
+        let shape = geo::Shifted::new(Arc::clone(&slf.get().geometry), by).or_raise()?;
+        Shape::made(slf.py(), "shifted", (slf, by), Arc::new(shape))
+    }
+
+    /// The part of this shape within half a `period` [m] of the origin, repeated along x1 and x2; `inf` along an axis without
+    /// repetition.
+    fn repeated(slf: Bound<'_, Self>, period: [f64; 2]) -> PyResult<Shape> {
+        let shape = geo::Repeated::new(Arc::clone(&slf.get().geometry), period).or_raise()?;
+        Shape::made(slf.py(), "repeated", (slf, period), Arc::new(shape))
+    }
+
+    fn __add__(slf: Bound<'_, Self>, other: Bound<'_, Shape>) -> PyResult<Shape> {
+        let sum = geo::Sum::new(Arc::clone(&slf.get().geometry), Arc::clone(&other.get().geometry));
+        Shape::made(slf.py(), "__add__", (slf, other), Arc::new(sum))
+    }
+
+    /// The gap at the centres of the cells of a grid [m].
+    fn gap<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<Array<'py>> {
+        let mut gap = vec![0.0; grid.0.len()];
+        py.detach(|| self.geometry.fill_gap(&grid.0, &mut gap));
+        if let Some(failure) = self.geometry.failure() {
+            return Err(crate::errors::raise(&failure.into()));
+        }
+        to_array(py, gap, &grid.0.cells())
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.get().recipe.repr(&slf.get_type())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}
+
+/// The shapes of the rigid bodies of a contact: a shape, an array of the gap on the grid, or a sequence of shapes.
+pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Geometry>>> {
+    if let Ok(shape) = given.cast::<Shape>() {
+        return Ok(vec![Arc::clone(&shape.get().geometry)]);
+    }
+    if given.hasattr("dtype")? {
+        let (gap, shape) = plane("geometry", given)?;
+        if shape != grid.cells() {
+            let cells = grid.cells();
+            return Err(PyValueError::new_err(format!(
+                "geometry: the shape {cells:?} of the grid is needed, the array has {shape:?}"
+            )));
+        }
+        return Ok(vec![Arc::new(GapOnCells { grid: grid.clone(), gap })]);
+    }
+    let needed = "geometry: a Shape, an array of gaps on the grid, or a sequence of shapes is needed";
+    let shapes: Vec<Bound<'_, Shape>> = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
+    Ok(shapes.iter().map(|shape| Arc::clone(&shape.get().geometry)).collect())
+}

@@ -1,0 +1,270 @@
+//! Steady sliding and rolling: one problem a velocity.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use numpy::{Complex64, IntoPyArray};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::sliding as sl;
+
+use crate::arrays::{Array, to_array};
+use crate::errors::{OrRaise, raised_number};
+use crate::grid::Grid;
+use crate::interrupt::Listener;
+use crate::loads::{Load, loads};
+use crate::materials::Material;
+use crate::scene::builder;
+use crate::temperature::TimeTemperature;
+
+/// The complex number that a function in Python gives at a frequency.
+pub fn complex(function: &Py<PyAny>, omega: f64) -> Complex64 {
+    let value = Python::attach(|py| function.call1(py, (omega,))?.extract(py));
+    raised_number(value, Complex64::new(f64::NAN, f64::NAN))
+}
+
+/// The state of a steady motion, in numbers.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct SlidingReport(sl::SlidingReport);
+
+#[pymethods]
+impl SlidingReport {
+    /// Velocity of the indenter over the bodies [m/s].
+    #[getter]
+    fn velocity(&self) -> (f64, f64) {
+        self.0.velocity.into()
+    }
+
+    /// Normal force [N].
+    #[getter]
+    fn force(&self) -> f64 {
+        self.0.force
+    }
+
+    /// Approach [m].
+    #[getter]
+    fn approach(&self) -> f64 {
+        self.0.approach
+    }
+
+    /// Force that keeps the indenter moving, along x1 and x2 [N].
+    #[getter]
+    fn lateral_force(&self) -> (f64, f64) {
+        self.0.lateral_force.into()
+    }
+
+    /// The coefficient of friction: lateral force against the motion over normal force.
+    #[getter]
+    fn friction(&self) -> f64 {
+        self.0.friction()
+    }
+
+    /// Power that the bodies dissipate [W].
+    #[getter]
+    fn dissipation(&self) -> f64 {
+        self.0.dissipation()
+    }
+
+    /// Cells in contact.
+    #[getter]
+    fn contact_cells(&self) -> usize {
+        self.0.contact_cells
+    }
+
+    /// Contact area [m²].
+    #[getter]
+    fn contact_area(&self) -> f64 {
+        self.0.contact_area
+    }
+
+    /// Mean gap over the grid [m].
+    #[getter]
+    fn mean_gap(&self) -> f64 {
+        self.0.mean_gap
+    }
+
+    /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.0.residual
+    }
+
+    /// Sets of cells that were tried, and pairs of transforms.
+    #[getter]
+    fn cost(&self) -> (usize, usize) {
+        (self.0.sets, self.0.transforms)
+    }
+
+    fn __repr__(&self) -> String {
+        let of = &self.0;
+        format!(
+            "SlidingReport(velocity={:?} m/s, force={:e} N, friction={:.6}, contact_area={:e} m²)",
+            of.velocity,
+            of.force,
+            of.friction(),
+            of.contact_area
+        )
+    }
+}
+
+/// A contact that moves steadily over creeping bodies: the friction of rubber on a road, at any velocity, by one contact problem each.
+///
+/// Takes the arguments of `ViscoelasticContact`, and
+///
+/// Parameters
+/// ----------
+/// base : Material, optional
+///     The base of a layer (`Layer.bonded_to_material`), if it creeps otherwise.
+/// modulus : function, optional
+///     The complex contact modulus E* [Pa] at frequencies ≥ 0 [rad/s], in place of that of the material.
+///
+/// >>> grid = Grid(32, 1e-3)
+/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> road = Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3))
+/// >>> sliding = SteadySliding(grid, road, rubber, kernel=InfluenceKernel.periodic(grid))
+/// >>> sliding.at((0.5, 0.0), Load.force(0.02)).friction > 0
+/// True
+#[pyclass(module = "viscocontact")]
+pub struct SteadySliding(sl::SteadySliding);
+
+#[pymethods]
+impl SteadySliding {
+    #[new]
+    #[pyo3(
+        signature = (grid, geometry, material, *, base=None, modulus=None, **options),
+        text_signature = "(grid, geometry, material, *, base=None, modulus=None, **options)"
+    )]
+    fn new(
+        py: Python<'_>,
+        grid: &Grid,
+        geometry: &Bound<'_, PyAny>,
+        material: &Material,
+        base: Option<&Material>,
+        modulus: Option<Py<PyAny>>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<SteadySliding> {
+        let builder = builder(grid, geometry, material, options)?;
+        let sliding = match (base, modulus) {
+            (None, None) => py.detach(|| builder.build_sliding()),
+            (Some(base), None) => py.detach(|| builder.build_sliding_on(base.material.clone())),
+            (None, Some(modulus)) => py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega))),
+            _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
+        };
+        sliding.or_raise().map(SteadySliding)
+    }
+
+    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` along x1 and x2 [m/s].
+    fn at(&mut self, py: Python<'_>, velocity: [f64; 2], load: &Load) -> PyResult<SlidingReport> {
+        let load = load.load;
+        py.detach(|| self.0.at(velocity, load)).or_raise().map(SlidingReport)
+    }
+
+    /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
+    ///
+    /// `progress` is called after each state with the part that is done; where it returns False, the sweep ends with the states so far.
+    /// Ctrl-C ends it between two states.
+    ///
+    /// Returns the table of the states, each found from the one before: neighbours cost least.
+    #[pyo3(signature = (velocities, loads, *, law=None, temperatures=None, progress=None))]
+    fn sweep(
+        &mut self,
+        py: Python<'_>,
+        velocities: &Bound<'_, PyAny>,
+        loads: &Bound<'_, PyAny>,
+        law: Option<&TimeTemperature>,
+        temperatures: Option<Vec<f64>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<SlidingTable> {
+        let velocities: Vec<[f64; 2]> = match crate::arrays::column("velocities", velocities) {
+            Ok(along) => along.into_iter().map(|v| [v, 0.0]).collect(),
+            Err(_) => crate::arrays::table("velocities", velocities)?,
+        };
+        let mut sweep = sl::SlidingSweep::new(velocities, self::loads(loads)?);
+        match (law, temperatures) {
+            (None, None) => {}
+            (Some(law), Some(temperatures)) => sweep = sweep.at_temperatures(law.law.clone(), temperatures),
+            _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
+        }
+        let mut listener = Listener::new(progress);
+        let table =
+            py.detach(|| self.0.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
+        listener.result(table).map(SlidingTable)
+    }
+
+    /// Pressure of the state found last [Pa], of the shape of the grid.
+    #[getter]
+    fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let contact = self.0.contact();
+        to_array(py, contact.pressure().to_vec(), &contact.grid().cells())
+    }
+
+    /// Displacement of the state found last [m], of the shape of the grid.
+    #[getter]
+    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let contact = self.0.contact();
+        to_array(py, contact.displacement().to_vec(), &contact.grid().cells())
+    }
+
+    /// Gap of the state found last [m], of the shape of the grid.
+    #[getter]
+    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let contact = self.0.contact();
+        let mut gap = vec![0.0; contact.grid().len()];
+        py.detach(|| contact.gap_into(&mut gap)).or_raise()?;
+        to_array(py, gap, &contact.grid().cells())
+    }
+
+    fn __repr__(&self) -> String {
+        let [n1, n2] = self.0.contact().grid().cells();
+        format!("SteadySliding({n1} × {n2} cells)")
+    }
+}
+
+/// The states of a sweep.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct SlidingTable(sl::SlidingTable);
+
+#[pymethods]
+impl SlidingTable {
+    /// Arrays with a value for each state: "velocity1", "velocity2" [m/s], "temperature" [K] (NaN without), "force" [N], "approach" [m],
+    /// "friction", "lateral_force1", "lateral_force2" [N], "contact_area" [m²], "mean_gap" [m] and "dissipation" [W].
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        type Column = (&'static str, fn(&sl::SweptState) -> f64);
+        const COLUMNS: [Column; 11] = [
+            ("velocity1", |state| state.report.velocity[0]),
+            ("velocity2", |state| state.report.velocity[1]),
+            ("temperature", |state| state.temperature.unwrap_or(f64::NAN)),
+            ("force", |state| state.report.force),
+            ("approach", |state| state.report.approach),
+            ("friction", |state| state.report.friction()),
+            ("lateral_force1", |state| state.report.lateral_force[0]),
+            ("lateral_force2", |state| state.report.lateral_force[1]),
+            ("contact_area", |state| state.report.contact_area),
+            ("mean_gap", |state| state.report.mean_gap),
+            ("dissipation", |state| state.report.dissipation()),
+        ];
+        let all = PyDict::new(py);
+        for (name, of) in COLUMNS {
+            all.set_item(name, self.0.states().iter().map(of).collect::<Vec<_>>().into_pyarray(py))?;
+        }
+        Ok(all)
+    }
+
+    /// Writes the table as a CSV file.
+    fn write_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.0.write_csv(path)).or_raise()
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.states().len()
+    }
+
+    fn __getitem__(&self, index: isize) -> PyResult<SlidingReport> {
+        let n = self.0.states().len();
+        let at = if index < 0 { index + n as isize } else { index };
+        let state = usize::try_from(at).ok().and_then(|at| self.0.states().get(at));
+        let beyond = || pyo3::exceptions::PyIndexError::new_err(format!("index {index} of {n} states"));
+        state.map(|state| SlidingReport(state.report)).ok_or_else(beyond)
+    }
+}

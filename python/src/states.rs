@@ -1,0 +1,294 @@
+//! Elastic states: many materials, histories and temperatures on one surface.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::IntoPyArray;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use viscocontact::contact::Settings;
+use viscocontact::output::{Metadata, read_states, write_states};
+use viscocontact::run::Stepping;
+use viscocontact::states as st;
+use viscocontact::{self as vc};
+
+use crate::arrays::{Array, column, mapped, table, to_array};
+use crate::errors::OrRaise;
+use crate::grid::Grid;
+use crate::held::Led;
+use crate::interrupt::Listener;
+use crate::kernels::InfluenceKernel;
+use crate::loads::history;
+use crate::materials::Material;
+use crate::recipe::{Recipe, Reduced};
+use crate::scene::settings;
+use crate::scratch::{bytes_of, file_of};
+use crate::shapes::geometries;
+
+/// The elastic states of a surface, found once: any material, history and temperature on it is then a matter of microseconds a step.
+///
+/// Exact wherever contact only grows with the load of the elastic body.
+///
+/// >>> tip = ElasticStates.sphere(10e-3)
+/// >>> round(tip.approach(1.0), 6), round(tip.stiffness(1.0), 6)
+/// (3.831547, 0.391487)
+#[pyclass(frozen, module = "viscocontact")]
+pub struct ElasticStates {
+    pub states: Arc<st::ElasticStates>,
+    /// None of a sweep, whose pickle holds the states.
+    recipe: Option<Recipe>,
+}
+
+impl ElasticStates {
+    fn made<'py>(
+        py: Python<'py>,
+        maker: &'static str,
+        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
+        states: vc::Result<Arc<st::ElasticStates>>,
+    ) -> PyResult<ElasticStates> {
+        Ok(ElasticStates { states: states.or_raise()?, recipe: Some(Recipe::new(py, maker, arguments)?) })
+    }
+}
+
+#[pymethods]
+impl ElasticStates {
+    /// A sphere of `radius` [m] (Hertz).
+    #[staticmethod]
+    fn sphere(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
+        ElasticStates::made(py, "sphere", (radius,), st::ElasticStates::sphere(radius))
+    }
+
+    /// A cone whose flank rises by `tan_beta` per unit of radius.
+    #[staticmethod]
+    fn cone(py: Python<'_>, tan_beta: f64) -> PyResult<ElasticStates> {
+        ElasticStates::made(py, "cone", (tan_beta,), st::ElasticStates::cone(tan_beta))
+    }
+
+    /// A flat circular punch of `radius` [m].
+    #[staticmethod]
+    fn punch(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
+        ElasticStates::made(py, "punch", (radius,), st::ElasticStates::punch(radius))
+    }
+
+    /// A body of the shape c rⁿ: `coefficient` c [m^(1−n)], `exponent` n.
+    #[staticmethod]
+    fn power(py: Python<'_>, coefficient: f64, exponent: f64) -> PyResult<ElasticStates> {
+        ElasticStates::made(py, "power", (coefficient, exponent), st::ElasticStates::power(coefficient, exponent))
+    }
+
+    /// States of an upright body from rows (level [m²], approach [m], stiffness over modulus [m], contact area [m²]).
+    #[staticmethod]
+    fn from_table(py: Python<'_>, rows: Bound<'_, PyAny>) -> PyResult<ElasticStates> {
+        let table: Vec<_> = table::<4>("rows", &rows)?.into_iter().map(|[a, b, c, d]| (a, b, c, d)).collect();
+        ElasticStates::made(py, "from_table", (rows,), st::ElasticStates::from_table(&table))
+    }
+
+    /// The states of a shape on a grid, up to a `level` [m²], an `approach` [m], or what a `material` needs along a `load` to the time
+    /// `until`.
+    ///
+    /// Parameters
+    /// ----------
+    /// accuracy : float, default 1e-4
+    ///     Error of the depth between two states.
+    /// kernel : InfluenceKernel, optional
+    /// keep_pressures : bool
+    ///     Whether `StatesContact.pressure` is possible.
+    /// max_states : int, default 4000
+    /// progress : function, optional
+    ///     Called with the number of states so far; the sweep ends with these where it returns False. Ctrl-C ends it, too.
+    /// settings
+    ///     Keywords of `ViscoelasticContact` from `tolerance` on.
+    ///
+    /// >>> rubber = Material(Rheology.zener(1e6, 1e6, 1.0))
+    /// >>> states = ElasticStates.sweep(Grid(32, 4e-3), Shape.sphere(10e-3), material=rubber, load=Load.force(1.0), until=10.0)
+    /// >>> len(states) > 5
+    /// True
+    #[staticmethod]
+    #[pyo3(
+        signature = (grid, geometry, *, level=None, approach=None, material=None, load=None, until=None, kernel=None, accuracy=1e-4, keep_pressures=false, max_states=None, progress=None, **settings),
+        text_signature = "(grid, geometry, *, level=None, approach=None, material=None, load=None, until=None, kernel=None, accuracy=1e-4, keep_pressures=False, max_states=None, progress=None, **settings)"
+    )]
+    #[allow(clippy::too_many_arguments)]
+    fn sweep(
+        py: Python<'_>,
+        grid: Bound<'_, Grid>,
+        geometry: Bound<'_, PyAny>,
+        level: Option<f64>,
+        approach: Option<f64>,
+        material: Option<Bound<'_, Material>>,
+        load: Option<Bound<'_, PyAny>>,
+        until: Option<f64>,
+        kernel: Option<Bound<'_, InfluenceKernel>>,
+        accuracy: f64,
+        keep_pressures: bool,
+        max_states: Option<usize>,
+        progress: Option<Py<PyAny>>,
+        settings: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<ElasticStates> {
+        let reach = match (level, approach, &material, &load, until) {
+            (Some(level), None, None, None, None) => st::Reach::Level(level),
+            (None, Some(approach), None, None, None) => st::Reach::Approach(approach),
+            (None, None, Some(material), Some(load), Some(until)) => {
+                st::Reach::of(&material.get().material, &*history(load)?, until).or_raise()?
+            }
+            _ => return Err(PyTypeError::new_err("give level, or approach, or material, load and until")),
+        };
+        let [shape] = &geometries(&grid.get().0, &geometry)?[..] else {
+            return Err(PyTypeError::new_err("geometry: a sweep is of one shape"));
+        };
+        let mut sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy);
+        if let Some(kernel) = &kernel {
+            sweep = sweep.kernel(Arc::clone(&kernel.get().kernel));
+        }
+        if keep_pressures {
+            sweep = sweep.keep_pressures();
+        }
+        if let Some(max_states) = max_states {
+            sweep = sweep.max_states(max_states);
+        }
+        if let Some(given) = &settings {
+            sweep = sweep.settings(self::settings(Settings::default().with_tolerance(1e-8), given)?);
+        }
+        let mut listener = Listener::new(progress);
+        let states = py.detach(|| sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
+        let states = listener.result(states)?;
+        Ok(ElasticStates { states, recipe: None })
+    }
+
+    /// Reads states that `save` has written. They hold no surface, so that `StatesContact.fields` is not possible.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<ElasticStates> {
+        let states = py.detach(|| read_states(&path));
+        ElasticStates::made(py, "load", (path,), states)
+    }
+
+    /// Writes the states as an NPZ archive.
+    #[pyo3(signature = (path, title=""))]
+    fn save(&self, py: Python<'_>, path: PathBuf, title: &str) -> PyResult<()> {
+        py.detach(|| write_states(path, &self.states, &Metadata::new(title))).or_raise()
+    }
+
+    /// Approach of the elastic contact [m] at levels [m²].
+    fn approach<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("level", level, |level| self.states.approach(level))
+    }
+
+    /// Level [m²] of the elastic contact at approaches [m]; NaN beyond the last state.
+    fn level_at<'py>(&self, approach: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("approach", approach, |approach| self.states.level_at(approach))
+    }
+
+    /// Contact area [m²] at levels [m²].
+    fn area<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("level", level, |level| self.states.area(level))
+    }
+
+    /// Stiffness over the contact modulus [m] at levels [m²].
+    fn stiffness<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("level", level, |level| self.states.stiffness(level))
+    }
+
+    /// The states as arrays: "level" [m²], "approach" [m], "stiffness" [m], "area" [m²], "cells", "patches".
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let column = |of: fn(&st::ElasticState) -> f64| self.states.states().iter().map(of).collect::<Vec<f64>>();
+        all.set_item("level", column(|state| state.level).into_pyarray(py))?;
+        all.set_item("approach", column(|state| state.approach).into_pyarray(py))?;
+        all.set_item("stiffness", column(|state| state.stiffness).into_pyarray(py))?;
+        all.set_item("area", column(|state| state.area).into_pyarray(py))?;
+        all.set_item("cells", column(|state| state.cells as f64).into_pyarray(py))?;
+        all.set_item("patches", column(|state| state.patches as f64).into_pyarray(py))?;
+        Ok(all)
+    }
+
+    /// Greatest error of the depth between two states, relative.
+    #[getter]
+    fn interpolation_error(&self) -> f64 {
+        self.states.interpolation_error()
+    }
+
+    /// The curves of many materials on this surface in one call.
+    ///
+    /// Parameters
+    /// ----------
+    /// materials : sequence of Material
+    /// load : as of `follow`
+    /// times : sequence of float
+    ///     Ascending times > 0 of the curve [s]; the last one ends it.
+    /// tolerance : float, default 1e-4
+    ///
+    /// Returns an array of shape (materials, times, 3): force [N], approach [m] and contact area [m²].
+    ///
+    /// >>> rubbers = [Material(Rheology.zener(1e6, 1e6, tau)) for tau in (0.1, 1.0, 10.0)]
+    /// >>> ElasticStates.sphere(10e-3).curves(rubbers, Load.force(1.0), [0.1, 1.0, 10.0]).shape
+    /// (3, 3, 3)
+    #[pyo3(signature = (materials, load, times, *, tolerance=1e-4))]
+    fn curves<'py>(
+        &self,
+        py: Python<'py>,
+        materials: Vec<Bound<'py, Material>>,
+        load: &Bound<'py, PyAny>,
+        times: &Bound<'py, PyAny>,
+        tolerance: f64,
+    ) -> PyResult<Array<'py>> {
+        let (history, times) = (history(load)?, column("times", times)?);
+        let until = *times.last().ok_or_else(|| PyTypeError::new_err("times: at least one is needed"))?;
+        let mut values = Vec::with_capacity(3 * materials.len() * times.len());
+        for material in &materials {
+            let material = &material.get().material;
+            let rows = py.detach(|| -> vc::Result<Vec<[f64; 4]>> {
+                let contact = st::StatesContact::new(&self.states, material)?;
+                let run = contact.led(Arc::clone(&history), Stepping::adaptive(tolerance), until);
+                let (mut run, mut rows) = (run.sample_at(&times)?, Vec::with_capacity(times.len()));
+                while run.next_step()?.is_some() {
+                    for sample in run.samples() {
+                        let sample = sample?;
+                        if sample.is_asked_for() {
+                            rows.push(sample.contact().state());
+                        }
+                    }
+                }
+                Ok(rows)
+            });
+            let rows = rows.or_raise()?;
+            if rows.len() != times.len() {
+                let text = format!(
+                    "times: they must ascend, each once, after 0: {} of {} were passed",
+                    rows.len(),
+                    times.len()
+                );
+                return Err(pyo3::exceptions::PyValueError::new_err(text));
+            }
+            values.extend(rows.iter().flat_map(|row| &row[1..]));
+            py.check_signals()?;
+        }
+        to_array(py, values, &[materials.len(), times.len(), 3])
+    }
+
+    fn __len__(&self) -> usize {
+        self.states.states().len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("ElasticStates({} states)", self.states.states().len())
+    }
+
+    /// The states of a pickle.
+    #[staticmethod]
+    fn _of_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<ElasticStates> {
+        let file = file_of(bytes)?;
+        Ok(ElasticStates { states: read_states(&file.0).or_raise()?, recipe: None })
+    }
+
+    /// A sweep becomes its states, without the surface: `StatesContact.fields` is then not possible.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let (py, class) = (slf.py(), slf.get_type());
+        if let Some(recipe) = &slf.get().recipe {
+            return recipe.reduce(class);
+        }
+        let states = &slf.get().states;
+        let bytes = bytes_of(py, |file| write_states(file, states, &Metadata::new("")))?;
+        Recipe::new(py, "_of_bytes", (bytes,))?.reduce(class)
+    }
+}

@@ -1,0 +1,130 @@
+//! Temperature: how it shifts the time scale of a material, and its history.
+
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use viscocontact::rheology as rh;
+
+use crate::arrays::{mapped, pairs};
+use crate::errors::{OrRaise, raised_number};
+use crate::recipe::{Recipe, Reduced};
+use crate::rheology::Rheology;
+
+/// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K].
+///
+/// >>> law = TimeTemperature.wlf(17.44, 51.6, 373.15)
+/// >>> law.shift_factor(373.15)
+/// 1.0
+#[pyclass(frozen, module = "viscocontact")]
+pub struct TimeTemperature {
+    pub law: rh::TimeTemperature,
+    recipe: Recipe,
+}
+
+#[pymethods]
+impl TimeTemperature {
+    /// The law of Williams, Landel and Ferry: constants C₁, C₂ [K] about the `reference` [K].
+    #[staticmethod]
+    pub fn wlf(py: Python<'_>, c1: f64, c2: f64, reference: f64) -> PyResult<TimeTemperature> {
+        let law = rh::TimeTemperature::wlf(c1, c2, reference).or_raise()?;
+        Ok(TimeTemperature { law, recipe: Recipe::new(py, "wlf", (c1, c2, reference))? })
+    }
+
+    /// The law of Arrhenius: activation `energy` [J/mol] about the `reference` [K].
+    #[staticmethod]
+    pub fn arrhenius(py: Python<'_>, energy: f64, reference: f64) -> PyResult<TimeTemperature> {
+        let law = rh::TimeTemperature::arrhenius(energy, reference).or_raise()?;
+        Ok(TimeTemperature { law, recipe: Recipe::new(py, "arrhenius", (energy, reference))? })
+    }
+
+    /// Rows of temperature [K] and shift factor a_T, about the `reference` [K].
+    #[staticmethod]
+    fn table(py: Python<'_>, table: Bound<'_, PyAny>, reference: f64) -> PyResult<TimeTemperature> {
+        let law = rh::TimeTemperature::table(&pairs("table", &table)?, reference).or_raise()?;
+        Ok(TimeTemperature { law, recipe: Recipe::new(py, "table", (table, reference))? })
+    }
+
+    /// The reference temperature [K].
+    #[getter]
+    fn reference(&self) -> f64 {
+        self.law.reference()
+    }
+
+    /// a_T at a temperature [K].
+    fn shift_factor(&self, temperature: f64) -> PyResult<f64> {
+        self.law.shift_factor(temperature).or_raise()
+    }
+
+    /// A rheology at a constant temperature [K].
+    fn at(slf: Bound<'_, Self>, rheology: Bound<'_, Rheology>, temperature: f64) -> PyResult<Rheology> {
+        let body = slf.get().law.at(Arc::clone(&rheology.get().body), temperature).or_raise()?;
+        let recipe = Recipe::of::<TimeTemperature>(slf.py(), "at", (slf, rheology, temperature))?;
+        Ok(Rheology::by(recipe, Arc::new(body)))
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.get().recipe.repr(&slf.get_type())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}
+
+/// A temperature that changes in time; the material creeps in reduced time.
+///
+/// Parameters
+/// ----------
+/// law : TimeTemperature
+/// temperature : float, rows of (time [s], temperature [K]), or a function of time
+/// corners : times at which a function of time has corners [s]
+#[pyclass(frozen, module = "viscocontact")]
+pub struct TemperatureHistory {
+    pub history: rh::TemperatureHistory,
+    recipe: Recipe,
+}
+
+#[pymethods]
+impl TemperatureHistory {
+    #[new]
+    #[pyo3(signature = (law, temperature, corners=vec![]))]
+    fn new(
+        py: Python<'_>,
+        law: Bound<'_, TimeTemperature>,
+        temperature: Bound<'_, PyAny>,
+        corners: Vec<f64>,
+    ) -> PyResult<TemperatureHistory> {
+        let given = law.get().law.clone();
+        let history = if let Ok(constant) = temperature.extract::<f64>() {
+            rh::TemperatureHistory::constant(given, constant)
+        } else if temperature.is_callable() {
+            let function = temperature.clone().unbind();
+            let at = move |t: f64| raised_number(Python::attach(|py| function.call1(py, (t,))?.extract(py)), f64::NAN);
+            rh::TemperatureHistory::function(given, at, &corners)
+        } else {
+            rh::TemperatureHistory::table(given, &pairs("temperature", &temperature)?)
+        };
+        Ok(TemperatureHistory {
+            history: history.or_raise()?,
+            recipe: Recipe::new(py, "", (law, temperature, corners))?,
+        })
+    }
+
+    /// The temperature [K] at times [s].
+    fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("t", t, |t| self.history.at(t))
+    }
+
+    /// The reduced time between two times [s].
+    fn reduced_time(&self, start: f64, end: f64) -> PyResult<f64> {
+        self.history.reduced_time(start, end).or_raise()
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.get().recipe.repr(&slf.get_type())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().recipe.reduce(slf.get_type())
+    }
+}

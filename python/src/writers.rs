@@ -1,0 +1,165 @@
+//! Files of results: histories, frames, archives.
+
+use std::path::PathBuf;
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::output::{self as vo, Field, Format, Metadata};
+
+use crate::contact::ViscoelasticContact;
+use crate::errors::{OrRaise, choice};
+use crate::reports::StepReport;
+use crate::states_contact::StatesContact;
+
+fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
+    notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
+        Ok(metadata.note(key.str()?.to_string(), value.str()?.to_string()))
+    })
+}
+
+/// What becomes of files of an earlier run.
+#[derive(Clone, Copy)]
+enum Earlier {
+    Refuse,
+    Replace,
+    Continue,
+}
+
+const EARLIER: [(&str, Earlier); 3] =
+    [("refuse", Earlier::Refuse), ("replace", Earlier::Replace), ("continue", Earlier::Continue)];
+
+/// A run as a CSV file with a row for each step; its first line is the scene as JSON.
+///
+/// Parameters
+/// ----------
+/// path : path
+/// contact : ViscoelasticContact or StatesContact
+/// title, notes : str, dict
+///     Written into the file.
+/// columns : sequence of str
+///     Additional columns, with their units in brackets.
+/// earlier : "refuse" (default: FileExistsError), "replace" or "continue" after the state of the contact
+#[pyclass(module = "viscocontact")]
+pub struct CsvHistory(vo::CsvHistory);
+
+#[pymethods]
+impl CsvHistory {
+    #[new]
+    #[pyo3(signature = (path, contact, *, title="", notes=None, columns=vec![], earlier="refuse"))]
+    fn new(
+        path: PathBuf,
+        contact: &Bound<'_, PyAny>,
+        title: &str,
+        notes: Option<&Bound<'_, PyDict>>,
+        columns: Vec<String>,
+        earlier: &str,
+    ) -> PyResult<CsvHistory> {
+        let (metadata, earlier) = (metadata(title, notes)?, choice("earlier", earlier, &EARLIER)?);
+        let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+        if let Ok(contact) = contact.cast::<ViscoelasticContact>() {
+            create(path, &metadata, contact.borrow().get()?, &columns, earlier)
+        } else if let Ok(contact) = contact.cast::<StatesContact>() {
+            create(path, &metadata, contact.borrow().get()?, &columns, earlier)
+        } else {
+            Err(PyTypeError::new_err("contact: a ViscoelasticContact or a StatesContact is needed"))
+        }
+    }
+
+    /// Appends the row of the last step, with the values of the additional columns.
+    #[pyo3(signature = (contact, report, columns=vec![]))]
+    fn record(&mut self, contact: &Bound<'_, PyAny>, report: &StepReport, columns: Vec<f64>) -> PyResult<()> {
+        if let Ok(contact) = contact.cast::<ViscoelasticContact>() {
+            self.0.record(contact.borrow().get()?, &report.0, &columns).or_raise()
+        } else if let Ok(contact) = contact.cast::<StatesContact>() {
+            self.0.record(contact.borrow().get()?, &report.0, &columns).or_raise()
+        } else {
+            Err(PyTypeError::new_err("contact: a ViscoelasticContact or a StatesContact is needed"))
+        }
+    }
+}
+
+fn create(
+    path: PathBuf,
+    metadata: &Metadata,
+    contact: &impl viscocontact::contact::Contact,
+    columns: &[&str],
+    earlier: Earlier,
+) -> PyResult<CsvHistory> {
+    match earlier {
+        Earlier::Refuse => vo::CsvHistory::create(path, metadata, contact, columns),
+        Earlier::Replace => vo::CsvHistory::create_or_replace(path, metadata, contact, columns),
+        Earlier::Continue => vo::CsvHistory::create_or_continue(path, metadata, contact, columns),
+    }
+    .or_raise()
+    .map(CsvHistory)
+}
+
+const FIELDS: [(&str, Field); 4] = [
+    ("pressure", Field::Pressure),
+    ("displacement", Field::Displacement),
+    ("gap", Field::Gap),
+    ("traction", Field::Traction),
+];
+
+/// A run as a folder of files, one for each frame.
+///
+/// Parameters
+/// ----------
+/// folder : path
+/// contact : ViscoelasticContact
+/// format : "npz" (default; numpy.load) or "vtk" (ParaView, PyVista)
+/// fields : sequence of "pressure", "displacement", "gap", "traction"; by default those of the contact
+/// title, notes, earlier : as of `CsvHistory`
+#[pyclass(module = "viscocontact")]
+pub struct FrameSeries(vo::FrameSeries);
+
+#[pymethods]
+impl FrameSeries {
+    #[new]
+    #[pyo3(signature = (folder, contact, *, format="npz", fields=None, title="", notes=None, earlier="refuse"))]
+    fn new(
+        folder: PathBuf,
+        contact: &ViscoelasticContact,
+        format: &str,
+        fields: Option<Vec<String>>,
+        title: &str,
+        notes: Option<&Bound<'_, PyDict>>,
+        earlier: &str,
+    ) -> PyResult<FrameSeries> {
+        let format = choice("format", format, &[("npz", Format::Npz), ("vtk", Format::Vtk)])?;
+        let (metadata, contact) = (metadata(title, notes)?, contact.get()?);
+        let fields = match fields {
+            Some(names) => names.iter().map(|name| choice("field", name, &FIELDS)).collect::<PyResult<Vec<_>>>()?,
+            None => Field::of(contact).to_vec(),
+        };
+        match choice("earlier", earlier, &EARLIER)? {
+            Earlier::Refuse => vo::FrameSeries::create(folder, format, &metadata, &fields),
+            Earlier::Replace => vo::FrameSeries::create_or_replace(folder, format, &metadata, &fields),
+            Earlier::Continue => vo::FrameSeries::create_or_continue(folder, format, &metadata, &fields, contact),
+        }
+        .or_raise()
+        .map(FrameSeries)
+    }
+
+    /// Writes the state of the contact as the next frame, and returns its path.
+    fn record(&mut self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<PathBuf> {
+        let contact = contact.get()?;
+        py.detach(|| self.0.record(contact)).or_raise()
+    }
+
+    /// Number of frames written.
+    #[getter]
+    fn frames(&self) -> usize {
+        self.0.frames()
+    }
+}
+
+#[pymethods]
+impl ViscoelasticContact {
+    /// The scene as JSON on one line: grid, settings, materials, units and conventions.
+    #[pyo3(signature = (title="", notes=None))]
+    fn describe(&self, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
+        Ok(metadata(title, notes)?.json(self.get()?))
+    }
+}

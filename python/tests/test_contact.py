@@ -1,0 +1,332 @@
+"""Contacts, runs, fields, errors, pickles."""
+
+import copy
+import math
+import os
+import pickle
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+import viscocontact as vc
+
+GRID, BALL = vc.Grid(32, 4e-3), vc.Shape.sphere(10e-3)
+RUBBER = vc.Material(vc.Rheology.zener(1e6, 5e5, 1.0))
+
+
+def ball(n=32, **options):
+    return vc.ViscoelasticContact(vc.Grid(n, 4e-3), BALL, RUBBER, **options)
+
+
+def test_hertz():
+    contact = ball(64)
+    report = contact.step(0.0, vc.Load.force(1.0))
+    assert report.approach == pytest.approx(vc.hertz(10e-3, 4e6, 1.0)["approach"], rel=2e-3)
+    assert contact.pressure.sum() * contact.grid.cell_area == pytest.approx(1.0, rel=1e-6)
+    assert contact.max_pressure == contact.pressure.max()
+
+
+def test_an_array_is_a_shape():
+    x1, x2 = GRID.coordinates()
+    gap = (x1**2 + x2**2) / (2 * 10e-3)
+    given = [gap, vc.Shape.gap_on(GRID, gap), vc.Shape.function(lambda x, y: (x * x + y * y) / (2 * 10e-3))]
+    pressures = []
+    for shape in given:
+        contact = vc.ViscoelasticContact(GRID, shape, RUBBER)
+        contact.step(0.0, vc.Load.force(1.0))
+        contact.step(0.3, vc.Load.force(0.7))
+        pressures.append(contact.pressure)
+    exact = ball()
+    exact.step(0.0, vc.Load.force(1.0))
+    exact.step(0.3, vc.Load.force(0.7))
+    for pressure in pressures:
+        assert np.abs(pressure - exact.pressure).max() < 1e-9 * exact.pressure.max()
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64", "int64", "uint8", ">f8", "float16", "bool", "longdouble"])
+@pytest.mark.parametrize("order", ["C", "F", "strided", "reversed", "read-only"])
+def test_arrays_of_any_type_and_order(dtype, order):
+    values = (np.arange(16 * 16).reshape(16, 16) % 7 % 2).astype(dtype)
+    wanted = values.astype("float64")
+    if order == "F":
+        values = np.asfortranarray(values)
+    elif order == "strided":
+        wide = np.zeros((32, 48), dtype)
+        wide[::2, ::3] = values
+        values = wide[::2, ::3]
+    elif order == "reversed":
+        values = np.ascontiguousarray(values[::-1, ::-1])[::-1, ::-1]
+    elif order == "read-only":
+        values.flags.writeable = False
+    grid = vc.Grid(16, 1.0)
+    assert (vc.Shape.gap_on(grid, values).gap(grid) == wanted).all()
+    assert (vc.HeightMap(values, 1.0).heights == wanted).all()
+
+
+def test_wrong_arrays_are_refused_by_name():
+    grid, kernel = vc.Grid(16, 1.0), vc.InfluenceKernel.half_space(vc.Grid(16, 1.0))
+    with pytest.raises(ValueError, match=r"gap: the shape \[16, 16\] of the grid is needed, the array has \[16, 15\]"):
+        vc.Shape.gap_on(grid, np.zeros((16, 15)))
+    with pytest.raises(ValueError, match="gap: value 5 .* is NaN"):
+        gap = np.zeros((16, 16))
+        gap[0, 5] = np.nan
+        vc.Shape.gap_on(grid, gap)
+    with pytest.raises(TypeError, match="gap: an array of real numbers is needed, not of complex128"):
+        vc.Shape.gap_on(grid, np.zeros((16, 16), complex))
+    with pytest.raises(TypeError, match="heights: an array of real numbers is needed, not of <U1"):
+        vc.HeightMap([["a"]], 1.0)
+    with pytest.raises(ValueError, match="heights: two axes are needed"):
+        vc.HeightMap(np.zeros(3), 1.0)
+    with pytest.raises(ValueError, match="geometry: the shape"):
+        vc.ViscoelasticContact(grid, np.zeros((4, 4)), RUBBER)
+    with pytest.raises(ValueError, match=r"terms: the shape \(n, 2\) is needed"):
+        vc.Rheology.prony(1.0, [1.0, 2.0])
+    with pytest.raises(ValueError, match="times: value 0 .* is NaN"):
+        vc.LoadHistory.forces([math.nan, 1.0], [0.0, 1.0])
+    with pytest.raises(ValueError, match="forces: 3 given, 2 needed"):
+        vc.LoadHistory.forces([0.0, 1.0], [0.0, 1.0, 2.0])
+    out = np.zeros((16, 16))
+    assert kernel.convolve(np.ones((16, 16)), out=out) is out and out.min() > 0
+    out.flags.writeable = False
+    with pytest.raises(ValueError, match="out: .*read-only|out: .*writ"):
+        kernel.convolve(np.ones((16, 16)), out=out)
+    with pytest.raises(TypeError, match="out: an array of float64"):
+        kernel.convolve(np.ones((16, 16)), out=np.zeros((16, 16), "float32"))
+
+
+ERRORS = {
+    "a value": (ValueError, "sphere radius = -1.0 is not allowed: it must be", lambda: vc.Shape.sphere(-1.0)),
+    "a load": (ValueError, "force", lambda: ball().step(0.0, vc.Load.force(math.nan))),
+    "the edge": (ValueError, "enlarge the grid", lambda: ball().step(0.0, vc.Load.force(1e3))),
+    "a missing file": (FileNotFoundError, "no_such.sdf", lambda: vc.HeightMap.read("no_such.sdf")),
+    "a file of another kind": (OSError, "line 1, column 1", lambda: vc.HeightMap.read(__file__, unit="um", lengths=1.0)),
+    "memory": (MemoryError, "take fewer cells", lambda: ball(200_000)),
+    "convergence": (vc.ConvergenceError, "iterations", lambda: ball(64, max_iterations=1).step(0.0, vc.Load.force(1.0))),
+    "what is not covered": (NotImplementedError, "Settings::frame", lambda: ball().step_over((1, 0), 1.0, vc.Load.force(1.0))),
+    "an option": (ValueError, "\"active_set\", \"polonsky_keer\"", lambda: ball(solver="fast")),
+    "a keyword": (TypeError, "unexpected keyword argument 'toleranse'", lambda: ball(toleranse=1e-3)),
+    "a run": (TypeError, "give dt or tolerance", lambda: ball().follow(vc.Load.force(1.0), 1.0, dt=1.0, tolerance=1.0)),
+    "times": (ValueError, "interval of times", lambda: ball().follow(vc.Load.force(1.0), 1.0, stop_at=vc.Times.every(-1.0))),
+    "a history": (TypeError, "a Load, a LoadHistory", lambda: ball().follow(1.0, 1.0)),
+    "a name": (ValueError, "known", lambda: vc.Material.published("no such rubber", 0.5)),
+}
+
+
+@pytest.mark.parametrize("case", ERRORS, ids=list(ERRORS))
+def test_errors_by_kind_with_their_cure(case):
+    kind, words, call = ERRORS[case]
+    with pytest.raises(kind) as raised:
+        call()
+    assert type(raised.value) is kind or kind is OSError
+    assert words in str(raised.value), raised.value
+
+
+def test_a_failed_step_leaves_no_trace():
+    contact = ball()
+    contact.step(0.0, vc.Load.force(1.0))
+    before = contact.pressure
+    with pytest.raises(ValueError):
+        contact.step(0.1, vc.Load.force(1e3))
+    assert (contact.pressure == before).all() and contact.time == 0.0
+    with pytest.raises(ValueError):
+        contact.follow(vc.Load.force(1.0), 2.0, sample_at=[math.inf])
+    assert contact.step(0.1, vc.Load.force(1.0)).time == 0.1
+
+
+class Mine(Exception):
+    """An exception of a user."""
+
+
+def raises(*_):
+    raise Mine("of the user")
+
+
+def test_an_exception_of_a_user_comes_out_as_itself():
+    law = vc.TimeTemperature.wlf(17.4, 51.6, 300.0)
+
+    def warm():
+        contact = ball(temperature=vc.TemperatureHistory(law, raises))
+        contact.step(0.0, vc.Load.force(1.0))
+        contact.step(1.0, vc.Load.force(1.0))
+
+    periodic = vc.InfluenceKernel.periodic(GRID)
+    wave = vc.Shape.wavy((1e-6, 1e-6), (4e-3, 4e-3))
+    calls = [
+        lambda: list(ball().follow(raises, 1.0)),
+        lambda: vc.ViscoelasticContact(GRID, vc.Shape.function(raises), RUBBER),
+        lambda: vc.ViscoelasticContact(GRID, BALL, vc.Material(vc.Rheology.function(raises))).step(0.0, vc.Load.force(1.0)),
+        lambda: vc.Attraction.function(raises, raises),
+        lambda: vc.InfluenceKernel.from_coefficients(GRID, raises),
+        lambda: vc.InfluenceKernel.from_spectrum(GRID, raises),
+        lambda: list(ball().follow(vc.Load.force(1.0), 1.0, progress=raises)),
+        lambda: vc.ElasticStates.sweep(GRID, BALL, approach=1e-5, progress=raises),
+        lambda: vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=raises),
+        lambda: vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, kernel=raises),
+        lambda: vc.SteadySliding(GRID, wave, RUBBER, kernel=periodic, modulus=raises).at((1.0, 0.0), vc.Load.force(1e-3)),
+        lambda: vc.persson_friction(GRID, wave, raises, 1e3, (1.0, 0.0), 0.5),
+        warm,
+    ]
+    for call in calls:
+        with pytest.raises(Mine, match="of the user"):
+            call()
+    with pytest.raises(TypeError, match="the load history returned .*float.* at 0 s, not a Load"):
+        list(ball().follow(lambda t: 1.0, 1.0))
+    assert list(ball().follow(vc.Load.force(1.0), 0.0))  # no exception of an earlier call is left
+
+
+def test_a_run_shows_its_contact_and_ends_with_a_step():
+    contact, seen, areas = ball(), [], []
+    run = contact.follow([(0, vc.Load.force(0)), (1, vc.Load.force(1))], 2.0, stop_at=[0.3], progress=seen.append)
+    for report in run:
+        areas.append((report.time, contact.contact_area))
+        assert contact.time == report.time
+    assert 0.3 in dict(areas) and areas[-1][0] == 2.0 and seen[-1] == 1.0
+    assert run.error_budget()["time"] < 1e-3 and run.progress["steps"] == len(areas)
+    contact.step(0.1, vc.Load.force(1.0))
+    with pytest.raises(RuntimeError, match="the run is over"):
+        next(iter(run))
+
+
+def test_progress_cancels():
+    contact = ball()
+    with pytest.raises(vc.Cancelled):
+        list(contact.follow(vc.Load.force(1.0), 1.0, progress=lambda share: False))
+    assert contact.time == 0.0 and contact.force == pytest.approx(1.0)
+    few, all = (vc.ElasticStates.sweep(GRID, BALL, approach=1e-4, progress=lambda n: n < most) for most in (4, 10**9))
+    assert len(few) < len(all)
+    with pytest.raises(vc.Cancelled):
+        vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=lambda *at: False)
+
+
+def test_samples_and_events():
+    contact = ball()
+    run = contact.follow(vc.LoadHistory.ramp(vc.Load.force(0), vc.Load.force(1), 1.0), 1.0, sample_at=[0.25, 0.5])
+    run.stop_when("approach", up=1e-4)
+    samples = [sample for _ in run for sample in run.samples()]
+    assert [sample.report.time for sample in samples] == [0.25, 0.5]
+    assert samples[0].contact.force == pytest.approx(0.25, rel=1e-6)
+    (crossing,) = run.events
+    assert len(crossing) == 1
+    table = ball().follow(vc.LoadHistory.ramp(vc.Load.force(0), vc.Load.force(1), 1.0), 1.0, sample_at=[0.25, 0.5]).table()
+    assert table["force"] == pytest.approx([0.25, 0.5], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        GRID,
+        BALL + vc.Shape.wavy(1e-7, 1e-3).shifted((1e-4, 0)),
+        vc.HeightMap.rough(GRID, 2e-3, 0.5e-3, rms_slope=0.1, seed=1),
+        vc.HeightMap(np.arange(16.0).reshape(4, 4) * 1e-6, 4e-3, periodic=True).inverted().centered_at((1e-3, 0)),
+        vc.Rheology.prony(1e6, [(1e6, 1.0)]),
+        vc.Material(vc.Tension(vc.Rheology.zener(1e6, 1e6, 1.0)), bulk_modulus=1e9),
+        vc.Material(vc.Measurements.creep([0.1, 1, 10, 100], [1e-6, 1.2e-6, 1.5e-6, 1.6e-6]).fit()),
+        vc.Load.force(1.0, at=(1e-3, 0)),
+        vc.LoadHistory.triangle(vc.Load.force(0), vc.Load.force(1), 2.0),
+        vc.Attraction.dugdale(0.05, greatest=1e5, width=1.0),
+        vc.InfluenceKernel.layer(GRID, vc.Layer.bonded_to_rigid(1e-3, 0.3)),
+        vc.TemperatureHistory(vc.TimeTemperature.arrhenius(1e5, 300.0), [(0.0, 300.0), (1.0, 310.0)]),
+        vc.ElasticStates.sphere(1e-2),
+    ],
+    ids=lambda thing: type(thing).__name__,
+)
+def test_pickles(thing):
+    again = pickle.loads(pickle.dumps(thing))
+    assert repr(again) == repr(thing)
+    if isinstance(thing, vc.Shape):
+        assert (again.gap(GRID) == thing.gap(GRID)).all()
+    if isinstance(thing, vc.Material):
+        assert again.contact_compliance(5.0) == thing.contact_compliance(5.0)
+
+
+def test_a_pickled_contact_goes_on_bit_by_bit(tmp_path):
+    states = vc.ElasticStates.sweep(GRID, BALL, approach=2e-4)
+    for contact in (ball(tolerance=1e-7), vc.StatesContact(states, RUBBER)):
+        contact.step(0.0, vc.Load.force(1.0))
+        contact.step(0.5, vc.Load.force(0.5))
+        others = [pickle.loads(pickle.dumps(contact)), copy.copy(contact), copy.deepcopy(contact)]
+        contact.save(tmp_path / "state")
+        contact.step(0.5, vc.Load.force(0.7))
+        others[1].resume(tmp_path / "state")
+        for other in others:
+            other.step(0.5, vc.Load.force(0.7))
+            assert (other.approach, other.force) == (contact.approach, contact.force)
+    with pytest.raises(OSError, match="no run can be resumed from"):
+        ball(48).resume(tmp_path / "state")
+
+
+def interrupted(call, after=0.4):
+    """Seconds from Ctrl-C to its exception."""
+    sent = []
+
+    def send():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(after, send)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        return time.monotonic() - sent[0]
+    finally:
+        timer.cancel()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_ctrl_c():
+    # large enough that a step takes seconds wherever the tests run; rough, so that the solver takes many iterations
+    n = int(os.environ.get("VISCOCONTACT_CELLS", 768))
+    grid = vc.Grid(n, 1e-3)
+    rough = vc.HeightMap.rough(grid, 0.5e-3, 8e-3 / n, rms_slope=0.3, seed=1)
+    contact = vc.ViscoelasticContact(grid, rough, RUBBER, kernel=vc.InfluenceKernel.periodic(grid), tolerance=1e-12)
+
+    def step():
+        while True:
+            contact.step(0.0, vc.Load.force(0.02))
+            contact.step(0.0, vc.Load.force(0.0))
+
+    took = interrupted(step)
+    assert took < 2.0, took
+    assert contact.time == 0.0
+    small = ball(64)
+    interrupted(lambda: list(small.follow(vc.Load.force(0.5), 1e9, dt=1e-3)))
+    assert small.force == pytest.approx(0.5)
+
+    def sweep():
+        while True:
+            vc.ElasticStates.sweep(vc.Grid(128, 4e-3), BALL, approach=2e-4, accuracy=1e-6)
+
+    def plan():
+        while True:
+            vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=1e-4)
+
+    assert interrupted(sweep) < 5.0 and interrupted(plan) < 5.0
+
+
+def test_the_gil_is_free():
+    contact, counted, done = ball(256), [0], []
+
+    def count():
+        while not done:
+            counted[0] += 1
+            time.sleep(0)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    for _ in range(5):
+        contact.step(0.05, vc.Load.force(0.8))
+    done.append(True)
+    thread.join()
+    assert counted[0] > 20
+
+
+def test_several_bodies():
+    bodies = [vc.Shape.sphere(10e-3).shifted((-1e-3, 0)), vc.Shape.sphere(5e-3).shifted((1e-3, 0))]
+    contact = vc.ViscoelasticContact(vc.Grid(64, 5e-3), bodies, RUBBER)
+    contact.step(0.0, [vc.Load.force(0.1), vc.Load.force(0.2)])
+    assert [body.force for body in contact.bodies] == pytest.approx([0.1, 0.2], rel=1e-5)
+    with pytest.raises(ValueError, match="1 given, 2 needed"):
+        contact.step(0.1, vc.Load.force(0.1))

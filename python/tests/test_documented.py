@@ -1,0 +1,63 @@
+"""The examples of docstrings, and what every public item must have."""
+
+import doctest
+import inspect
+import pathlib
+import re
+
+import pytest
+import viscocontact
+
+FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL
+ITEMS = [getattr(viscocontact, name) for name in viscocontact.__all__]
+
+
+def documented():
+    yield "viscocontact", viscocontact.__doc__
+    for item in ITEMS:
+        yield item.__name__, item.__doc__
+        if inspect.isclass(item):
+            for name, member in vars(item).items():
+                if not name.startswith("_"):
+                    yield f"{item.__name__}.{name}", member.__doc__
+
+
+def test_every_item_says_what_it_is():
+    missing = [name for name, text in documented() if not text]
+    assert not missing
+    assert sum(1 for _ in documented()) > 300
+
+
+def test_examples_of_docstrings():
+    finder, names = doctest.DocTestParser(), {name: getattr(viscocontact, name) for name in viscocontact.__all__}
+    examples = [(name, text) for name, text in documented() if text and ">>>" in text]
+    assert len(examples) > 25
+    failed = []
+    for name, text in examples:
+        test = finder.get_doctest(text, dict(names), name, None, 0)
+        runner = doctest.DocTestRunner(optionflags=FLAGS, verbose=False)
+        report = []
+        runner.run(test, out=report.append)
+        if runner.summarize(verbose=False).failed:
+            failed.append("".join(report))
+    assert not failed, "\n".join(failed)
+
+
+@pytest.mark.parametrize("item", [item for item in ITEMS if inspect.isclass(item)], ids=lambda item: item.__name__)
+def test_a_repr_is_one_line(item):
+    assert "\n" not in repr(item)
+
+
+def test_the_version_is_that_of_the_crate():
+    manifest = pathlib.Path(__file__).parents[2] / "Cargo.toml"
+    if not manifest.exists():
+        pytest.skip("the crate is not beside")
+    version = re.search(r'^version = "(.*)"', manifest.read_text(), re.MULTILINE)
+    assert viscocontact.__version__ == version.group(1)
+
+
+def test_the_licence_is_that_of_the_crate():
+    here = pathlib.Path(__file__).parents[1]
+    if not (here.parent / "LICENSE").exists():
+        pytest.skip("the crate is not beside")
+    assert (here / "LICENSE").read_text() == (here.parent / "LICENSE").read_text()

@@ -1,0 +1,25 @@
+//! What a run knows of its fields.
+
+use std::collections::VecDeque;
+use std::sync::Mutex;
+
+use crate::run::driven::FieldFinder;
+
+/// Steps end for so many fields at most.
+pub(crate) const MOST_FIELDS: usize = 10_000;
+
+/// The fields that a run is asked for.
+#[derive(Debug)]
+pub(super) struct RunFields<C> {
+    pub(super) accuracy: f64,
+    pub(super) finder: Box<dyn FieldFinder<C>>,
+    /// Whether the run has begun.
+    pub(super) is_prepared: bool,
+    /// Ends of the steps so far.
+    pub(super) ends: Vec<f64>,
+    pub(super) keeps_starts: bool,
+    /// The greatest error of a field so far.
+    pub(super) worst: Mutex<Option<f64>>,
+    /// Contacts at the starts of the last steps.
+    pub(super) starts: VecDeque<C>,
+}

@@ -1,0 +1,86 @@
+//! Runs with fields to an accuracy.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
+use crate::contact::StepReport;
+use crate::error::{Result, within};
+use crate::run::RunContact;
+use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Moment, Prepared};
+use crate::run::field::{MOST_FIELDS, RunFields};
+use crate::run::follow::{Run, history_of};
+
+/// Contacts at the starts of so many last steps are kept where they give the estimate.
+const STARTS: usize = 3;
+
+impl<'a, C: RunContact> Run<'a, C> {
+    /// Asks for fields to an accuracy.
+    pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
+        let accuracy = within("accuracy of the fields", accuracy, (1e-5..=0.1).contains(&accuracy), "in [1e-5, 0.1]")?;
+        let (ends, starts, worst) = (Vec::new(), VecDeque::new(), Mutex::new(None));
+        let fields = RunFields { accuracy, finder, is_prepared: false, ends, keeps_starts: false, worst, starts };
+        self.fields = Some(fields);
+        Ok(self)
+    }
+
+    /// Finds out how the fields of the run are found, before its first step.
+    pub(super) fn prepare_fields(&mut self) -> Result<()> {
+        let Some(fields) = self.fields.as_mut() else { return Ok(()) };
+        if fields.is_prepared {
+            fields.starts.extend(fields.keeps_starts.then(|| C::clone(&self.contact)));
+            return Ok(());
+        }
+        let (mut times, mut time) = (Vec::new(), self.progress.start);
+        while let Some(next) = self.sampled.after(time).filter(|next| *next <= self.until && times.len() <= MOST_FIELDS)
+        {
+            times.push(next);
+            time = next;
+        }
+        let history = history_of(&self.history);
+        let (start, until) = (self.progress.start, self.until);
+        let request = FieldRequest { history, accuracy: fields.accuracy, start, until, times: &times };
+        let Prepared { stops, tolerance, keeps_starts } = fields.finder.prepare(&self.contact, &request)?;
+        C::tighten(&mut self.control, tolerance);
+        (fields.is_prepared, fields.keeps_starts) = (true, keeps_starts);
+        fields.starts.extend(keeps_starts.then(|| C::clone(&self.contact)));
+        fields.ends.push(self.contact.time());
+        self.stops.add(stops.into(), self.progress.start)
+    }
+
+    /// Remembers the last step for the estimate of the fields.
+    pub(super) fn keep_step(&mut self) {
+        if let (Some(fields), Some((_, report))) = (self.fields.as_mut(), self.last) {
+            fields.ends.push(report.time);
+            while fields.starts.len() > STARTS {
+                fields.starts.pop_front();
+            }
+        }
+    }
+
+    /// A contact of the last step with its field to the accuracy, where it does not have it itself.
+    pub(super) fn with_field(&self, contact: &C, after: bool) -> Result<Option<(Option<C>, FieldReport)>> {
+        let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok(None) };
+        let history = history_of(&self.history);
+        let moment = Moment { history, after, ends: &fields.ends, starts: &fields.starts };
+        let (exact, report) = fields.finder.with_field(contact, &moment)?;
+        if let Some(error) = report.error {
+            let mut worst = fields.worst.lock().unwrap_or_else(PoisonError::into_inner);
+            *worst = Some(worst.unwrap_or(0.0).max(error));
+        }
+        Ok(Some((exact, report)))
+    }
+
+    /// The greatest error of the fields so far.
+    pub(super) fn worst_field(&self) -> Option<f64> {
+        *self.fields.as_ref()?.worst.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn field_within_step(&self, time: f64) -> Result<(C, StepReport, Option<FieldReport>)> {
+        let (contact, report) = self.sample_within_step(time)?;
+        let after = self.last.is_none_or(|(_, last)| time < last.time || last.dt == 0.0);
+        Ok(match self.with_field(&contact, after)? {
+            Some((exact, field)) => (exact.unwrap_or(contact), report, Some(field)),
+            None => (contact, report, None),
+        })
+    }
+}

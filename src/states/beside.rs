@@ -1,0 +1,380 @@
+//! The pressure of a run in space at any time, from elastic contacts beside it.
+//!
+//! The run is repeated on levels, in steps graded towards the time: they cost no contact problem, and the bodies have the same
+//! c(t) and w(l, t). Then a few elastic contacts give the pressure ([`twin`](crate::states::twin)). Under a given approach c(t) depends on the shape: the
+//! curve δ(l) goes through a few elastic contacts at first, and through each that is solved for a field from then on.
+
+use std::sync::Arc;
+
+use crate::contact::ViscoelasticContact;
+use crate::error::{Error, Result, StepError};
+use crate::hereditary::Interpolant;
+use crate::load::{Load, LoadHistory, Tilt};
+use crate::run::Stepping;
+use crate::states::contact::StatesContact;
+use crate::states::curve::{ElasticStates, Rest};
+use crate::states::elastic::ElasticContact;
+use crate::states::pressed::Pressed;
+use crate::states::reach::{Course, MARGIN, greatest};
+use crate::states::twin::Profile;
+
+/// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
+const FIRST_LEVELS: i32 = 5;
+const RATIO: f64 = 8.0;
+/// Number of even parts of a run at which its load is sampled.
+const PARTS: u32 = 512;
+/// Tolerance of the steps that show how long steps of a run may be; its own are parts of these, so many steps at most.
+const COARSE: f64 = 1e-3;
+const PARTS_OF_STEP: usize = 8;
+
+const MOST_STEPS: usize = 4000;
+/// The shortest step, over the time since the start.
+const SHORTEST: f64 = 1e-7;
+/// Parts of the accuracy: error of the elastic contacts, and of the level on the curve.
+const OF_SOLVER: f64 = 1e-3;
+const OF_CURVE: f64 = 0.05;
+/// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
+const FALL_OVER_TOLERANCE: f64 = 1e2;
+/// The accuracy of a field holds relative to this part of the greatest force at least.
+const LEAST_FORCE: f64 = 0.01;
+/// Attempts to find the level on the curve.
+const MOST_ATTEMPTS: u32 = 4;
+/// States of the curve nearer than this factor of the level are one.
+const NEAREST: f64 = 1e-6;
+/// Levels of the curve beyond its last one, over that.
+const BEYOND: f64 = 16.0;
+/// Half of the levels err by so much more, the order being 3/2; twins, whose rims no mesh blurs, by so many times too much at most.
+const OF_HALF: f64 = 1.83;
+const MOST_OVERSTATED: f64 = 3.0;
+/// The last step before a time, over the time since the start.
+const LAST_STEP: f64 = 1e-5;
+
+/// Repeats a run on levels.
+#[derive(Debug, Clone)]
+pub(super) struct Repeated {
+    /// The contact at the start of the run.
+    origin: StatesContact,
+    accuracy: f64,
+    /// Ends of steps that resolve the load, and what the bodies do under it.
+    schedule: Vec<f64>,
+}
+
+/// A contact on levels at a time, and the times and levels of its steps.
+pub(super) struct Found {
+    pub(super) contact: StatesContact,
+    steps: Vec<(f64, f64)>,
+    /// The greatest force so far.
+    force: f64,
+}
+
+impl Repeated {
+    /// A run from `origin`; and its greatest level.
+    pub(super) fn new(
+        origin: StatesContact,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: f64,
+    ) -> Result<(Repeated, f64)> {
+        let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
+        let mut run = contact.follow(history, Stepping::adaptive(COARSE), until);
+        while let Some(report) = run.next_step()? {
+            greatest = greatest.max(run.contact().level());
+            ends.push(report.time);
+        }
+        drop(run);
+        let parts = (MOST_STEPS / ends.len()).clamp(1, PARTS_OF_STEP);
+        let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
+        let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
+        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
+        Ok((Repeated { origin, accuracy, schedule }, greatest))
+    }
+
+    /// The contact at a time, after a jump of the load there or before it.
+    pub(super) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+        let (mut ends, mut left, rest) = (self.schedule.clone(), 1.0, 1.0 - self.accuracy.sqrt());
+        while left > LAST_STEP {
+            left *= rest;
+            ends.push(time - (time - self.origin.time()) * left);
+        }
+        ends.sort_by(f64::total_cmp);
+        self.by_steps(history, &ends, (time, after))
+    }
+
+    /// The contact at a time, by steps with these ends.
+    fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<Found> {
+        let mut contact = self.origin.clone();
+        let (start, mut force) = (contact.time(), 0.0_f64);
+        let (mut corner, mut steps) = (history.next_breakpoint(start), vec![(start, 0.0)]);
+        let jump = |contact: &mut StatesContact, time: f64| {
+            match contact.step_to(time, 0.0, history.checked_at(time, false)?) {
+                // the run stays as it was
+                Err(Error::Step(StepError::NoElasticResponse { .. })) => Ok(()),
+                other => other.map(drop),
+            }
+        };
+        jump(&mut contact, start)?;
+        let shortest = SHORTEST * (time - start);
+        let inner = ends.iter().copied().filter(|end| *end > start && *end < time - shortest);
+        for end in inner.chain((time > start).then_some(time)) {
+            let now = contact.time();
+            if end - now < shortest && corner.is_none_or(|corner| corner > end) {
+                continue;
+            }
+            let before = history.checked_before(end, false)?;
+            contact.step_to(end, end - now, before)?;
+            force = force.max(contact.force());
+            if (end < time || after) && history.checked_at(end, false)? != before {
+                jump(&mut contact, end)?;
+                force = force.max(contact.force());
+            }
+            steps.push((end, contact.level()));
+            while let Some(next) = corner.filter(|corner| *corner <= end) {
+                contact.reset_differences();
+                corner = history.next_breakpoint(next);
+            }
+        }
+        Ok(Found { contact, steps, force })
+    }
+}
+
+impl Found {
+    fn size(&self) -> f64 {
+        self.contact.force().max(LEAST_FORCE * self.force)
+    }
+
+    /// The time from which on the contact has been larger than at this level.
+    fn since(&self, level: f64) -> f64 {
+        let after = self.steps.iter().rposition(|step| step.1 < level * (1.0 - NEAREST));
+        after.map_or(self.steps[0].0, |k| self.steps.get(k + 1).unwrap_or(&self.steps[k]).0)
+    }
+}
+
+/// The fields of a run in space.
+#[derive(Debug)]
+pub(super) struct Beside {
+    repeated: Repeated,
+    elastic: ElasticContact,
+    tilt: [Tilt; 2],
+    /// Level, depth and area of the elastic contacts that the curve goes through, and whether it matters.
+    rows: Vec<[f64; 3]>,
+    by_force: bool,
+    rest: f64,
+    allowed_fall: f64,
+    /// Elastic contacts solved since the last field, and their convolutions.
+    spent: [usize; 2],
+    serves: bool,
+}
+
+/// A pressure on the grid.
+pub(crate) struct FoundPressure {
+    pub(crate) pressure: Vec<f64>,
+    pub(crate) error: f64,
+    /// Elastic contacts solved, and convolutions.
+    pub(crate) spent: [usize; 2],
+}
+
+impl Beside {
+    /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field: tilts change, or are free
+    /// under a given approach, the material has no series, or nothing presses.
+    pub(crate) fn new(
+        contact: &ViscoelasticContact,
+        course: &Course<'_>,
+        accuracy: f64,
+        (interpolant, start): (Interpolant, f64),
+    ) -> Result<Option<Beside>> {
+        let all = course.sampled(PARTS)?;
+        let tilt = all[0].tilt();
+        let is_force = |load: &Load| matches!(load, Load::Force { .. });
+        let (by_force, is_free) = (all.iter().all(is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
+        let is_other = |load: &Load| load.tilt() != tilt;
+        if course.material.contact_spectrum()?.is_none() || all.iter().any(is_other) || !by_force && is_free {
+            return Ok(None);
+        }
+        let tolerance = (OF_SOLVER * accuracy).max(1e-9);
+        let mut elastic = ElasticContact::of(contact.of_unit_compliance(tolerance)?);
+        let rest = elastic.under(Load::Force { normal: 0.0, tilt })?.approach();
+        let mut top = 0.0_f64;
+        if by_force {
+            let mut states = ElasticStates::sphere(1.0)?;
+            Arc::make_mut(&mut states).tilt = tilt;
+            let origin = undisturbed(course, &states, interpolant, start)?;
+            top = MARGIN * Repeated::new(origin, course.history, course.until, accuracy)?.1;
+        } else {
+            for load in greatest(&all, course.softest_compliance()?) {
+                top = top.max(MARGIN * elastic.under(load)?.force());
+            }
+        }
+        if top == 0.0 {
+            return Ok(None);
+        }
+        let origin = StatesContact::new(&ElasticStates::sphere(1.0)?, course.material)?;
+        let mut beside = Beside {
+            repeated: Repeated { origin, accuracy, schedule: Vec::new() },
+            elastic,
+            tilt,
+            rows: Vec::new(),
+            by_force,
+            rest,
+            allowed_fall: FALL_OVER_TOLERANCE * tolerance,
+            spent: [0; 2],
+            serves: true,
+        };
+        let mut below: Option<Solved> = None;
+        for k in (0..FIRST_LEVELS).rev() {
+            let level = top * RATIO.powi(-k);
+            let next = beside.solve(level)?;
+            let shrinks = below.is_some_and(|below| beside.check(&below, &next).is_err());
+            beside.serves &= !shrinks;
+            below = Some(next);
+        }
+        let origin = undisturbed(course, &beside.curve()?, interpolant, start)?;
+        beside.repeated = Repeated::new(origin, course.history, course.until, accuracy)?.0;
+        Ok(Some(beside))
+    }
+
+    /// Solves an elastic contact, and adds it to the curve.
+    fn solve(&mut self, level: f64) -> Result<Solved> {
+        let load = Load::Force { normal: level, tilt: self.tilt };
+        let (pressure, approach, area, convolutions) = self.elastic.pressed(load)?;
+        self.spent = [self.spent[0] + 1, self.spent[1] + convolutions];
+        let depth = if self.by_force { level.powf(2.0 / 3.0) } else { approach - self.rest };
+        let at = self.rows.partition_point(|row| row[0] < level);
+        let is_new = |row: &[f64; 3]| (row[0] / level - 1.0).abs() > NEAREST && (row[1] > depth) == (row[0] > level);
+        let fits = self.rows[at.saturating_sub(1)..].iter().take(2).all(is_new);
+        if fits && depth > 0.0 {
+            self.rows.insert(at, [level, depth, area]);
+        }
+        Ok(Solved { level, pressure })
+    }
+
+    /// Nowhere may the pressure fall while the load grows.
+    fn check(&self, below: &Solved, above: &Solved) -> Result<()> {
+        below.pressure.check_growth(&above.pressure, [below.level, above.level], self.allowed_fall)
+    }
+
+    /// δ(l) through all elastic contacts, with the slopes of parabolas of the logarithms.
+    fn curve(&self) -> Result<Arc<ElasticStates>> {
+        let slope = |k: usize| {
+            let chord = |k: usize| {
+                let [a, b] = [self.rows[k], self.rows[k + 1]];
+                let width = (b[0] / a[0]).ln();
+                ((b[1] / a[1]).ln() / width, width)
+            };
+            let last = self.rows.len() - 1;
+            let ((below, left), (above, right)) = (chord(k.saturating_sub(1).min(last - 1)), chord(k.min(last - 1)));
+            (below * right + above * left) / (left + right)
+        };
+        let row = |k: usize| {
+            let ([level, depth, area], slope) = (self.rows[k], slope(k));
+            (level, self.rest + depth, level / (depth * slope), area)
+        };
+        let last = self.rows.len() - 1;
+        let ([level, depth, area], power) = (self.rows[last], slope(last));
+        let (ratio, beyond) = (BEYOND.powf(power), BEYOND * level);
+        let end = (beyond, self.rest + depth * ratio, beyond / (depth * ratio * power), area * ratio);
+        let rows = (0..=last).map(row).chain([end]);
+        let rest = Rest { approach: self.rest, tilt: [0.0; 2] };
+        let mut states = ElasticStates::from_rows(rows, rest, [Tilt::Fixed(0.0); 2])?;
+        Arc::make_mut(&mut states).tilt = self.tilt;
+        Ok(states)
+    }
+
+    /// The pressure at a time, after a jump of the load there or before it.
+    pub(crate) fn pressure(&mut self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<FoundPressure> {
+        let mut found = self.repeated.at(history, time, after)?;
+        let mut solved: Vec<Solved> = Vec::new();
+        let mut error = 0.0;
+        for attempt in 1.. {
+            let profile = Profile::new(found.contact.tractions());
+            let top = found.contact.level();
+            solved.retain(|solved| solved.level < top * (1.0 - NEAREST));
+            let levels: Vec<f64> = solved.iter().map(|solved| solved.level).chain([top]).collect();
+            error = profile.distance(&Profile::new(profile.means(&levels)), found.size());
+            if error <= self.repeated.accuracy {
+                solved.extend((top > 0.0).then(|| self.solve(top)).transpose()?);
+            } else {
+                let (levels, of_cuts) = profile.cuts(found.size(), self.repeated.accuracy);
+                (error, solved) = (of_cuts, levels.into_iter().map(|level| self.solve(level)).collect::<Result<_>>()?);
+            }
+            if self.by_force || attempt == MOST_ATTEMPTS {
+                break;
+            }
+            self.repeated.origin.exchange(self.curve()?);
+            found = self.repeated.at(history, time, after)?;
+            let change = (found.contact.level() - top).abs();
+            if change * profile.amplification() <= OF_CURVE * self.repeated.accuracy * top {
+                break;
+            }
+        }
+        for pair in solved.windows(2) {
+            self.check(&pair[0], &pair[1])?;
+        }
+        let profile = Profile::new(found.contact.tractions());
+        let pressure = self.superposed(&profile, &solved.iter().collect::<Vec<_>>());
+        let half: Vec<&Solved> = solved.iter().rev().step_by(2).collect::<Vec<_>>().into_iter().rev().collect();
+        if half.len() > 1 && half.len() < solved.len() {
+            let coarse = self.superposed(&profile, &half);
+            let off: f64 = pressure.iter().zip(&coarse).map(|(fine, coarse)| (fine - coarse).abs()).sum();
+            let by_half = off / pressure.iter().sum::<f64>() / OF_HALF;
+            error = by_half.clamp(error / MOST_OVERSTATED, error);
+        }
+        Ok(FoundPressure { pressure, error, spent: std::mem::take(&mut self.spent) })
+    }
+
+    /// Σ w (p_e(l_i) − p_e(l_i−1)) = Σ (w_i − w_i+1) p_e(l_i).
+    fn superposed(&self, profile: &Profile, solved: &[&Solved]) -> Vec<f64> {
+        let levels: Vec<f64> = solved.iter().map(|solved| solved.level).collect();
+        let shares: Vec<f64> = profile.means(&levels).map(|(_, share)| share).collect();
+        let mut field = vec![0.0; self.elastic.grid().len()];
+        for (k, solved) in solved.iter().enumerate() {
+            solved.pressure.add_to(shares[k] - shares.get(k + 1).unwrap_or(&0.0), &mut field);
+        }
+        field
+    }
+
+    /// Whether the elastic contacts give fields: none shrinks.
+    pub(crate) fn serves(&self) -> bool {
+        self.serves
+    }
+
+    /// Times before a time at which steps should end for the field there, and by how many times an error of the level counts in it.
+    pub(crate) fn stops(&self, history: &dyn LoadHistory, time: f64) -> Result<(Vec<f64>, f64)> {
+        let found = self.repeated.at(history, time, false)?;
+        let profile = Profile::new(found.contact.tractions());
+        let (levels, _) = profile.cuts(found.size(), self.repeated.accuracy);
+        let amplification = if self.by_force { profile.amplification() } else { 1.0 };
+        Ok((levels.into_iter().map(|level| found.since(level)).collect(), amplification))
+    }
+
+    /// The error of the pressure at a time by steps with these ends.
+    pub(crate) fn error_of_steps(
+        &self,
+        history: &dyn LoadHistory,
+        ends: &[f64],
+        (time, after): (f64, bool),
+    ) -> Result<f64> {
+        let found = self.repeated.at(history, time, after)?;
+        let taken = self.repeated.by_steps(history, ends, (time, after))?;
+        Ok(Profile::new(found.contact.tractions()).distance(&Profile::new(taken.contact.tractions()), found.size()))
+    }
+}
+
+/// An undisturbed contact on these states at the start of a run.
+fn undisturbed(
+    course: &Course<'_>,
+    states: &Arc<ElasticStates>,
+    interpolant: Interpolant,
+    start: f64,
+) -> Result<StatesContact> {
+    let mut contact = course.contact(states, interpolant)?;
+    if start > 0.0 {
+        contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
+    }
+    Ok(contact)
+}
+
+/// An elastic contact at a level.
+struct Solved {
+    level: f64,
+    pressure: Pressed,
+}

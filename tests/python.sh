@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# The Python package: its tests, the examples of its docstrings, its stubs against the compiled module, and scenes of random numbers
+# in both languages. Built in the profile of the tests; tools come from an environment in the user's cache that is made for it.
+set -euo pipefail
+cd "$(dirname "$0")/../python"
+repository=$(cd .. && pwd)
+
+own="${XDG_CACHE_HOME:-$HOME/.cache}/viscocontact/package"
+python="$own/bin/python"
+wanted="import matplotlib, mypy, numpy, pytest, scipy"
+if ! "$python" -c "$wanted" 2>/dev/null; then
+    if ! { python3 -m venv "$own" && "$python" -m pip install --quiet matplotlib mypy numpy pytest scipy; }; then
+        echo "skipped: neither a network nor $own with matplotlib, mypy, numpy, pytest and scipy"
+        exit 0
+    fi
+fi
+export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$(cd .. && pwd)/target}"
+cargo build --quiet --features pyo3/extension-module --lib --example scenes
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cp -r viscocontact "$folder"
+cp "$CARGO_TARGET_DIR/debug/lib_native.so" "$folder/viscocontact/_native.abi3.so"
+cp -r tests "$folder"
+cp pyproject.toml LICENSE "$folder"
+cd "$folder"
+export VISCOCONTACT_SCENES_IN_RUST="$CARGO_TARGET_DIR/debug/examples/scenes" PYTHONPATH="$folder"
+"$python" -m pytest --quiet tests
+"$python" -m mypy.stubtest viscocontact
+for example in "$repository"/python/examples/*.py; do
+    "$python" "$example" --quick --output "$repository/target/ci/python"
+done

@@ -1,0 +1,309 @@
+//! Pressures to an accuracy: of runs in space at any time, and of contacts on elastic states.
+
+use viscocontact::analytic::{GrowingSphere, Hertz};
+use viscocontact::geometry::Sum;
+use viscocontact::prelude::*;
+use viscocontact::states::{Reach, Sweep};
+
+use crate::common::{Draws, Features, Scene, figures, from_environment};
+
+const RADIUS: f64 = 10.0e-3;
+
+fn rubber() -> Material {
+    Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap())
+}
+
+fn ball() -> ViscoelasticContact {
+    let builder =
+        ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap()).geometry(&Sphere::new(RADIUS).unwrap());
+    builder.material(rubber()).build().unwrap()
+}
+
+/// Ends of given steps: graded after and before each of the knots, and evenly between.
+fn fine_times(scene: &Scene, asked: &[f64], ratio: f64) -> Vec<f64> {
+    let until = scene.body.until;
+    let mut knots: Vec<f64> = scene.moments();
+    knots.extend(scene.history.corners.iter().copied().chain(asked.iter().copied()).chain([0.0, until]));
+    knots.retain(|time| (0.0..=until).contains(time));
+    knots.sort_by(f64::total_cmp);
+    knots.dedup_by(|a, b| *a - *b < 1e-9 * until);
+    let mut times: Vec<f64> = (1..400).map(|k| until * f64::from(k) / 400.0).collect();
+    for pair in knots.windows(2) {
+        let mut off = 1e-6 * (pair[1] - pair[0]);
+        while off < 0.5 * (pair[1] - pair[0]) {
+            times.extend([pair[0] + off, pair[1] - off]);
+            off *= ratio;
+        }
+    }
+    let near = |time: f64| knots.iter().any(|knot| (knot - time).abs() < 1e-9 * until);
+    times.retain(|&time| !near(time));
+    times.extend(knots.into_iter().filter(|time| *time > 0.0));
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+struct Field {
+    time: f64,
+    pressure: Vec<f64>,
+}
+
+/// The pressures at the asked times, after jumps, by given fine steps, and the greatest force.
+fn truth(scene: &Scene, asked: &[f64]) -> Option<(Vec<Field>, f64)> {
+    let mut contact = scene.contact(1e-8);
+    let (mut fields, mut greatest) = (Vec::new(), 0.0_f64);
+    let load = scene.load();
+    contact.step(0.0, load.at(0.0)).ok()?;
+    for time in fine_times(scene, asked, 1.2) {
+        contact.step(time - contact.time(), load.before(time)).ok()?;
+        greatest = greatest.max(contact.force());
+        if load.at(time) != load.before(time) {
+            contact.step(0.0, load.at(time)).ok()?;
+            greatest = greatest.max(contact.force());
+        }
+        if asked.contains(&time) {
+            fields.push(Field { time, pressure: contact.pressure().to_vec() });
+        }
+    }
+    Some((fields, greatest))
+}
+
+fn quantiles(name: &str, values: &[f64]) -> String {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| values.get((share * values.len() as f64) as usize).or(values.last()).copied().unwrap_or(0.0);
+    format!("{name}: {} values, 1/10/50/90/99/max {:.2?}", values.len(), [0.01, 0.1, 0.5, 0.9, 0.99, 1.0].map(at))
+}
+
+/// L1 over what was asked, the estimate over the truth, elastic contacts.
+#[derive(Default)]
+struct Population {
+    over: Vec<f64>,
+    told: Vec<f64>,
+    contacts: Vec<f64>,
+    apart: usize,
+}
+
+/// Random scenes, three random times each; bodies that creep up to 100-fold, and 1000-fold.
+fn population(seed: u64, scenes: u64, accuracy: f64) -> [Population; 2] {
+    let mut all = [Population::default(), Population::default()];
+    for number in 0..scenes {
+        let features = [Features::ANY, Features::ANY, Features::SPRING, Features::RETURNING][number as usize % 4];
+        let scene = Scene::draw(seed, number, features);
+        let (mut draws, ratio) = (Draws::new(seed.wrapping_mul(7919).wrapping_add(number)), scene.body.creep_ratio());
+        let mut asked: Vec<f64> = (0..3).map(|_| draws.between(0.02, 1.0) * scene.body.until).collect();
+        asked.sort_by(f64::total_cmp);
+        let Some((fields, greatest)) = (ratio <= 1000.0).then(|| truth(&scene, &asked)).flatten() else { continue };
+        let some = &mut all[usize::from(ratio > 100.0)];
+        let mut contact = scene.contact(1e-6);
+        let run = contact.follow(scene.load(), Stepping::adaptive(accuracy), scene.body.until);
+        let mut run = run.sample_at(&asked[..]).unwrap().fields_to(accuracy).unwrap();
+        let (mut found, area) = (0, scene.grid().cell_area());
+        while run.next_step().unwrap_or_else(|error| panic!("{}: {error}", scene.name)).is_some() {
+            for sample in run.samples() {
+                let sample = sample.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+                let exact = fields.iter().find(|field| field.time == sample.contact().time());
+                let Some((report, exact)) = sample.field().zip(exact) else { continue };
+                found += 1;
+                let size = (exact.pressure.iter().sum::<f64>() * area).max(0.01 * greatest);
+                if size == 0.0 {
+                    assert!(sample.contact().pressure().iter().all(|pressure| *pressure == 0.0));
+                    some.apart += 1;
+                    continue;
+                }
+                let pairs = exact.pressure.iter().zip(sample.contact().pressure());
+                let over = pairs.map(|(a, b)| (a - b).abs()).sum::<f64>() * area / size / accuracy;
+                let (told, name) = (report.error.unwrap() / accuracy, &scene.name);
+                if over > 1.5 {
+                    println!("{over:.2} told {told:.2} at {:.3e}: {name}", exact.time);
+                }
+                some.over.push(over);
+                some.told.extend((over > 0.1).then_some(told / over));
+                some.contacts.push(report.elastic_contacts as f64);
+            }
+        }
+        assert!(found >= asked.len(), "{}: {found}", scene.name);
+    }
+    all
+}
+
+/// FIELD_SCENES=300 FIELD_SEED=1 are the figures of the documents.
+#[test]
+fn fields_of_runs_are_as_exact_as_asked() {
+    let scenes = from_environment("FIELD_SCENES", 8);
+    for (accuracy, most) in [(1e-2, 10.0), (1e-3, 30.0)] {
+        let all = population(from_environment("FIELD_SEED", 1), scenes, accuracy);
+        for (some, creep) in all.iter().zip(["up to 100-fold", "up to 1000-fold"]) {
+            println!("accuracy {accuracy:.0e}, creep {creep}, {} apart", some.apart);
+            println!("{}", quantiles("  L1 over asked", &some.over));
+            println!("{}", quantiles("  estimate over truth", &some.told));
+            println!("{}", quantiles("  elastic contacts", &some.contacts));
+        }
+        let beyond = all[0].over.iter().filter(|over| **over > 2.0).count();
+        assert!(100 * beyond <= all[0].over.len(), "{beyond} fields are beyond twice what was asked");
+        let mut contacts = all[0].contacts.clone();
+        contacts.sort_by(f64::total_cmp);
+        assert!(contacts.len() as u64 > scenes && contacts[contacts.len() / 2] <= most);
+    }
+}
+
+/// Contacts on elastic states: few levels and kept pressures against all groups of the same contact.
+#[test]
+fn fields_of_states_are_as_exact_as_asked() {
+    for accuracy in [1e-2, 1e-3] {
+        let (mut few, mut kept) = (Vec::new(), Vec::new());
+        for number in 0..from_environment("FIELD_STATES", 4) {
+            let (mut draws, grid) = (Draws::new(number), Grid::square(16, 1.0).unwrap());
+            let spec = RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(draws.between(0.001, 0.01)));
+            let rough = Sum::new(Sphere::new(1.0).unwrap(), Rough::new(&grid, spec.with_seed(number)).unwrap());
+            let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(1e-8);
+            let sweep = Sweep::new(grid, &rough).settings(settings).accuracy(accuracy).keep_pressures();
+            let states = sweep.run(Reach::Level(0.03)).unwrap();
+            assert!(states.interpolation_error() <= accuracy);
+            let terms: Vec<_> = (0..3).map(|_| (draws.between(0.1, 1.0), draws.power_of_ten(-2.0, 1.0))).collect();
+            let material = Material::incompressible(GeneralizedMaxwell::new(draws.between(0.2, 1.0), &terms).unwrap());
+            let (top, by_force) = (states.approach(0.015), draws.chance(0.5));
+            let most = 0.01 / material.contact_compliance(2.0);
+            let mut contact = StatesContact::new(&states, &material).unwrap();
+            for step in 1..=200 {
+                let t = 0.01 * f64::from(step);
+                let part = (0.2 + 0.5 * t - 0.35 * (2.0 * t).sin()).clamp(0.05, 1.0);
+                let load = if by_force { Load::force(part * most) } else { Load::approach(part * top) };
+                contact.step(0.01, load).unwrap();
+                if step % 50 != 0 || contact.is_separated() {
+                    continue;
+                }
+                let exact = contact.fields(0.0).unwrap().pressure;
+                let off = |field: &[f64]| {
+                    let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).abs()).sum();
+                    sum / exact.iter().sum::<f64>() / accuracy
+                };
+                few.push(off(&contact.fields(accuracy).unwrap().pressure));
+                kept.push(off(&contact.pressure().unwrap()));
+            }
+        }
+        println!("{}\n{}", quantiles("few levels", &few), quantiles("kept pressures", &kept));
+        assert!(few.len() > 8 && few.iter().all(|off| *off < 1.2) && kept.iter().all(|off| *off < 2.0));
+    }
+}
+
+/// Where elastic contacts give the fields the steps stay as they are, bitwise; a jump has the field before it and after it; bodies apart
+/// have none.
+#[test]
+fn fields_leave_the_steps_as_they_are() {
+    let force = Load::force;
+    let rows = [(0.0, force(0.1)), (1.0, force(0.4)), (1.0, force(0.2)), (2.0, force(0.2)), (2.0, force(0.0))];
+    let history = PiecewiseLinear::new(&rows).unwrap();
+    let run = |fields: bool| {
+        let mut contact = ball();
+        let mut run = contact.follow(&history, Stepping::adaptive(1e-2), 3.0).sample_at([0.5, 1.0, 2.5]).unwrap();
+        run = if fields { run.fields_to(1e-2).unwrap() } else { run };
+        let (mut reports, mut sums) = (Vec::new(), Vec::new());
+        while let Some(report) = run.next_step().unwrap() {
+            reports.push(report);
+            for sample in run.samples().map(Result::unwrap).filter(|sample| fields && sample.is_asked_for()) {
+                let of_step = run.contact().force();
+                assert!(sample.field().is_some_and(|field| field.error.is_some_and(|error| error <= 1e-2)));
+                sums.push((sample.contact().time(), sample.contact().force(), of_step));
+            }
+        }
+        assert_eq!(run.error_budget().field.is_some(), fields);
+        (reports, sums)
+    };
+    let (plain, (reports, sums)) = (run(false).0, run(true));
+    assert_eq!(plain, reports);
+    let forces: Vec<f64> = sums.iter().map(|sum| sum.1).collect();
+    assert_eq!(forces.len(), 4, "{sums:?}");
+    for (force, expected) in forces.iter().zip([0.25, 0.4, 0.2, 0.0]) {
+        assert!((force - expected).abs() <= 1e-6, "{forces:?}");
+    }
+}
+
+/// A load point that moves has no elastic states: graded steps, and an estimate by halves.
+#[test]
+fn fields_without_states_are_found_by_graded_steps() {
+    let history = FnHistory::new(|t| Load::eccentric_force(0.4, [1.0e-4 * t.sin(), 0.0]));
+    let field = |accuracy: Option<f64>| {
+        let mut contact = ball();
+        let stepping = accuracy.map_or(Stepping::fixed(2e-3), Stepping::adaptive);
+        let mut run = contact.follow(&history, stepping, 1.5).sample_at([1.5]).unwrap();
+        run = if let Some(accuracy) = accuracy { run.fields_to(accuracy).unwrap() } else { run };
+        let mut told = None;
+        while run.next_step().unwrap().is_some() {
+            told = run.samples().last().and_then(|sample| sample.unwrap().field()).or(told);
+        }
+        (contact.pressure().to_vec(), told)
+    };
+    let (exact, (found, told)) = (field(None).0, field(Some(1e-2)));
+    let sum: f64 = exact.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
+    let (off, told) = (sum / exact.iter().sum::<f64>(), told.unwrap().error.unwrap());
+    println!("graded steps: off by {off:.1e}, told {told:.1e}");
+    assert!(off < 1e-2 && told < 3e-2 && told > 0.2 * off);
+}
+
+/// A run on states: the pressure in the sphere against the closed form of a growing contact.
+#[test]
+fn fields_of_runs_on_states_are_exact() {
+    let mut contact = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &rubber()).unwrap();
+    let load = StepLoad::new(Load::force(0.5)).unwrap();
+    let run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
+    let mut run = run.sample_at([2.0]).unwrap().fields_to(1e-3).unwrap();
+    let mut compared = 0;
+    while run.next_step().unwrap().is_some() {
+        for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
+            let (contact, exact) = (sample.contact(), GrowingSphere::step(RADIUS, &rubber(), 0.5).unwrap());
+            let edge = (contact.contact_area() / std::f64::consts::PI).sqrt();
+            for part in [0.0, 0.3, 0.6, 0.9, 0.98] {
+                let at = |level: f64| Hertz::new(RADIUS, 1.0, level).map_or(0.0, |hertz| hertz.pressure(part * edge));
+                let (found, exact) = (contact.superposed(at), exact.pressure(part * edge, 2.0));
+                assert!((found / exact - 1.0).abs() < 5e-3, "{part}: {found} {exact}");
+                compared += 1;
+            }
+        }
+    }
+    assert_eq!(compared, 5);
+}
+
+/// Convolutions of a field at the end over the convolutions of a run for the motions alone, on 64² cells.
+#[test]
+fn a_field_costs_little_over_its_run() {
+    let history = Ramp::new(Load::force(0.05), Load::force(0.5), 0.5).unwrap();
+    let fractional = FractionalZener::relaxing(1.0e6, 1.0e5, 0.1, 0.4).unwrap();
+    let bodies = [
+        ("Maxwell", rubber()),
+        ("Zener", Material::incompressible(Zener::relaxing(1.0e6, 0.1e6, 0.5).unwrap())),
+        (
+            "three relaxation times",
+            Material::incompressible(
+                GeneralizedMaxwell::new(0.1e6, &[(0.4e6, 0.01), (0.3e6, 0.3), (0.2e6, 10.0)]).unwrap(),
+            ),
+        ),
+        ("fractional Zener", Material::incompressible(fractional).fitted(1e-6..=3.0, 1e-3).unwrap()),
+        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::with_time(0.5e6, 1.0).unwrap())),
+    ];
+    let mut table = String::from("| body | 3e-2 | 1e-2 | 3e-3 | 1e-3 |\n|---|---|---|---|---|");
+    for (name, material) in bodies {
+        let jumps = material.contact_compliance(0.0) > 0.0;
+        let slow = Ramp::new(Load::force(0.0), Load::force(0.5), 0.5).unwrap();
+        let history = if jumps { &history } else { &slow };
+        let mut row = Vec::new();
+        for accuracy in [3e-2, 1e-2, 3e-3, 1e-3] {
+            let grid = Grid::square(64, 5.0e-3).unwrap();
+            let builder = ViscoelasticContact::builder(grid).geometry(&Sphere::new(RADIUS).unwrap());
+            let mut contact = builder.material(material.clone()).build().unwrap();
+            let run = contact.follow(history, Stepping::adaptive(accuracy), 2.0);
+            let mut run = run.sample_at([2.0]).unwrap().fields_to(accuracy).unwrap();
+            let (mut of_run, mut of_field) = (0, None);
+            while let Some(report) = run.next_step().unwrap() {
+                of_run += report.convolutions;
+                let last = run.samples().last().unwrap().unwrap();
+                of_field = last.field().map(|field| field.convolutions).or(of_field);
+            }
+            let cost = of_field.unwrap() as f64 / of_run as f64;
+            assert!(cost < 5.0, "{name} {accuracy}: {cost}");
+            row.push(format!("{cost:.1}"));
+        }
+        table += &format!("\n| {name} | {} |", row.join(" | "));
+    }
+    println!("{table}");
+    figures::figure("what a field costs", &table).unwrap();
+}
