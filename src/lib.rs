@@ -1,19 +1,19 @@
 //! Frictionless contact of viscoelastic bodies.
 //!
-//! An indenter is pressed onto a creeping body: pressure, contact area and approach over time. Geometry and load history are arbitrary, the rheology
-//! is linear, with a creep compliance that is concave after t = 0. Surfaces and creep may be measured ones, read from files.
+//! An indenter is pressed onto a creeping body: pressure, contact area and approach over time, for any shape and load history. The rheology is
+//! linear, its creep compliance concave after t = 0. Surfaces and creep may come from files.
 //!
 //! # The problem
 //!
-//! The gap h is the gap h_i before deformation, plus the surface displacement u, minus the approach ω and tilt α of the indenter. There is
-//! pressure p or a gap. The pressure carries the force W and, where the tilt is free, its moments W e:
+//! The gap h is the gap h_i before deformation, plus the surface displacement u, minus the approach ω and tilt α of the indenter. The
+//! pressure p carries the force W and, where the tilt is free, its moments W e:
 //!
 //! ```text
 //! h = h_i + u − ω − α·x,    p ≥ 0,    h ≥ 0,    p h = 0
 //! W = ∬ p dx,    W e = ∬ p x dx
 //! ```
 //!
-//! The displacement depends on the whole pressure history through the contact creep compliance C(t):
+//! The displacement follows the pressure history through the contact creep compliance C(t):
 //!
 //! ```text
 //! u(t) = ∫₀₋ᵗ C(t − s) d[K p(s)],    (K p)(x) = ∬ p(x′) / (π |x − x′|) dx′
@@ -46,7 +46,7 @@
 //! |---|---|
 //! | drive every step | [`ViscoelasticContact::step`] |
 //! | follow a load history, in fixed or adaptive steps | [`ViscoelasticContact::follow`] |
-//! | reach a required accuracy | [`plan::Plan`]: domain, mesh and steps |
+//! | reach a required accuracy | [`plan::Plan`] |
 //! | compute many materials on one surface | [`states`] |
 //! | let surfaces attract each other | [`adhesion`] |
 //! | slide and roll, in steps or steadily | [`motion`], [`sliding`] |
@@ -54,24 +54,24 @@
 //! | add a shape, a body or a history | [`geometry::Geometry`], [`rheology::Rheology`], [`load::LoadHistory`] |
 //! | evaluate a state, write files for NumPy and ParaView | [`observe`], [`output`] |
 //! | compare with closed forms | [`analytic`] |
-//! | identify a modulus from a measured indentation | the package `viscocontact-identify` |
+//! | identify a modulus by indentation | the package `viscocontact-identify` |
 //!
 //! Guides with programs, in the order of use: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
 //! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::steady_motion`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
 //!
 //! # Conventions
 //!
-//! * **Units**: SI throughout: m, Pa, N, s. The same scene in other units gives the same result.
+//! * **Units**: SI: m, Pa, N, s.
 //! * **Signs**: pressure is positive in compression, displacement into the bodies, the gap when open, the approach when pressed together.
 //! * **Stress** below the surface ([`observe::Stress`]): tension positive, x3 the depth.
 //! * **Coordinates**: x1 and x2 in the common plane, origin in the middle of the [`Grid`].
 //! * **Fields**: one value per cell, row-major with x2 fastest: the cell `[i, j]` is entry `i * cells()[1] + j`.
-//! * **Gap**: `+∞` means that there is no surface to touch, as outside the face of a punch.
+//! * **Gap**: `+∞` where there is no surface, as outside the face of a punch.
 //! * **Compliance**: J(t) is the shear creep compliance, J(0) = 1/G. C(t) is the contact creep compliance, 1/E* for an
 //!   elastic body: J/4 if incompressible, (1 − ν) J/2 at a constant Poisson's ratio, larger with an elastic bulk
 //!   ([`rheology::Material`]); the compliances of two bodies add up.
-//! * **Kernel**: [`InfluenceKernel::convolve`] returns K p in Pa·m; no factor of the transform remains.
-//! * **Datum** of the approach: the surface far away from a half-space's contact, the mean of a periodic surface, the surface at a distance given
+//! * **Kernel**: [`InfluenceKernel::convolve`] returns K p in Pa·m.
+//! * **Datum** of the approach: the surface far from a half-space's contact, the mean of a periodic surface, the surface at a distance given
 //!   with the kernel in line contacts, the undeformed surface of a layer on a rigid base.
 //! * **Heights** of maps and rough surfaces are positive outward; the gap is the greatest height minus each height.
 //! * **Motion**: a positive velocity moves the indenter over the creeping bodies along x1 or x2; the lateral force moves it.
@@ -79,24 +79,24 @@
 //!
 //! # Cost
 //!
-//! A convolution of N cells is a forward and an inverse real transform of the zero-padded grid, O(N log N). A step of the default solver
+//! A convolution of N cells transforms the zero-padded grid and back, O(N log N). A step of the default solver
 //! takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents in the scene of the paper. Half or a quarter of the cells is computed where gap
-//! and load are even ([`contact::Settings::symmetry`]), and none that contact cannot reach ([`contact::Settings::window`]).
+//! and load are even ([`contact::Settings::symmetry`]), and none beyond the reach of contact ([`contact::Settings::window`]).
 //!
-//! The history costs no transform: one field per relaxation time, however many steps there were. A rheology without an exact exponential
-//! series is fitted by one when the contact is built ([`rheology::Rheology::series`]).
+//! The history costs no transform, and one field per relaxation time. A rheology without an exact exponential
+//! series is fitted by one at `build` ([`rheology::Rheology::series`]).
 //!
 //! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
 //! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, <!-- figures memory of a line -->370<!-- end --> in a line contact; each further time adds 8 per
-//! computed cell. [`contact::Builder::memory`] tells it beforehand.
+//! computed cell. [`contact::Builder::memory`] returns the bytes beforehand.
 //!
-//! A step allocates nothing, except the first two of a run, along a path, under a tilting load or an attraction, where a window grows, or a
-//! changing temperature alters the rate of creep by many decades.
+//! A step allocates nothing, except the first two of a run or under a tilting load, and steps along a path, with attraction, where a window grows, or
+//! temperature alters the rate of creep by many decades.
 //!
 //! # Co-simulation and long runs
 //!
-//! A failed step leaves no trace, and may be tried again. A caller that iterates takes a [`contact::Snapshot`] and restores it. A state that is saved to
-//! a file (feature `checkpoint`) continues bit by bit. Results do not depend on the number of threads or [ranks](parallel).
+//! A failed step changes nothing. Callers that iterate restore a [`contact::Snapshot`]. A state saved to
+//! a file continues bit by bit. Results do not depend on the number of threads or [ranks](parallel).
 //!
 //! # Features
 //!
@@ -105,7 +105,7 @@
 //!
 //! # Limitations
 //!
-//! Friction, plasticity and finite deformation are outside the model; steps warn beyond small strains and slopes ([`guide::accuracy`]). With attraction
+//! Coulomb friction, plasticity and finite deformation are outside the model; steps warn beyond small strains and slopes ([`guide::accuracy`]). With attraction
 //! there is one body on the whole grid ([`guide::adhesion`]). In time a [`Layer`] lies on a rigid base, or on one with the same creep function; bodies of several
 //! layers need a spectrum or influence coefficients ([`InfluenceKernel::from_spectrum`]).
 

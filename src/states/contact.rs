@@ -94,7 +94,7 @@ impl StatesContact {
     }
 
     /// With groups of levels that merge where this changes force and depth by at most about `error`, relative to what they are: 1e-6 unless
-    /// set. The contact area errs ten times as much. A long run has about 1/√`error` groups, whatever the number of its steps and
+    /// set. The contact area errs ten times as much. A long run has at most about 2.5/√`error` groups, whatever the number of its steps and
     /// relaxation times: a contact law in a loop is faster with 1e-4. Runs with [`Stepping::adaptive`](crate::run::Stepping::adaptive)
     /// take a hundredth of their tolerance instead; 0 merges only groups with the same past.
     ///
