@@ -38,7 +38,12 @@ pub(super) struct Tip {
     last_depth: f64,
     /// Force and depth of a state, and the exponent, of a closed form: the force is a power of the depth.
     power: Option<[f64; 3]>,
+    /// ln of the force, and its slope over ln of the depth, at equal distances of ln of the depth up to the last one, of other curves.
+    nodes: Vec<[f64; 2]>,
 }
+
+/// Number of the nodes, between which a cubic is exact to 1e-9.
+const NODES: usize = 2048;
 
 /// Deviation of an exponent from a state to the next below which the states are a closed form.
 const CLOSED: f64 = 1e-12;
@@ -56,7 +61,36 @@ impl Tip {
             }
             _ => None,
         };
-        Tip { states: Arc::clone(states), rest, last_depth: states.approach(last) - rest, power }
+        let mut tip = Tip {
+            states: Arc::clone(states),
+            rest,
+            last_depth: states.approach(last) - rest,
+            power,
+            nodes: Vec::new(),
+        };
+        if power.is_none() && tip.last_depth > 0.0 {
+            let node = |k: usize| {
+                let depth = tip.last_depth * (TOUCH.ln() * (1.0 - k as f64 / (NODES - 1) as f64)).exp();
+                let level = tip.states.level_at(tip.rest + depth);
+                [level.ln(), tip.stiffness(level) * depth / level]
+            };
+            tip.nodes = (0..NODES).map(node).collect();
+        }
+        tip
+    }
+
+    /// Force and stiffness at a depth between the nodes.
+    fn between(&self, depth: f64) -> Option<[f64; 2]> {
+        let step = -TOUCH.ln() / (NODES - 1) as f64;
+        let place = ((depth / self.last_depth).ln() - TOUCH.ln()) / step;
+        let k = if (0.0..(NODES - 1) as f64).contains(&place) { place as usize } else { return None };
+        let ([a, da], [b, db], t) = (*self.nodes.get(k)?, *self.nodes.get(k + 1)?, place - k as f64);
+        let (da, db) = (da * step, db * step);
+        // Hermite's cubic
+        let (c, d) = (3.0 * (b - a) - 2.0 * da - db, da + db - 2.0 * (b - a));
+        let force = (a + t * (da + t * (c + t * d))).exp();
+        let slope = (da + t * (2.0 * c + t * 3.0 * d)) / step;
+        Some([force, force * slope / depth]).filter(|[force, _]| force.is_finite())
     }
 
     /// Depth of the last state \[m\].
@@ -74,6 +108,10 @@ impl Tip {
             let force = force * (at / unit).powf(exponent);
             let stiffness = exponent * force / at;
             return Some(Elastic::of(depth, [force, stiffness, (exponent - 1.0) * stiffness / at]));
+        }
+        if let Some([level, stiffness]) = self.between(at) {
+            let growth = if T::DERIVES { self.growth(level) * stiffness } else { 0.0 };
+            return Some(Elastic::of(depth, [level, stiffness, growth]));
         }
         let level = self.states.level_at(self.rest + at.min(self.last_depth));
         let inside = at <= self.last_depth * (1.0 + NEAR) && level.is_finite();
