@@ -14,58 +14,39 @@ use crate::states_contact::StatesContact;
 type Pickled<'py> =
     (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>), Bound<'py, PyBytes>);
 
-#[pymethods]
-impl ViscoelasticContact {
-    /// Saves the whole state to a file, from which a contact that is built like this one continues by `resume`.
-    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let contact = self.get()?;
-        py.detach(|| contact.save(path)).or_raise()
-    }
+/// The methods of a contact that can be saved.
+macro_rules! checkpoints {
+    ($contact:ident) => {
+        #[pymethods]
+        impl $contact {
+            /// Saves the whole state to a file, from which a contact that is built like this one continues by `resume`.
+            fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = self.get()?;
+                py.detach(|| contact.save(path)).or_raise()
+            }
 
-    /// Puts a saved state in the place of this one; the following steps are the same, bit by bit.
-    ///
-    /// Raises OSError if the file cannot be read, is damaged, or is of another scene.
-    fn resume(&mut self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let contact = self.held.free()?;
-        py.detach(|| contact.resume(path)).or_raise()
-    }
+            /// Puts a saved state in the place of this one; the following steps are the same, bit by bit.
+            ///
+            /// Raises OSError if the file cannot be read, is damaged, or is of another scene.
+            fn resume(&mut self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = self.held.free()?;
+                py.detach(|| contact.resume(path)).or_raise()
+            }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
-        let of = slf.borrow();
-        let (again, arguments) = of.recipe.reduce(slf.get_type())?;
-        let contact = of.get()?;
-        Ok((again, arguments, bytes_of(slf.py(), |file| contact.save(file))?))
-    }
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
+                let of = slf.borrow();
+                let (again, arguments) = of.recipe.reduce(slf.get_type())?;
+                let contact = of.get()?;
+                Ok((again, arguments, bytes_of(slf.py(), |file| contact.save(file))?))
+            }
 
-    fn __setstate__(&mut self, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
-        let (file, contact) = (file_of(state)?, self.held.free()?);
-        py.detach(|| contact.resume(&file.0)).or_raise()
-    }
+            fn __setstate__(&mut self, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
+                let (file, contact) = (file_of(state)?, self.held.free()?);
+                py.detach(|| contact.resume(&file.0)).or_raise()
+            }
+        }
+    };
 }
 
-#[pymethods]
-impl StatesContact {
-    /// Saves the whole state to a file, from which a contact of the same states and material continues by `resume`.
-    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let contact = self.get()?;
-        py.detach(|| contact.save(path)).or_raise()
-    }
-
-    /// Puts a saved state in the place of this one; the following steps are the same, bit by bit.
-    fn resume(&mut self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let contact = self.held.free()?;
-        py.detach(|| contact.resume(path)).or_raise()
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
-        let of = slf.borrow();
-        let (again, arguments) = of.recipe.reduce(slf.get_type())?;
-        let contact = of.get()?;
-        Ok((again, arguments, bytes_of(slf.py(), |file| contact.save(file))?))
-    }
-
-    fn __setstate__(&mut self, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
-        let (file, contact) = (file_of(state)?, self.held.free()?);
-        py.detach(|| contact.resume(&file.0)).or_raise()
-    }
-}
+checkpoints!(ViscoelasticContact);
+checkpoints!(StatesContact);

@@ -1,8 +1,10 @@
 //! Numerical methods that this crate and `viscocontact-identify` share.
 
+mod hermite;
 mod least;
 mod non_negative;
 
+pub use hermite::{hermite, hermite_slope};
 pub use least::{golden_section, least};
 pub use non_negative::non_negative_least_squares;
 pub(crate) use non_negative::solve;

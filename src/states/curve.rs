@@ -7,7 +7,8 @@ use crate::Grid;
 use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
-use crate::states::interpolation::{hermite, hermite_slope, root};
+use crate::numeric::{hermite, hermite_slope};
+use crate::states::interpolation::root;
 use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.

@@ -1,4 +1,4 @@
-//! Cubics between states, and roots.
+//! Roots on the curve between states.
 
 /// Rounding of a root, relative to the greater of the root and 1.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -25,18 +25,4 @@ pub(super) fn root([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> [f64; 2]) 
         let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;
         (s, last) = (if converges { newton } else { middle }, excess.abs());
     }
-}
-
-/// Cubic with these values and slopes at 0 and 1.
-pub(super) fn hermite(values: [f64; 2], slopes: [f64; 2], s: f64) -> f64 {
-    let ([f0, f1], [m0, m1], r) = (values, slopes, 1.0 - s);
-    let d = f1 - f0;
-    f0 + s * d + s * r * (r * (m0 - d) - s * (m1 - d))
-}
-
-/// Its slope.
-pub(super) fn hermite_slope(values: [f64; 2], slopes: [f64; 2], s: f64) -> f64 {
-    let ([f0, f1], [m0, m1], r) = (values, slopes, 1.0 - s);
-    let d = f1 - f0;
-    d + (r - s) * (r * (m0 - d) - s * (m1 - d)) - s * r * (m0 + m1 - 2.0 * d)
 }

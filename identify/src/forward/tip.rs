@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use viscocontact::numeric::{hermite, hermite_slope};
 use viscocontact::states::{ElasticState, ElasticStates};
 
 use crate::forward::real::Real;
@@ -85,11 +86,8 @@ impl Tip {
         let place = ((depth / self.last_depth).ln() - TOUCH.ln()) / step;
         let k = if (0.0..(NODES - 1) as f64).contains(&place) { place as usize } else { return None };
         let ([a, da], [b, db], t) = (*self.nodes.get(k)?, *self.nodes.get(k + 1)?, place - k as f64);
-        let (da, db) = (da * step, db * step);
-        // Hermite's cubic
-        let (c, d) = (3.0 * (b - a) - 2.0 * da - db, da + db - 2.0 * (b - a));
-        let force = (a + t * (da + t * (c + t * d))).exp();
-        let slope = (da + t * (2.0 * c + t * 3.0 * d)) / step;
+        let (values, slopes) = ([a, b], [da * step, db * step]);
+        let (force, slope) = (hermite(values, slopes, t).exp(), hermite_slope(values, slopes, t) / step);
         Some([force, force * slope / depth]).filter(|[force, _]| force.is_finite())
     }
 
@@ -109,16 +107,14 @@ impl Tip {
             let stiffness = exponent * force / at;
             return Some(Elastic::of(depth, [force, stiffness, (exponent - 1.0) * stiffness / at]));
         }
-        if let Some([level, stiffness]) = self.between(at) {
-            let growth = if T::DERIVES { self.growth(level) * stiffness } else { 0.0 };
-            return Some(Elastic::of(depth, [level, stiffness, growth]));
-        }
-        let level = self.states.level_at(self.rest + at.min(self.last_depth));
-        let inside = at <= self.last_depth * (1.0 + NEAR) && level.is_finite();
-        let stiffness = self.stiffness(level);
+        let [level, stiffness] = self.between(at).or_else(|| {
+            let level = self.states.level_at(self.rest + at.min(self.last_depth));
+            let inside = at <= self.last_depth * (1.0 + NEAR) && level.is_finite();
+            inside.then(|| [level, self.stiffness(level)])
+        })?;
         // only derivatives need it
         let growth = if T::DERIVES { self.growth(level) * stiffness } else { 0.0 };
-        inside.then(|| Elastic::of(depth, [level, stiffness, growth]))
+        Some(Elastic::of(depth, [level, stiffness, growth]))
     }
 
     /// The elastic contact at first touch: only a flat punch is stiff there. The stiffness is a secant, since a rough or layered tip rests
