@@ -173,7 +173,8 @@ impl<'a> PlanBuilder<'a> {
         };
         let mut laws = converged.laws;
         let (mut across, mut sides) = needed(&laws);
-        if sides[0].max(sides[1]) > MOST_PLANNED_CELLS {
+        let too_many = sides[0].max(sides[1]) > MOST_PLANNED_CELLS;
+        if too_many {
             laws = laws.without_pressure();
             (across, sides) = needed(&laws);
         }
@@ -186,30 +187,38 @@ impl<'a> PlanBuilder<'a> {
         let across = across * grid.cells()[0] as f64 / sides[0];
         let steps = &converged.steps;
         let converges = laws.pressure.converges && steps.resolve_pressure(accuracy);
+        let at_rim = steps.trace.is_some_and(|trace| !trace.cells.converges);
+        let doubt = match () {
+            () if converges => None,
+            () if too_many => Some("it needs more than 8192 cells along a side"),
+            () if at_rim => Some("it is at the rim of a contact that grows fast, narrower than cells"),
+            () if laws.pressure.converges => Some("it is a peak in time, or at a fast rim, that steps do not resolve"),
+            () => Some("it is no smooth peak, as at an edge, a tip or a contact of few cells"),
+        };
         let mesh_error = MeshError {
             approach: laws.main.at(across).max(laws.singular.at(across)),
-            max_pressure: converges.then(|| laws.pressure.at(across)),
+            max_pressure: converges.then(|| laws.pressure.at(across) + laws.at_rim.at(across)),
             area: 2.0 * laws.radius.at(across),
             singular: laws.singular.at(across),
         };
         let mut builder = scene.builder(grid.clone())?.material(material.clone()).times_of(history, until);
         builder.planned = true;
         let memory = builder.memory()?;
-        let excess = steps.trace.map_or(0.0, |trace| trace.excess);
         Ok(Plan {
             builder,
             stepping: Stepping::adaptive(steps.tolerance),
             grid,
             accuracy,
             reach: size.reach,
-            steps: steps.run.steps.len(),
+            steps: steps.run.steps.len() + steps.stops.len(),
+            stops: steps.stops.clone(),
             convolutions: converged.work(across),
             // adaptive steps keep the rate of the displacement
             bytes: memory.total() + 8 * memory.computed_cells as u64,
             time_error: steps.error.map(|error| error.main),
+            doubt,
             mesh_error,
-            pressure_error_at_all_times: excess
-                + laws.pressure_over_time.at(across)
+            pressure_error_at_all_times: laws.pressure_over_time.at(across)
                 + steps.error.map_or(0.0, |error| error.pressure_over_time),
         })
     }

@@ -64,7 +64,7 @@ impl ConvergedRun {
 
     /// Convolution equivalents of the run with so many cells across.
     pub(super) fn work(&self, across: f64) -> f64 {
-        self.steps.run.convolutions * (across / LEAST_ACROSS).powf(self.work_order)
+        self.steps.growth() * self.steps.run.convolutions * (across / LEAST_ACROSS).powf(self.work_order)
     }
 }
 
@@ -110,7 +110,7 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
     let is_period = size.sides.iter().any(|side| matches!(side, Side::Period(_)));
     // a period holds all of its contacts
     let is_small = !is_period && curve.radius(peak) < SMALL_CONTACT * curve.radius(trace.levels[1]);
-    let has_peak = trace.excess == 0.0 && peak > 0.0;
+    let has_peak = trace.cells.converges && peak > 0.0;
     let is_at = |level: &f64| (peak / level - 1.0).abs() < SAME_LEVEL;
     let highest = levels.iter().position(is_at).unwrap_or(levels.len());
     if highest == levels.len() && peak > 0.0 && !is_small {
@@ -136,6 +136,7 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
             Ok(Some(law)) => laws.pressure = law.times(trace.pressure_amplification),
         }
     }
+    laws.at_rim = trace.cells;
     Ok(ConvergedRun::new(steps, &meshes, laws, wanted, size))
 }
 

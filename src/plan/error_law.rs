@@ -21,6 +21,9 @@ impl ErrorLaw {
     /// The fit of a quantity that does not converge.
     pub(super) const NONE: ErrorLaw = ErrorLaw { error: 1.0, order: 1.0, across: 1.0, converges: false };
 
+    /// No error on any mesh.
+    pub(super) const ZERO: ErrorLaw = ErrorLaw { error: 0.0, order: 1.0, across: 1.0, converges: true };
+
     /// Fit of a smooth quantity to the differences between successive meshes, the finest with `across` cells.
     pub(super) fn smooth(differences: &[f64], across: f64) -> ErrorLaw {
         let (error, order, converges) = match *differences {

@@ -9,14 +9,16 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result, StepError};
 use crate::load::{Load, Tilt};
-use crate::plan::difference::{Differences, relative, unseen};
+use crate::plan::difference::{Differences, relative};
+use crate::plan::error_law::ErrorLaw;
+use crate::plan::rings::Rings;
 use crate::plan::scene::{Run, StepState, TrialScene};
 use crate::states::{ElasticStates, Rest, StatesContact};
 
 /// Number of parts of a step of the run that is taken as exact, fewer where all parts would be more than so many: their
 /// groups of levels are as many.
-const PARTS: usize = 16;
-const MAX_PARTS: usize = 4096;
+const PARTS: usize = 64;
+const MAX_PARTS: usize = 1536;
 const MIN_PARTS: usize = 2;
 /// Levels of a curve below its first state and beyond its last, over the levels of these states.
 const BELOW: f64 = 1e-12;
@@ -28,8 +30,20 @@ const PARABOLOID: f64 = 2.0 / 3.0;
 const NEGLIGIBLE: f64 = 1e-6;
 /// Greatest error of the radius at a growing rim over the greatest difference on the coarsest mesh, which has few states.
 const RIM_MARGIN: f64 = 1.5;
-/// Squared distances from the middle of the contact at which the pressure is compared, over the squared radius.
-const PLACES: [f64; 7] = [0.1, 0.3, 0.6, 0.85, 0.95, 0.99, 0.999];
+/// Part of the accuracy that the steps may take of the greatest pressure of the run, and the cells of the same at a growing rim.
+const STEPS_SHARE: f64 = 0.3;
+const CELLS_SHARE: f64 = 0.4;
+/// Most rounds in which steps are halved for the greatest pressure, steps of a round before each time, and factor and number of steps that
+/// they may add.
+const MOST_ROUNDS: usize = 12;
+const HALVED: usize = 3;
+/// Steps that end under a pressure greater than this part of the greatest of the run stay where they are, with the steps before.
+const NEAR: f64 = 0.8;
+const MOST_ADDED: usize = 2;
+const ALWAYS_ADDED: usize = 48;
+/// Cells across the widest contact that are tried for a pressure at a growing rim, and a factor on what they are found to lose of it.
+const TRIED_ACROSS: [f64; 9] = [16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0];
+const SAFETY: f64 = 2.0;
 
 /// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {
@@ -87,39 +101,21 @@ impl Curve {
         (self.states.area(level) / PI).sqrt()
     }
 
-    /// What is proportional to the radius of the contact, or to its half width on a line.
+    /// What is proportional to the radius of the contact of a ball, or to its half width on a line. The areas of a few cells would make
+    /// another pressure of the same tractions in long steps than in short ones.
     fn edge(&self, level: f64) -> f64 {
-        self.radius(level).powi(if self.line { 2 } else { 1 })
+        if self.line { level.sqrt() } else { level.cbrt() }
     }
 
-    /// What the groups of a contact add to its pressure: q = dp/dl ∝ 1/(a √(a² − r²)) and l ∝ a³ between two levels, on a
-    /// line 1/√(a² − x²) and a². `edges` holds the last levels with their radii: most groups stay from step to step.
-    fn rings(&self, levels: impl Iterator<Item = (f64, f64)>, edges: &mut Vec<[f64; 2]>) -> Vec<Ring> {
-        let power = if self.line { 2 } else { 3 };
-        let (mut bottom, mut inner) = (0.0, 0.0_f64);
-        let ring = |(k, (level, traction)): (usize, (f64, f64))| {
-            if edges.get(k).is_none_or(|[last, _]| *last != level) {
-                edges.truncate(k);
-                edges.push([level, self.edge(level)]);
-            }
-            let outer = edges[k][1];
-            let width = outer.powi(power) - inner.powi(power);
-            let ring = Ring { share: traction * (level - bottom) / width, squares: [inner, outer].map(|a| a * a) };
-            (bottom, inner) = (level, outer);
-            (width > 0.0).then_some(ring)
-        };
-        levels.enumerate().filter_map(ring).collect()
-    }
-
-    /// Takes the steps of a trial run, each in so many parts; returns the states at the ends of all parts.
-    fn follow(&self, scene: &TrialScene<'_>, run: &Run, parts: u32) -> Result<Vec<LevelState>> {
+    /// Takes steps, each in so many parts; returns the states at the ends of all parts.
+    fn follow(&self, scene: &TrialScene<'_>, legs: &[Leg], parts: u32) -> Result<Vec<LevelState>> {
         let mut contact = self.contact(scene)?;
-        let (mut states, mut edges) = (Vec::with_capacity(run.steps.len() * parts as usize), Vec::new());
-        for (&(dt, load), &StepState { time, .. }) in run.steps.iter().zip(&run.states) {
+        let mut states = Vec::with_capacity(legs.len() * parts as usize);
+        for &Leg { end: last, dt, load } in legs {
             let start = contact.time();
             let parts = if dt > 0.0 { parts } else { 1 };
             for part in 1..=parts {
-                let end = if part == parts { time } else { start + dt * f64::from(part) / f64::from(parts) };
+                let end = if part == parts { last } else { start + dt * f64::from(part) / f64::from(parts) };
                 let load = if part == parts { load } else { scene.history.checked_before(end, false)? };
                 match contact.step_to(end, end - contact.time(), load) {
                     // the run stays as it was
@@ -127,20 +123,23 @@ impl Curve {
                     other => drop(other?),
                 }
                 let is_by_force = matches!(load, Load::Force { .. });
-                states.push(LevelState { is_end: part == parts, is_by_force, ..self.state(&contact, &mut edges) });
+                states.push(LevelState { is_end: part == parts, is_by_force, ..self.state(&contact) });
             }
-            if scene.next_corner(start) <= time {
+            if scene.next_corner(start) <= last {
                 contact.reset_differences();
             }
         }
         Ok(states)
     }
 
-    fn state(&self, contact: &StatesContact, edges: &mut Vec<[f64; 2]>) -> LevelState {
-        let (level, rings) = (contact.level(), self.rings(contact.tractions(), edges));
-        let square = self.edge(level).powi(2);
-        let (centre, traction) = (pressure(&rings, 0.0), contact.tractions().map(|(_, w)| w).fold(0.0, f64::max));
-        let elastic = pressure(&self.rings([(level, 1.0)].into_iter(), &mut Vec::new()), 0.0);
+    fn rings(&self, groups: impl Iterator<Item = (f64, f64)>) -> Rings {
+        Rings::new(groups.map(|(level, traction)| (level, traction, self.edge(level))), self.line)
+    }
+
+    fn state(&self, contact: &StatesContact) -> LevelState {
+        let (level, rings) = (contact.level(), self.rings(contact.tractions()));
+        let (peak, traction) = (rings.peak(0.0), contact.tractions().map(|(_, w)| w).fold(0.0, f64::max));
+        let elastic = self.rings([(level, 1.0)].into_iter()).centre();
         LevelState {
             time: contact.time(),
             is_end: true,
@@ -149,17 +148,18 @@ impl Curve {
             depth: contact.depth(),
             force: contact.force(),
             radius: self.radius(level),
-            centre,
-            aside: PLACES.into_iter().map(|place| pressure(&rings, place * square)).fold(0.0, f64::max),
+            peak: peak.pressure,
+            rings: if peak.is_central { None } else { Some(rings) },
             traction,
-            amplification: relative(traction * elastic, centre),
+            amplification: relative(traction * elastic, peak.pressure),
         }
     }
 
     /// Error in time of a trial run, and what its pressures are made of.
     pub(super) fn trace(&self, scene: &TrialScene<'_>, run: &Run) -> Result<Trace> {
         let parts = (MAX_PARTS / run.steps.len().max(1)).clamp(MIN_PARTS, PARTS);
-        let [taken, exact] = [1, parts as u32].map(|parts| self.follow(scene, run, parts));
+        let legs = run.legs();
+        let [taken, exact] = [1, parts as u32].map(|parts| self.follow(scene, &legs, parts));
         let (taken, exact) = (taken?, exact?);
         // greatest values hold between the ends of steps, too
         let most = |of: fn(&LevelState) -> f64| exact.iter().map(|state| of(state).abs()).fold(0.0, f64::max);
@@ -168,26 +168,22 @@ impl Curve {
             let off = taken.iter().zip(ends()).map(|(taken, exact)| (of(taken) - of(exact)).abs()).fold(0.0, f64::max);
             relative(off, most(of))
         };
-        let (centre, force, aside) = (most(|state| state.centre), most(|state| state.force), most(|state| state.aside));
-        let highest = exact.iter().find(|state| state.centre == centre);
-        let of_steps = [
-            taken.iter().map(|state| state.centre).fold(0.0, f64::max),
-            ends().map(|state| state.centre).fold(0.0, f64::max),
-        ];
-        let over_time: Vec<[f64; 2]> = exact.iter().map(|state| [state.time, state.centre]).collect();
+        let (peak, force, edge) =
+            (most(|state| state.peak), most(|state| state.force), self.edge(most(|state| state.level)));
+        let highest = exact.iter().find(|state| state.peak == peak);
         let counts = |(state, level): &(&StepState, &LevelState)| state.resolved && level.force > NEGLIGIBLE * force;
         let resolved = run.states.iter().zip(&taken).filter(counts);
         let rim = RIM_MARGIN * resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
         let error = Differences {
             main: over(|state| state.depth).max(over(|state| state.force)),
-            pressure: relative((of_steps[0] - of_steps[1]).abs(), centre),
-            pressure_over_time: over(|state| state.centre),
+            pressure: relative((taken.iter().map(|state| state.peak).fold(0.0, f64::max) - peak).abs(), peak),
+            pressure_over_time: over(|state| state.peak),
             radius: over(|state| state.radius),
         };
         let others = exact.iter().filter(|state| !state.is_by_force);
         Ok(Trace {
             error,
-            unseen: unseen(scene, run, &over_time),
+            highest: [highest.map_or(0.0, |state| state.time), peak],
             level: highest.map_or(0.0, |state| state.level),
             levels: [
                 ends().map(|state| state.level).filter(|level| *level > 0.0).fold(f64::INFINITY, f64::min),
@@ -196,25 +192,82 @@ impl Curve {
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
             force_amplification: others.map(|state| relative(state.traction * state.level, force)).fold(1.0, f64::max),
             rim: relative(rim, most(|state| state.radius)),
-            excess: relative((aside - centre).max(0.0), aside),
+            cells: highest
+                .map_or(ErrorLaw::ZERO, |state| state.cells(2.0 * edge, CELLS_SHARE * scene.accuracy.target())),
         })
+    }
+
+    /// Times at which the steps of a run end besides, so that its greatest pressure is right, and what is left of its error: a rim that
+    /// joins in a long step carries too much. Steps before the greatest pressure are halved, and before every pressure that exceeds it.
+    pub(super) fn stops(&self, scene: &TrialScene<'_>, run: &Run, trace: &Trace) -> Result<(Vec<f64>, f64)> {
+        let (mut legs, mut stops, [time, peak]) = (run.legs(), Vec::new(), trace.highest);
+        let (allowed, most) =
+            (STEPS_SHARE * scene.accuracy.target(), (1 + MOST_ADDED) * run.steps.len() + ALWAYS_ADDED);
+        let mut error = trace.error.pressure;
+        for round in 0..MOST_ROUNDS {
+            if error <= allowed || legs.len() > most {
+                break;
+            }
+            let taken = self.follow(scene, &legs, 1)?;
+            let highest = taken.iter().map(|state| state.peak).fold(0.0, f64::max);
+            error = relative((highest - peak).abs(), peak);
+            let exceeds = |k: &usize| taken[*k].peak > (1.0 + allowed) * peak;
+            let mut ends: Vec<usize> = (0..legs.len()).filter(exceeds).collect();
+            let mut new = Vec::new();
+            if ends.is_empty() {
+                new.extend(legs.iter().all(|leg| leg.end != time).then_some(time));
+                ends.extend(legs.iter().position(|leg| leg.end >= time));
+            }
+            for end in ends {
+                // older steps are what is left, once the last ones are short
+                let before = legs[..=end].iter().rev().filter(|leg| leg.dt > 0.0).take(HALVED + round);
+                new.extend(before.map(|leg| leg.end - 0.5 * leg.dt));
+            }
+            new.sort_by(f64::total_cmp);
+            new.dedup();
+            for &stop in &new {
+                Leg::split(&mut legs, scene, stop)?;
+            }
+            stops.append(&mut new);
+        }
+        // adaptive steps on other cells end elsewhere: steps before great pressures stay where they are
+        for (end, _) in self.follow(scene, &legs, 1)?.iter().enumerate().filter(|(_, state)| state.peak >= NEAR * peak)
+        {
+            stops.extend(legs[..=end].iter().rev().filter(|leg| leg.dt > 0.0).take(HALVED).map(|leg| leg.end));
+        }
+        stops.sort_by(f64::total_cmp);
+        stops.dedup();
+        Ok(if error <= allowed { (stops, error) } else { (Vec::new(), error.max(allowed)) })
     }
 }
 
-/// What a group of levels adds to the pressure of a contact.
-struct Ring {
-    share: f64,
-    /// Squares of its inner and outer radius [m²].
-    squares: [f64; 2],
+/// A step: its end, its length and the load there.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    end: f64,
+    dt: f64,
+    load: Load,
 }
 
-/// The pressure where the squared distance from the middle of the contact is `place`, in a unit of its own: Σ w ∫ q dl.
-fn pressure(rings: &[Ring], place: f64) -> f64 {
-    let part = |ring: &Ring| {
-        let [near, far] = ring.squares.map(|square| (square - place).max(0.0).sqrt());
-        ring.share * (far - near)
-    };
-    rings.iter().map(part).sum()
+impl Leg {
+    /// Ends a step at a time within one.
+    fn split(legs: &mut Vec<Leg>, scene: &TrialScene<'_>, stop: f64) -> Result<()> {
+        let at = legs.partition_point(|leg| leg.end <= stop);
+        if let Some(leg) = legs.get_mut(at).filter(|leg| leg.end - leg.dt < stop) {
+            let first =
+                Leg { end: stop, dt: stop - (leg.end - leg.dt), load: scene.history.checked_before(stop, false)? };
+            leg.dt = leg.end - stop;
+            legs.insert(at, first);
+        }
+        Ok(())
+    }
+}
+
+impl Run {
+    fn legs(&self) -> Vec<Leg> {
+        let leg = |(&(dt, load), state): (&(f64, Load), &StepState)| Leg { end: state.time, dt, load };
+        self.steps.iter().zip(&self.states).map(leg).collect()
+    }
 }
 
 /// A state of a contact on levels.
@@ -227,21 +280,33 @@ struct LevelState {
     depth: f64,
     force: f64,
     radius: f64,
-    /// Pressure in the middle of the contact, and the greatest at [`PLACES`], in the same unit.
-    centre: f64,
-    aside: f64,
+    /// The greatest pressure, in a unit of its own, and where it is not in the middle the groups that it is made of.
+    peak: f64,
+    rings: Option<Rings>,
     /// Greatest w of a level.
     traction: f64,
-    /// This w times the pressure in the middle of the elastic contact, over the pressure there.
+    /// This w times the pressure in the middle of the elastic contact, over the greatest pressure.
     amplification: f64,
+}
+
+impl LevelState {
+    /// What cells lose of the greatest pressure, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than is
+    /// allowed. In the middle they lose what they lose of an elastic contact.
+    fn cells(&self, wide: f64, allowed: f64) -> ErrorLaw {
+        let Some(rings) = &self.rings else { return ErrorLaw::ZERO };
+        let loss = |across: f64| SAFETY * (1.0 - rings.peak(wide / across).pressure / self.peak).max(0.0);
+        let laws = TRIED_ACROSS.map(|across| ErrorLaw { error: loss(across), across, ..ErrorLaw::ZERO });
+        let found = laws.into_iter().find(|law| law.error <= allowed);
+        found.unwrap_or(ErrorLaw { converges: false, ..laws[laws.len() - 1] })
+    }
 }
 
 /// A run on levels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trace {
     pub(super) error: Differences,
-    /// [`unseen`] of the pressure in the middle.
-    pub(super) unseen: f64,
+    /// Time and size of the greatest pressure.
+    highest: [f64; 2],
     /// The level at which the pressure is greatest, and the least and the greatest level of a contact.
     pub(super) level: f64,
     pub(super) levels: [f64; 2],
@@ -252,7 +317,6 @@ pub(super) struct Trace {
     /// Difference of the contact radius between the run on cells and its elastic states, over the greatest: the pressures
     /// at a growing rim, which give the fractions of cells, are others than elastic ones.
     pub(super) rim: f64,
-    /// By which share of itself the greatest pressure aside of the middle of the contact exceeds the greatest in the
-    /// middle, as under moving edges of bodies that creep fast.
-    pub(super) excess: f64,
+    /// What cells lose of a greatest pressure at a growing rim.
+    pub(super) cells: ErrorLaw,
 }

@@ -40,6 +40,8 @@ pub(super) struct Laws {
     /// Convergence of the greatest pressure of the run, and of the greatest at any time.
     pub(super) pressure: ErrorLaw,
     pub(super) pressure_over_time: ErrorLaw,
+    /// What cells lose of a greatest pressure at a growing rim, besides.
+    pub(super) at_rim: ErrorLaw,
     /// Convergence of the contact radius at any time.
     pub(super) radius: ErrorLaw,
 }
@@ -48,8 +50,10 @@ impl Laws {
     /// Cells across that leave no greater errors than wanted, of the pressure if it converges.
     pub(super) fn across_for(&self, wanted: &Wanted) -> f64 {
         let mains = [self.main, self.singular].map(|law| law.across_for(wanted.main));
+        let of_rim = Some(self.at_rim.across).filter(|_| self.pressure.converges);
         let others = [Some(self.pressure).filter(|law| law.converges), wanted.area.then_some(self.radius)];
-        others.into_iter().flatten().map(|law| law.across_for(wanted.others)).chain(mains).fold(0.0, f64::max)
+        let others = others.into_iter().flatten().map(|law| law.across_for(wanted.others));
+        others.chain(of_rim).chain(mains).fold(0.0, f64::max)
     }
 
     /// Without a promise of the greatest pressure.
@@ -130,6 +134,7 @@ impl Meshes {
             singular: self.singular(),
             pressure: self.pressure_amplification.map_or(ErrorLaw::NONE, |factor| self.pressure().times(factor)),
             pressure_over_time: ErrorLaw::smooth(&self.each(|differences| differences.pressure_over_time), self.across),
+            at_rim: ErrorLaw::ZERO,
             radius: ErrorLaw { error: radius.error.max(self.rim * LEAST_ACROSS / self.across), ..radius },
         }
     }

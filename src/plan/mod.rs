@@ -9,6 +9,7 @@ mod error_law;
 mod levels;
 mod loads;
 mod meshes;
+mod rings;
 mod scene;
 mod steps;
 
@@ -81,6 +82,9 @@ pub struct Plan {
     pub builder: Builder,
     /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
     pub stepping: Stepping,
+    /// Times at which steps end besides, for [`Run::stop_at`](crate::run::Run::stop_at): with them the run has the greatest pressure that is
+    /// promised. Approach and force do not need them. \[s\]
+    pub stops: Vec<f64>,
     /// The grid.
     pub grid: Grid,
     /// The accuracy.
@@ -103,16 +107,21 @@ pub struct Plan {
     /// greatest of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which
     /// neither cells nor steps resolve.
     pub pressure_error_at_all_times: f64,
+    doubt: Option<&'static str>,
 }
 
 impl Plan {
-    /// Whether the greatest pressure of the run is promised. There are four exceptions: the pressure does not converge
-    /// with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and under moving
-    /// edges of bodies that creep fast; the tilt or the load point changes, and the contact was small before; it is a peak in
-    /// time between the ends of steps, which even the shortest steps tried may miss by more than their share of the error; or it
-    /// would require more than 8192 cells along a side.
+    /// Whether the greatest pressure of the run is promised, to a run that stops at [`Plan::stops`]. There are four exceptions: the pressure
+    /// does not converge with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and at the rim
+    /// of a contact that grows fast on a body that creeps fast; the tilt or the load point changes, and the contact was small before; it is a
+    /// peak in time that even the shortest steps tried may miss; or it would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
-        self.mesh_error.max_pressure.is_some()
+        self.doubt.is_none()
+    }
+
+    /// Why the greatest pressure of the run is not promised; `None` if it is.
+    pub fn pressure_doubt(&self) -> Option<&'static str> {
+        self.doubt
     }
 }
 
@@ -129,6 +138,7 @@ impl std::fmt::Display for Plan {
             self.bytes as f64 * 1e-6,
             self.mesh_error
         )?;
+        self.doubt.map_or(Ok(()), |doubt| write!(f, "; the greatest pressure is not promised: {doubt}"))?;
         match self.time_error {
             None => write!(f, "; the error in time is unknown"),
             Some(error) if error > self.accuracy.target() => {

@@ -12,9 +12,10 @@ use crate::plan::scene::{Run, TrialScene};
 const MAX_TIME_SHARE: f64 = 0.6;
 const BOTH_SHARES: f64 = 0.9;
 const MIN_MESH_SHARE: f64 = 0.2;
-/// Greatest error in time of the greatest pressure, as a share of the accuracy. A greater error grows on finer meshes,
-/// whose cells a growing edge crosses faster: then the pressure is not promised.
+/// Greatest error in time of the greatest pressure, as a share of the accuracy: on cells a greater one grows on finer meshes, whose cells a
+/// growing edge crosses faster.
 const MAX_PEAK_TIME_SHARE: f64 = 0.2;
+const MAX_PEAK_TIME_SHARE_ON_LEVELS: f64 = 0.3;
 /// Greatest number of times that steps are shortened.
 const MAX_STEP_TRIES: u32 = 3;
 /// Least factor of the tolerance at a time, and the greatest part of the error that may remain for a shortening to be
@@ -32,8 +33,10 @@ pub(super) struct Steps {
     pub(super) run: Run,
     /// `None` where steps short enough for a comparison do not exist.
     pub(super) error: Option<Differences>,
-    /// [`unseen`] of the greatest pressure.
+    /// [`unseen`] of the greatest pressure of a run on cells.
     pub(super) unseen: f64,
+    /// Times at which steps end besides, for the greatest pressure.
+    pub(super) stops: Vec<f64>,
     /// The run on levels, where it is made of elastic states.
     pub(super) trace: Option<Trace>,
 }
@@ -49,12 +52,12 @@ impl Steps {
     /// Whether the greatest pressure of the run hardly depends on the steps, wherever they end.
     pub(super) fn resolve_pressure(&self, accuracy: Accuracy) -> bool {
         let target = accuracy.target();
-        self.unseen <= MAX_TIME_SHARE * target
-            && self.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * target)
+        let share = if self.trace.is_some() { MAX_PEAK_TIME_SHARE_ON_LEVELS } else { MAX_PEAK_TIME_SHARE };
+        self.unseen <= MAX_TIME_SHARE * target && self.error.is_none_or(|error| error.pressure <= share * target)
     }
 
-    /// Shortens the steps while the error of approach, force or greatest pressure exceeds its share and falls with the
-    /// steps.
+    /// Shortens the steps while the error of approach or force, or of the greatest pressure on cells, exceeds its share and falls with the
+    /// steps. On levels more steps before the greatest pressure are enough for that.
     pub(super) fn find(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
         let target = scene.accuracy.target();
         let mut steps = Steps::with_tolerance(scene, grid, curve, scene.accuracy.step_tolerance())?;
@@ -76,14 +79,22 @@ impl Steps {
                 _ => break,
             }
         }
+        if let (Some(curve), Some(trace), Some(error)) = (curve, &steps.trace, steps.error.as_mut()) {
+            let found = curve.stops(scene, &steps.run, trace);
+            (steps.stops, error.pressure) = found.unwrap_or((Vec::new(), error.pressure));
+        }
         Ok(steps)
     }
 
-    /// The greater of the errors of approach or force and of the greatest pressure of the run, if that may be promised; 0
-    /// where nothing was estimated.
+    /// Number of steps over the number in the trial run.
+    pub(super) fn growth(&self) -> f64 {
+        let taken = self.run.steps.len().max(1) as f64;
+        (taken + self.stops.len() as f64) / taken
+    }
+
+    /// The greater of the errors of approach or force, and of the greatest pressure of a run on cells; 0 where nothing was estimated.
     fn worst(&self) -> f64 {
-        let promised = self.trace.is_none_or(|trace| trace.excess == 0.0);
-        let of_pressure = |error: Differences| if promised { error.pressure.max(self.unseen) } else { 0.0 };
+        let of_pressure = |error: Differences| if self.trace.is_none() { error.pressure.max(self.unseen) } else { 0.0 };
         self.error.map_or(0.0, |error| error.main.max(of_pressure(error)))
     }
 
@@ -91,7 +102,8 @@ impl Steps {
         let run = scene.follow(grid.clone(), tolerance, &[])?;
         // a trace fails where levels leave their order, as if there were no states
         if let Some(trace) = curve.and_then(|curve| curve.trace(scene, &run).ok()) {
-            return Ok(Steps { tolerance, run, error: Some(trace.error), unseen: trace.unseen, trace: Some(trace) });
+            let (error, trace) = (Some(trace.error), Some(trace));
+            return Ok(Steps { tolerance, run, error, unseen: 0.0, stops: Vec::new(), trace });
         }
         // ends within every step of the run, since its control may have missed an event there
         let times = run.times();
@@ -99,14 +111,14 @@ impl Steps {
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
         match scene.follow(grid.clone(), (SHORTER * tolerance).max(LEAST_TOLERANCE), &stops) {
             Err(Error::Step(StepError::StepTooShort { .. } | StepError::NotConverged { .. })) => {
-                Ok(Steps { tolerance, run, error: None, unseen: 0.0, trace: None })
+                Ok(Steps { tolerance, run, error: None, unseen: 0.0, stops: Vec::new(), trace: None })
             }
             finer => {
                 let finer = finer?;
                 let over_time: Vec<[f64; 2]> = finer.states.iter().map(|state| [state.time, state.pressure]).collect();
                 let unseen = unseen(scene, &run, &over_time);
                 let error = Some(Differences::between(&run.states, &finer.at_the_times_of(&run).states, None));
-                Ok(Steps { tolerance, run, error, unseen, trace: None })
+                Ok(Steps { tolerance, run, error, unseen, stops: Vec::new(), trace: None })
             }
         }
     }

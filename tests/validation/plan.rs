@@ -41,7 +41,7 @@ fn run(
     mut exact: impl FnMut(f64, f64) -> (f64, Option<f64>),
 ) -> Outcome {
     let mut contact = plan.builder.clone().build().unwrap();
-    let mut run = contact.follow(history, plan.stepping, until);
+    let mut run = contact.follow(history, plan.stepping, until).stop_at(&plan.stops[..]).unwrap();
     let (mut errors, mut greatest, mut work, mut steps) = ([0.0_f64; 2], [0.0_f64; 2], 0.0, 0);
     while let Some(report) = run.next_step().unwrap() {
         let grid = run.contact().grid();

@@ -106,9 +106,10 @@ fn scene(seed: u64, number: u64) -> Scene {
 }
 
 /// The main result at each time, and the greatest one and the greatest pressure of the run.
-fn run(scene: &Scene, builder: Builder, stepping: Stepping, times: &[f64]) -> (Vec<f64>, [f64; 2]) {
+fn run(scene: &Scene, builder: Builder, stepping: Stepping, [times, stops]: [&[f64]; 2]) -> (Vec<f64>, [f64; 2]) {
     let mut contact = builder.build().unwrap();
-    let mut run = contact.follow(&scene.history, stepping, 1.0).stop_at(times).unwrap();
+    let run = contact.follow(&scene.history, stepping, 1.0).stop_at(times).unwrap();
+    let mut run = run.stop_at(stops).unwrap();
     let (mut found, mut greatest) = (Vec::new(), [0.0_f64; 2]);
     while let Some(report) = run.next_step().unwrap() {
         let main = if scene.by_force { report.approach } else { report.force };
@@ -177,13 +178,13 @@ fn plans_on_all_bodies_keep_their_promises() {
         let mut follow = own.follow(&scene.history, plan.stepping, 1.0);
         while follow.next_step().unwrap().is_some() {}
         let running = started.elapsed();
-        let (found, [_, highest]) = run(&scene, plan.builder.clone(), plan.stepping, &times);
+        let (found, [_, highest]) = run(&scene, plan.builder.clone(), plan.stepping, [&times, &plan.stops]);
         let finer = Grid::new([2 * n1, if n2 == 1 { 1 } else { 2 * n2 }], plan.grid.lengths()).unwrap();
         let kernel = (scene.kernel)(&finer).unwrap();
         let reference = ViscoelasticContact::builder(finer).geometry(&*scene.geometry).material(scene.material.clone());
         let reference = reference.kernel(kernel).settings(Settings::default().with_tolerance(1e-7));
         let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
-        let (exact, [scale, exact_highest]) = run(&scene, reference, stepping, &times);
+        let (exact, [scale, exact_highest]) = run(&scene, reference, stepping, [&times, &[]]);
         let off = found.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
         let off = off / scene.accuracy.target();
         worst = worst.max(off);
