@@ -111,10 +111,10 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Whether the greatest pressure of the run is promised, to a run that stops at [`Plan::stops`]. There are four exceptions: the pressure
+    /// Whether the greatest pressure of the run is promised, to a run that stops at [`Plan::stops`]. There are five exceptions: the pressure
     /// does not converge with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and at the rim
     /// of a contact that grows fast on a body that creeps fast; the tilt or the load point changes, and the contact was small before; it is a
-    /// peak in time that even the shortest steps tried may miss; or it would require more than 8192 cells along a side.
+    /// peak in time that even the shortest steps tried may miss; it is not that after a jump, on another body than a half-space; or it would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.doubt.is_none()
     }
