@@ -44,6 +44,8 @@ const ALWAYS_ADDED: usize = 48;
 /// Cells across the widest contact that are tried for a pressure at a growing rim, and a factor on what they are found to lose of it.
 const TRIED_ACROSS: [f64; 9] = [16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0];
 const SAFETY: f64 = 2.0;
+/// Greatest amplification of a pressure at a growing rim: beyond, the last cells that joined were off by up to nine times the accuracy.
+const MOST_AT_RIM: f64 = 2.0;
 
 /// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {
@@ -296,7 +298,7 @@ impl LevelState {
         let Some(rings) = &self.rings else { return ErrorLaw::ZERO };
         let loss = |across: f64| SAFETY * (1.0 - rings.peak(wide / across).pressure / self.peak).max(0.0);
         let laws = TRIED_ACROSS.map(|across| ErrorLaw { error: loss(across), across, ..ErrorLaw::ZERO });
-        let found = laws.into_iter().find(|law| law.error <= allowed);
+        let found = laws.into_iter().find(|law| law.error <= allowed && self.amplification <= MOST_AT_RIM);
         found.unwrap_or(ErrorLaw { converges: false, ..laws[laws.len() - 1] })
     }
 }
