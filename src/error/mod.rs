@@ -181,7 +181,7 @@ pub enum Error {
     #[error(transparent)]
     Kernel(#[from] KernelError),
 
-    /// A steady motion is not covered, or was not found.
+    /// A steady motion was not found, or there is none.
     #[error(transparent)]
     Sliding(#[from] SlidingError),
 
@@ -219,7 +219,7 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] OutputError),
 
-    /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
+    /// A rank of a contact that [ranks](crate::parallel) share out has left or failed, or ranks do not agree.
     #[error(transparent)]
     Ranks(#[from] RanksError),
     /// A contact of surfaces that attract each other is not covered, not resolved, or comes off.

@@ -167,6 +167,6 @@ pub(crate) fn as_elastic(load: Load, compliance: f64) -> Load {
     match load {
         Load::Force { normal, tilt } => Load::Force { normal: normal * compliance, tilt },
         Load::Spring { stiffness, drive, tilt } => Load::Spring { stiffness: stiffness * compliance, drive, tilt },
-        approach => approach,
+        approach @ Load::Approach { .. } => approach,
     }
 }

@@ -11,8 +11,9 @@
 //! | pressure and displacement kept for the steps to come (Eq. 11); next step | [`ViscoelasticContact::accept`] |
 //!
 //! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in a copy
-//! of the state on a larger region ([`outgrown`]). A step writes to its trial, to this copy, and to the part of the history
-//! reserved for steps. The state changes when the step is accepted. A failed step has nothing to undo.
+//! of the state on a larger region ([`outgrown`]). A step writes to its trial, to the window, to this copy, and to the part of the
+//! history reserved for steps. The state changes when the step is accepted ([`ViscoelasticContact::adopt`]): after a failed step it is
+//! what it was, but for the start of the step before, which [`ViscoelasticContact::within_step`] would need.
 
 mod accept;
 pub(in crate::contact) mod attraction;
