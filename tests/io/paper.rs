@@ -52,7 +52,7 @@ fn lines(page: &str) -> Vec<Line> {
 
 /// Whether a test of the library, given as arguments of `cargo test`, exists; `documents` looks for those of the suite.
 fn exists(arguments: &str) -> bool {
-    let Some(path) = arguments.strip_prefix("--lib ") else { return arguments.starts_with("--test suite ") };
+    let Some(path) = arguments.strip_prefix("--lib ") else { return arguments.starts_with("--test ") };
     let Some((modules, function)) = path.rsplit_once("::") else { return false };
     let module = modules.strip_suffix("::tests").unwrap_or(modules).replace("::", "/");
     let files = ["", "/mod"].map(|part| root().join(format!("src/{module}{part}.rs")));

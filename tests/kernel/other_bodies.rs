@@ -1,6 +1,6 @@
 //! The kernels beside the half-space's, each against its closed form and a sum of its own.
 
-use std::f64::consts::{FRAC_2_PI, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use super::{assert_answers_waves, convolve, noise, values};
 use crate::common::refused::field;
@@ -19,22 +19,6 @@ fn periodic_bodies_displace_waves_as_westergaard_says() {
         let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
         assert_answers_waves(&InfluenceKernel::periodic(&grid).unwrap(), |q| 2.0 / q);
     }
-}
-
-/// The closed form of a uniform pressure.
-#[test]
-fn a_line_under_uniform_pressure_is_the_closed_form() {
-    let (grid, datum) = (Grid::new([75, 1], [1.5, 2.0]).unwrap(), 4.0);
-    let kernel = InfluenceKernel::line(&grid, datum).unwrap();
-    let under = convolve(&kernel, &[1.0; 75])[37];
-    let exact = -FRAC_2_PI * 1.5 * ((0.75 / datum).ln() - 1.0);
-    assert_abs_diff_eq!(under, exact, epsilon = 1e-13 * exact.abs());
-    // at the datum the surface stays where it was: a load in the middle, seen from far away
-    let far = Grid::new([2001, 1], [8.004, 1.0]).unwrap();
-    let kernel = InfluenceKernel::line(&far, 8.004).unwrap();
-    let mut load = vec![0.0; 2001];
-    load[0] = 1.0;
-    assert_abs_diff_eq!(convolve(&kernel, &load)[2000], -FRAC_2_PI * 0.004 * (8.0_f64 / 8.004).ln(), epsilon = 1e-9);
 }
 
 /// Waves that end across the strip are, in its middle, Westergaard's; uniform ones are lines; and both axes do it.
