@@ -120,6 +120,8 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
     let body = creep(&pairs(&times, &compliances)).unwrap();
     assert_eq!(body.known_until(), 1e2);
     assert!(body.creep_compliance(1e2).is_finite() && body.creep_compliance(101.0).is_nan());
+    let bulk = Material::elastic_bulk(body.clone(), 1.0e9).unwrap();
+    assert!(bulk.contact_compliance(1e2).is_finite() && bulk.contact_compliance(101.0).is_nan());
     let mut contact = sphere(Material::incompressible(body.clone()));
     contact.step(0.0, Load::force(0.1)).unwrap();
     contact.step(100.0, Load::force(0.1)).unwrap();
