@@ -213,7 +213,8 @@ fn a_history_and_its_end_give_the_times() {
     let table = PiecewiseLinear::new(&corners.map(|(time, force)| (time, Load::force(force * FORCE)))).unwrap();
     let mut contact = builder(32, 0.25e-6 * 5.0).material(closure()).times_of(&table, 10.0).build().unwrap();
     let [first, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
-    assert!(first <= 0.01, "{first:e}");
+    // a part of the time between two of them, not of the whole run
+    assert!(first < 1e-7, "{first:e}");
     assert_abs_diff_eq!(last / 10.0, 1.0, epsilon = 1e-12);
     let mut run = contact.follow(&table, Stepping::adaptive(1e-3), 10.0);
     while run.next_step().unwrap().is_some() {}
