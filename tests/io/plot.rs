@@ -1,7 +1,7 @@
 //! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
 
 use crate::common::refused::field;
-use crate::common::{Temporary, maxwell};
+use crate::common::{Temporary, contact_of, maxwell, sphere};
 use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::Path;
@@ -16,11 +16,9 @@ use viscocontact::prelude::*;
 
 /// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
 fn ball() -> ViscoelasticContact {
-    let mut contact = ViscoelasticContact::builder(Grid::new([32, 24], [4.0e-3, 3.0e-3]).unwrap())
-        .geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), [0.5e-3, -0.3e-3]).unwrap())
-        .material(maxwell())
-        .build()
-        .unwrap();
+    let aside = Shifted::new(sphere(), [0.5e-3, -0.3e-3]).unwrap();
+    let grid = Grid::new([32, 24], [4.0e-3, 3.0e-3]).unwrap();
+    let mut contact = contact_of(&aside, grid, maxwell(), Settings::default());
     contact.step(0.0, Load::force(0.3)).unwrap();
     contact
 }
