@@ -33,7 +33,7 @@ use viscocontact::rheology::library;
 /// The real contact area of a rough polymer, growing over decades of time.
 #[derive(Parser)]
 struct Args {
-    /// PublishedMaterial material.
+    /// Published material.
     #[arg(long, default_value = "adhesive")]
     material: String,
     /// Temperature [K], where it is published how the material shifts with it.
@@ -230,7 +230,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     // κ from the first point; with it the law of small loads says how the area would go on
     let kappa = growth[0].cells / args.pressure;
     println!("κ at {:.0e} s: {kappa:.3}", args.from);
-    let title = format!("Real contact area of a rough surface under {:.2} MPa, on {}", mean * 1e-6, args.material);
+    let title =
+        format!("Real contact area of a rough surface under {:.2} MPa (polymer: {})", mean * 1e-6, args.material);
     let mut chart = Chart::new(&title, "time [s]", "cells in contact / all cells", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     let small = shown.iter().map(|&t| (t, kappa * mean * compliance(t) / args.slope));
@@ -242,7 +243,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     chart.add("creeping", COLORS[0], Style::Line, points);
     chart.add("elastic body of compliance C(t), same surface", COLORS[6], Style::Dots, elastic);
     let points = hold[1..].iter().map(|m| (m.time, m.cells)).collect();
-    chart.add("creeping, time since half of the load was taken off", COLORS[2], Style::Line, points);
+    chart.add("creeping, half of the load off since that time", COLORS[2], Style::Line, points);
     chart.save(args.output.join("area.png"))?;
 
     let mut chart = Chart::new("Patches of contact", "time [s]", "number of patches", Legend::UpperRight);

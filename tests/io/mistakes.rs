@@ -158,8 +158,8 @@ const MISTAKES: &[Mistake] = &[
     "time step = -0.1 is not allowed: it must be finite and >= 0"),
 ("a load too great for the grid",
     || contact()?.step(0.0, Load::force(20.0)).map(drop),
-    "at t = 0 s the contact touches the edge of the grid on 124 cells; the grid is 4e-3 m × 4e-3 m, the load needs about \
-     6.5e-3 m × 6.5e-3 m: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"),
+    "at t = 0 s the contact touches the edge of the grid on 124 cells; the grid is 0.004 m × 0.004 m, the load needs about \
+     0.0065 m × 0.0065 m: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"),
 ("a load beside the punch",
     || punch()?.step(0.0, Load::eccentric_force(1.0, [1.5e-3, 0.0])).map(drop),
     "at t = 0 s the load acts at (0.0015, 0) m, outside the convex hull of the cells that body 0 may touch: it would tip \
