@@ -65,7 +65,7 @@ struct Pull {
     strongest: ViscoelasticContact,
 }
 
-/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart; a quarter as long while the pull is near
+/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart; a seventh as long while the pull is near
 /// its greatest.
 fn pull(held: &ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::Result<Pull> {
     let (mut contact, mut strongest, start) = (held.clone(), held.clone(), held.approach());
@@ -82,7 +82,7 @@ fn pull(held: &ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::R
             return Ok(Pull { path, strongest });
         }
         let near_greatest = report.force < 0.7 * strongest.force();
-        step = (1.1 * step).min(if near_greatest { 0.25 * longest } else { longest });
+        step = (1.1 * step).min(if near_greatest { 0.15 * longest } else { longest });
     }
 }
 
