@@ -67,11 +67,12 @@ fn main() {
 /// A point of a history: time \[s\], approach \[m\], force \[N\] and contact area \[m²\].
 type Point = [f64; 4];
 
-/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart.
+/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart; a quarter as long while the pull is near
+/// its greatest.
 fn pull(contact: &mut ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::Result<Vec<Point>> {
     let (began, start) = (contact.time(), contact.approach());
     let mut path = vec![[0.0, start, contact.force(), contact.contact_area()]];
-    let (mut moved, mut step) = (0.0, 0.1 * longest);
+    let (mut moved, mut step, mut least) = (0.0, 0.1 * longest, 0.0_f64);
     loop {
         moved += step;
         let report = contact.step(step / speed, Load::approach(start - moved))?;
@@ -79,7 +80,8 @@ fn pull(contact: &mut ViscoelasticContact, speed: f64, longest: f64) -> viscocon
         if contact.is_separated() {
             return Ok(path);
         }
-        step = (1.1 * step).min(longest);
+        least = least.min(report.force);
+        step = (1.1 * step).min(if report.force < 0.7 * least { 0.25 * longest } else { longest });
     }
 }
 
@@ -176,7 +178,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut works = Chart::new(
         "Greatest pull F over speed",
         Quantity::new("speed", "m/s"),
-        Quantity::new("apparent work of adhesion 2F/3πR", "J/m²"),
+        Quantity::new("apparent work of adhesion", "J/m²"),
         Legend::LowerRight,
     );
     works.scale = Scale::LogLog;

@@ -133,7 +133,7 @@ fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<
             points[1].push((speed, theory.contact_share));
         }
         for (chart, points) in [&mut friction, &mut area].into_iter().zip(points) {
-            chart.add(format!("{kelvin} K, Persson's theory"), COLORS[3 + k], Style::Line, points);
+            chart.add(format!("{kelvin} K, Persson's theory"), COLORS[k], Style::Line, points);
         }
     }
     friction.save(args.output.join("friction.png"))?;
