@@ -136,7 +136,7 @@ const MISTAKES: &[Mistake] = &[
      position and size with Grid::lengths"),
 ("a shape by a root of negative numbers",
     || builder_of(&FnGeometry::new(|x1: f64, x2: f64| (x1 - x2).sqrt()), grid(), elastic()).build().map(drop),
-    "the initial gap at cell [0, 1], x = (-1.9375e-3, -1.8125e-3) m, is NaN: it must be finite, or +inf where there is no \
+    "the initial gap at cell [0, 1], x = (-0.0019375, -0.0018125) m, is NaN: it must be finite, or +inf where there is no \
      body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked"),
 ("a closure of compliance without times",
     || builder_on(grid(), Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())))).build().map(drop),
