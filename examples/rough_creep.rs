@@ -232,7 +232,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     println!("κ at {:.0e} s: {kappa:.3}", args.from);
     let title =
         format!("Real contact area of a rough surface under {:.2} MPa (polymer: {})", mean * 1e-6, args.material);
-    let mut chart = Chart::new(&title, "time [s]", "cells in contact / all cells", Legend::UpperLeft);
+    let mut chart = Chart::new(&title, "time since the load changed [s]", "cells in contact / all cells", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     let small = shown.iter().map(|&t| (t, kappa * mean * compliance(t) / args.slope));
     let small = small.filter(|(_, share)| *share < 1.05 * last.cells).collect();
@@ -240,10 +240,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let theory = shown.iter().map(|&t| (t, persson(mean * compliance(t) / args.slope))).collect();
     chart.add("Persson, erf(√2 p C(t)/h')", COLORS[1], Style::Line, theory);
     let points = growth.iter().map(|m| (m.time, m.cells)).collect();
-    chart.add("creeping", COLORS[0], Style::Line, points);
+    chart.add("creeping, after the load was applied", COLORS[0], Style::Line, points);
     chart.add("elastic body of compliance C(t), same surface", COLORS[6], Style::Dots, elastic);
     let points = hold[1..].iter().map(|m| (m.time, m.cells)).collect();
-    chart.add("creeping, half of the load off since that time", COLORS[2], Style::Line, points);
+    chart.add("creeping, after half of the load was taken off", COLORS[2], Style::Line, points);
     chart.save(args.output.join("area.png"))?;
 
     let mut chart = Chart::new("Patches of contact", "time [s]", "number of patches", Legend::UpperRight);
