@@ -211,7 +211,7 @@ const MISTAKES: &[Mistake] = &[
     "creep table: 2 given, at least 4 needed"),
 ("a relaxation table read as creep",
     || Measurements::creep(&TIMES.map(|t: f64| (t, 1.0e6 / (1.0 + t))))?.fit().map(drop),
-    "creep table, entry 0: creep compliance = 909091.0 deviates by 200.84 % from the nearest monotone curve, where the \
+    "creep table, entry 0: creep compliance = 909091 deviates by 200.84 % from the nearest monotone curve, where the \
      scatter of the data explains 10.00 %: compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter states \
      more scatter"),
 ("a step beyond the table",

@@ -105,7 +105,8 @@ fn tractions_diverge_about_zero() {
 fn families_are_coloured_by_their_parameter() {
     let drawn = |parameters: [f64; 3]| {
         let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
-        let levels = parameters.map(|value| (value, vec![(0.0, value.log10()), (1.0, value.log10())]));
+        let level = |value: f64| 10.0 + value.log10();
+        let levels = parameters.map(|value| (value, vec![(0.0, level(value)), (1.0, level(value))]));
         chart.add_family(Quantity::new("speed", "m/s"), Style::Line, levels.to_vec());
         let picture = chart.draw().unwrap();
         // the curves across the column in the middle of the axes, from the top
