@@ -232,7 +232,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     println!("κ at {:.0e} s: {kappa:.3}", args.from);
     let title =
         format!("Real contact area of a rough surface under {:.2} MPa (polymer: {})", mean * 1e-6, args.material);
-    let mut chart = Chart::new(&title, "time since the load changed [s]", "cells in contact / all cells", Legend::UpperLeft);
+    let mut chart =
+        Chart::new(&title, "time since the load changed [s]", "cells in contact / all cells", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     let small = shown.iter().map(|&t| (t, kappa * mean * compliance(t) / args.slope));
     let small = small.filter(|(_, share)| *share < 1.05 * last.cells).collect();

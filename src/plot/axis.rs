@@ -77,7 +77,7 @@ impl Axis {
         let (first, last) = (low.ceil() as i32, high.floor() as i32);
         let number = |multiple: i32, k: i32| {
             let value = f64::from(multiple) * 10_f64.powi(k);
-            if is_short { format!("{value:.*}", -k.min(0) as usize) } else { scientific(value, 0) }
+            if is_short { format!("{value:.*}", -k.min(0) as usize) } else { scientific(value) }
         };
         let decade = |k: i32| (fraction(f64::from(k)), number(1, k));
         let multiples = |of: &[i32]| -> Vec<(f64, i32, i32)> {
@@ -139,12 +139,12 @@ fn round_step(least: f64) -> f64 {
     if exponent < 0.0 { multiple / 10_f64.powf(-exponent) } else { multiple * power }
 }
 
-/// A number as digits and a power of ten, for labels: `4.5×10⁻²` with one decimal, `10⁻²` for 1e-2 with none.
-fn scientific(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$e}");
-    let Some((digits, exponent)) = text.split_once('e') else { return text };
+/// A number as a digit and a power of ten, for labels: `5×10⁻²`, `10⁻²`.
+fn scientific(value: f64) -> String {
+    let text = format!("{value:.0e}");
+    let Some((digit, exponent)) = text.split_once('e') else { return text };
     let power = format!("10{}", superscript(exponent.parse().unwrap_or(0)));
-    if digits == "1" { power } else { format!("{}×{power}", digits.replace('-', "−")) }
+    if digit == "1" { power } else { format!("{digit}×{power}") }
 }
 
 /// An exponent: −3 as ⁻³.

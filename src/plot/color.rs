@@ -35,12 +35,12 @@ impl Color {
     }
 
     /// The colour at the fraction `value` of `colors` at equal distances.
-    fn between(colors: &[Color], value: f64) -> Color {
+    fn between(colors: &[u32], value: f64) -> Color {
         let at = value.clamp(0.0, 1.0) * (colors.len() - 1) as f64;
-        let [lower, upper] = [at.floor(), at.ceil()].map(|k| colors[k as usize]);
+        let [lower, upper] = [at.floor(), at.ceil()].map(|k| colors[k as usize].to_be_bytes());
         let share = at.ceil() - at;
-        let mix = |low: u8, high: u8| ((1.0 - share) * f64::from(high) + share * f64::from(low)).round() as u8;
-        Color(mix(lower.0, upper.0), mix(lower.1, upper.1), mix(lower.2, upper.2))
+        let mix = |k: usize| ((1.0 - share) * f64::from(upper[k]) + share * f64::from(lower[k])).round() as u8;
+        Color(mix(1), mix(2), mix(3))
     }
 }
 
@@ -74,30 +74,12 @@ impl ColorScale {
 }
 
 /// Eight colours of viridis at equal distances; the colours between are interpolated.
-const VIRIDIS: [Color; 8] = [
-    Color(68, 1, 84),
-    Color(70, 50, 127),
-    Color(54, 92, 141),
-    Color(39, 127, 143),
-    Color(31, 162, 136),
-    Color(74, 194, 110),
-    Color(160, 219, 57),
-    Color(254, 232, 37),
-];
+const VIRIDIS: [u32; 8] = [0x44_0154, 0x46_327f, 0x36_5c8d, 0x27_7f8f, 0x1f_a288, 0x4a_c26e, 0xa0_db39, 0xfe_e825];
 
 /// Eleven colours of ColorBrewer's `RdBu` from blue to red, white in the middle.
-const BLUE_TO_RED: [Color; 11] = [
-    Color(5, 48, 97),
-    Color(33, 102, 172),
-    Color(67, 147, 195),
-    Color(146, 197, 222),
-    Color(209, 229, 240),
-    Color(247, 247, 247),
-    Color(253, 219, 199),
-    Color(244, 165, 130),
-    Color(214, 96, 77),
-    Color(178, 24, 43),
-    Color(103, 0, 31),
+const BLUE_TO_RED: [u32; 11] = [
+    0x05_3061, 0x21_66ac, 0x43_93c3, 0x92_c5de, 0xd1_e5f0, 0xf7_f7f7, 0xfd_dbc7, 0xf4_a582, 0xd6_604d, 0xb2_182b,
+    0x67_001f,
 ];
 
 /// The colour in hexadecimal digits, as in HTML.
