@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use viscocontact::analytic::PerssonFriction;
-use viscocontact::plot::{COLORS, Legend, Map, Style};
+use viscocontact::plot::{COLORS, Legend, Map, Style, measure};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TimeTemperature, library};
 use viscocontact::sliding::{SlidingSweep, SlidingTable};
@@ -106,7 +106,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     for speed in [1e2, 1e-2, 1e-6] {
         let report = sliding.at([speed, 0.0], load)?;
         let mut map = Map::pressure(sliding.contact())?;
-        map.title = format!("{speed:.0e} m/s: {:.1} % in contact", 100.0 * report.contact_area / args.length.powi(2));
+        map.title =
+            format!("{}: {:.1} % in contact", measure(speed, "m/s"), 100.0 * report.contact_area / args.length.powi(2));
         maps.push(map);
     }
     Map::save_row(&maps, args.output.join("pressure.png"))?;
@@ -132,7 +133,7 @@ fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<
             points[1].push((speed, theory.contact_share));
         }
         for (chart, points) in [&mut friction, &mut area].into_iter().zip(points) {
-            chart.add(format!("{kelvin} K, Persson's theory"), COLORS[3 + k], Style::Line, points);
+            chart.add(format!("{kelvin} K, Persson's theory"), COLORS[k], Style::Line, points);
         }
     }
     friction.save(args.output.join("friction.png"))?;

@@ -5,7 +5,7 @@ use crate::rounded::{TIME, rounded};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdhesionError {
-    /// An attraction that is none: it grows with the gap, repels, or its energy is not its integral.
+    /// The law is no attraction: it grows with the gap, repels, or its energy is not its integral.
     #[error("the attraction breaks a law: {0}; adhesion::laws::all tests it")]
     Law(Violation),
 
@@ -48,7 +48,7 @@ pub enum AdhesionError {
     /// assert!(contact.is_separated());
     /// # Ok::<(), Error>(())
     /// ```
-    #[error("at t = {} s the force of {force} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME))]
+    #[error("at t = {} s the force of {} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME), rounded(*.force, 5))]
     PulledOff {
         /// End of the step \[s\].
         time: f64,

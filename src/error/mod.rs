@@ -148,7 +148,7 @@ pub enum Error {
     Load(#[from] LoadError),
 
     /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
-    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is no body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
+    #[error("the initial gap at cell [{}, {}], x = ({}, {}) m, is {value}: it must be finite, or +inf where there is no body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
     InvalidGap {
         /// Indices of the cell.
         cell: [usize; 2],

@@ -108,12 +108,12 @@ impl SlidingReport {
     }
 }
 
-/// "1e0 m/s: friction 0.0193, 2 N, approach …".
+/// "0.1 m/s: 2 N, friction 0.0193, 812 cells in contact".
 impl fmt::Display for SlidingReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let speed = self.velocity[0].hypot(self.velocity[1]);
         let [speed, force, friction] = [speed, self.force, self.friction()].map(|value| rounded(value, 4));
-        write!(f, "{speed:e} m/s: {force:e} N, friction {friction:e}, {} cells in contact", self.contact_cells)
+        write!(f, "{speed} m/s: {force} N, friction {friction}, {} cells in contact", self.contact_cells)
     }
 }
 

@@ -118,7 +118,10 @@ const MESSAGES: [(Warnings, &str); 19] = [
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data: measure it longer, or end earlier"),
     (Warnings::FASTER_THAN_MATERIAL, "the step counts as elastic, shorter than the material is known for: lengthen it"),
-    (Warnings::NEAR_END_OF_MATERIAL, "one more such step looks beyond what is known of the material: know it longer"),
+    (
+        Warnings::NEAR_END_OF_MATERIAL,
+        "the next such step exceeds the times at which the material is known: measure longer",
+    ),
     (Warnings::RINGS, "the time rule rings at steps of this length: take shorter ones, or another rule"),
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),

@@ -45,7 +45,7 @@ fn units_of_headings_are_those_given() {
     assert!(matches!(error, Error::Table(TableError::Unit { column: 3, .. })), "{error}");
     let message = creep(&format!("time [min];J\n{ROWS}"), Units::SI, points()).unwrap_err().to_string();
     let expected =
-        "line 1, column 1: the heading \"time [min]\" says min, but Units::abscissa = 1 means s; of min it is 6e1";
+        "line 1, column 1: the heading \"time [min]\" says min, but Units::abscissa = 1 means s; of min it is 60";
     assert_eq!(message, expected);
 }
 
