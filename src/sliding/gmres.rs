@@ -6,8 +6,13 @@ pub(super) const MOST: usize = 60;
 const LEAST: f64 = 1e-14;
 
 /// Adds to `x` what brings the residual of a linear equation from `residual` down to `goal`; returns the residual left. `apply` maps a direction to the
-/// preconditioned direction and its image.
-pub(super) fn gmres(x: &mut [f64], residual: &[f64], goal: f64, mut apply: impl FnMut(&[f64]) -> [Vec<f64>; 2]) -> f64 {
+/// preconditioned direction and its image, or ends the iteration.
+pub(super) fn gmres(
+    x: &mut [f64],
+    residual: &[f64],
+    goal: f64,
+    mut apply: impl FnMut(&[f64]) -> Option<[Vec<f64>; 2]>,
+) -> f64 {
     let norm = |field: &[f64]| field.iter().map(|v| v * v).sum::<f64>().sqrt();
     let first = norm(residual);
     if first <= goal || first == 0.0 {
@@ -18,7 +23,7 @@ pub(super) fn gmres(x: &mut [f64], residual: &[f64], goal: f64, mut apply: impl 
     // columns of the triangle to which rotations bring the Hessenberg matrix, and the turned right side
     let (mut triangle, mut rotations, mut right) = (Vec::<Vec<f64>>::new(), Vec::<[f64; 2]>::new(), vec![first]);
     for k in 0..MOST {
-        let [direction, mut image] = apply(&basis[k]);
+        let Some([direction, mut image]) = apply(&basis[k]) else { break };
         directions.push(direction);
         let mut column = vec![0.0; k + 2];
         // twice: rounding of the first round is left in the second

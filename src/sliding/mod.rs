@@ -16,9 +16,11 @@ mod layer_on_base;
 mod operator;
 mod search;
 mod sweep;
+mod watch;
 
 pub use crate::error::SlidingError;
 pub use sweep::{SlidingSweep, SlidingTable, SweptState};
+pub use watch::SlidingProgress;
 
 use std::fmt;
 use std::sync::Arc;
@@ -38,6 +40,8 @@ use contact_problem::{Found, Problem};
 use creep::Creep;
 use layer_on_base::{LayerOnBase, THINNEST};
 use operator::MovingBodies;
+use search::Mesh;
+use watch::{Watch, Watcher};
 
 /// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
 ///
@@ -66,6 +70,8 @@ pub struct SteadySliding {
     /// Shows the state; it has no past, and takes no steps.
     contact: ViscoelasticContact,
     bodies: Bodies,
+    meshes: Vec<Mesh>,
+    watcher: Watcher,
 }
 
 /// The state of a steady motion, in numbers.
@@ -145,8 +151,8 @@ const JUMP: f64 = 4.0;
 fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
     let [n1, n2] = cells.map(|n| n as u64);
     let padded = [0, 1].map(|axis| if periodic[axis] || cells[axis] == 1 { 1 } else { 2 } * cells[axis] as u64);
-    // factors, coefficients and losses of the response, with its symmetric part; of the inverses
-    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 64 * n1 * (n2 / 2 + 1));
+    // factors, coefficients and losses of the response, with its symmetric part; of the inverses, and of both on coarser meshes
+    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 86 * n1 * (n2 / 2 + 1));
     // influences at about four nodes a cell, and the panels of these; tables of coefficients
     let nodes = if periodic == [true; 2] { 0 } else { 150 * n1 * n2 };
     // two fields for each direction, and a dozen others
@@ -280,7 +286,8 @@ impl Builder {
         };
         let layer = base.map(on_base).transpose()?;
         let bodies = Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() };
-        Ok(SteadySliding { contact, bodies })
+        let meshes = Mesh::coarser(contact.grid(), kernel.periodic_axes())?;
+        Ok(SteadySliding { contact, bodies, meshes, watcher: Watcher::default() })
     }
 }
 
@@ -303,7 +310,7 @@ impl SteadySliding {
     /// # Errors
     /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a spring, cannot be balanced, tilts a periodic body, or is an approach
     /// beyond full contact, or one in line contact whose datum is too near; if contact reaches the edge of the grid, or the state is not found
-    /// ([`SlidingError::NotConverged`]). The state found last is then kept.
+    /// ([`SlidingError::NotConverged`]), or its watcher ends the search. The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
@@ -324,13 +331,19 @@ impl SteadySliding {
             let (approach, greatest) = (given.approach, given.approach + mean);
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
         }
-        let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
+        let watch = Watch::new(std::mem::take(&mut self.watcher));
+        let problem = Problem { grid: &grid, gap: &heights, free, tolerance, watch: &watch };
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
         } else {
-            problem.search(&mut bodies, self.contact.pressure())
+            problem.search(&mut bodies, &mut self.meshes, self.contact.pressure())
         };
+        let (watcher, cancelled) = watch.into_parts();
+        self.watcher = watcher;
         let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
+        if cancelled {
+            return Err(Error::Cancelled { what: "a steady motion" });
+        }
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }

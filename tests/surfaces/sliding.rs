@@ -6,7 +6,9 @@ use super::steady::Scene;
 use crate::common::steady_sliding::Time;
 use crate::common::{Draws, from_environment};
 use viscocontact::Special;
+use viscocontact::analytic::SlidingLimits;
 use viscocontact::prelude::*;
+use viscocontact::sliding::SlidingSweep;
 
 /// Waves of an indenter over its period of 1 m: numbers along x1 and x2, phase, height.
 const WAVES: [[f64; 4]; 4] =
@@ -181,6 +183,93 @@ fn a_rolling_cylinder_is_hunters() {
     assert!(friction(256, half, Axis::X2).iter().all(|friction| friction.abs() < 1e-12));
 }
 
+/// A ball on 96² cells and a cylinder on 2048 reach the closed forms of slow and fast motion with the order of the remainder in the velocity, over three retardation
+/// times.
+#[test]
+fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
+    let (radius, terms) = (10e-3, [(3e-6, 0.3), (2e-6, 1.0), (1e-6, 2.0)]);
+    let (glassy, relaxed, longest, shortest) = (0.25e-6, 1.75e-6, 2.0, 0.3);
+    let body = || Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &terms).unwrap());
+    for (line, force, half) in [
+        (true, 500.0, [glassy, relaxed].map(|c| f64::sqrt(4.0 * 500.0 * radius * c / PI))),
+        (false, 1.0, [glassy, relaxed].map(|c| f64::cbrt(0.75 * radius * c))),
+    ] {
+        let limits =
+            if line { SlidingLimits::cylinder(radius, &body(), force) } else { SlidingLimits::ellipsoid([radius; 2], &body(), force) }
+                .unwrap();
+        // the cells lie on the contact of the limit
+        let error = |fast: bool, reach: f64, cells: usize| {
+            let own = half[usize::from(!fast)];
+            let (counts, width) = if line { ([cells, 1], 1.0) } else { ([cells; 2], 2.6 * own) };
+            let grid = Grid::new(counts, [2.6 * own, width]).unwrap();
+            let shape: Box<dyn Geometry> =
+                if line { Box::new(Cylinder::new(radius).unwrap()) } else { Box::new(Sphere::new(radius).unwrap()) };
+            let kernel = if line { InfluenceKernel::line(&grid, 1.0) } else { InfluenceKernel::half_space(&grid) };
+            let mut sliding = ViscoelasticContact::builder(grid)
+                .geometry(&shape)
+                .material(body())
+                .kernel(kernel.unwrap())
+                .settings(Settings::default().with_tolerance(1e-9))
+                .build_sliding()
+                .unwrap();
+            let speed = reach * own / if fast { shortest } else { longest };
+            let friction = sliding.at([speed, 0.0], Load::force(force)).unwrap().friction();
+            friction / if fast { limits.fast(speed) } else { limits.slow(speed) } - 1.0
+        };
+        let meshes = if line { [1024, 2048] } else { [64, 128] };
+        for reach in [0.4, 0.2, 0.1, 0.05, 0.025] {
+            println!("line {line}, slow {reach}: {:?}", meshes.map(|cells| error(false, reach, cells)));
+        }
+        for reach in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 512.0] {
+            println!("line {line}, fast {reach}: {:?}", meshes.map(|cells| error(true, reach, cells)));
+        }
+    }
+}
+
+/// A watcher sees the sets and iterations of a search, and ends it at any of them: the state found last is kept, and the search repeated is the search that was not
+/// watched.
+#[test]
+fn a_search_is_watched_and_ended() {
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::{Arc, Mutex};
+
+    let (velocity, load) = ([3.0, 1.0], Load::force(40.0));
+    let mut plain = wavy(32);
+    let exact = plain.at(velocity, load).unwrap();
+    let (seen, left) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicUsize::new(usize::MAX)));
+    let (sees, leaves) = (Arc::clone(&seen), Arc::clone(&left));
+    let mut watched = wavy(32).watched_by(move |progress| {
+        sees.lock().unwrap().push(*progress);
+        let left = leaves.load(Ordering::Relaxed);
+        leaves.store(left.saturating_sub(1), Ordering::Relaxed);
+        if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(watched.at(velocity, load).unwrap(), exact);
+    let all = std::mem::take(&mut *seen.lock().unwrap());
+    assert!(all.len() > 10 && all.iter().enumerate().all(|(k, progress)| progress.iterations == k));
+    assert!(all.windows(2).all(|two| two[0].sets <= two[1].sets));
+    assert!(all[0].residual.is_infinite() && all[all.len() - 1].residual < 1e-3, "{:?}", all[all.len() - 1]);
+    let mut fresh = wavy(32);
+    let (before, _) = (fresh.at([0.0; 2], Load::force(10.0)).unwrap(), left.store(usize::MAX, Ordering::Relaxed));
+    let again = watched.at([0.0; 2], Load::force(10.0)).unwrap();
+    assert!((again.approach - before.approach).abs() < 1e-10);
+    let pressure = watched.contact().pressure().to_vec();
+    for ends in [0, 1, 5, 12] {
+        left.store(ends, Ordering::Relaxed);
+        seen.lock().unwrap().clear();
+        let ended = watched.at(velocity, load);
+        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ends}: {ended:?}");
+        assert_eq!(seen.lock().unwrap().len(), ends + 1, "no iteration follows the last");
+        assert_eq!(watched.contact().pressure(), pressure, "the state found last is kept");
+        let ended = watched.sweep(&SlidingSweep::new([velocity], [load]));
+        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ends}: {ended:?}");
+    }
+    left.store(usize::MAX, Ordering::Relaxed);
+    let found = watched.at(velocity, load).unwrap();
+    assert!((found.friction() - exact.friction()).abs() < 1e-8 * exact.friction());
+}
+
 #[test]
 fn what_is_not_steady_is_refused() {
     let grid = Grid::square(16, 1.0).unwrap();
@@ -235,7 +324,6 @@ fn a_sweep_is_its_states() {
     use std::ops::ControlFlow;
 
     use viscocontact::rheology::TimeTemperature;
-    use viscocontact::sliding::SlidingSweep;
 
     let law = TimeTemperature::wlf(8.61, 200.4, 298.15).unwrap();
     let (velocities, loads) = ([[1e-2, 0.0], [1.0, 1.0], [30.0, -4.0]], [Load::force(20.0), Load::force(60.0)]);

@@ -84,6 +84,7 @@ fn the_friction_of_a_road_converges_with_the_mesh() {
             .geometry(&road)
             .material(Material::incompressible(GeneralizedMaxwell::new(1e6, &terms).unwrap()))
             .kernel(InfluenceKernel::periodic(&grid).unwrap())
+            .settings(Settings::default().with_tolerance(std::env::var("TOLX").map_or(1e-6, |t| t.parse().unwrap())))
             .build_sliding()
             .unwrap();
         let speeds = (0..9).map(|k| 100.0 * 10_f64.powi(-k));
