@@ -164,7 +164,7 @@ fn a_rolling_cylinder_is_hunters() {
         assert!(report.transforms <= 600);
         [report.friction(), sliding.contact().lateral_force(&cylinder)[0] / force]
     };
-    // the closed form (tests/common/steady_sliding.rs) with 40 digits: of a long memory most cancel
+    // the closed form (`RollingCylinder`) with 40 digits: of a long memory most cancel
     for (over_half, exact, most) in [
         (0.01, 0.00112916499941, 5e-5),
         (0.05, 0.0055210009519, 2e-5),
@@ -183,46 +183,53 @@ fn a_rolling_cylinder_is_hunters() {
     assert!(friction(256, half, Axis::X2).iter().all(|friction| friction.abs() < 1e-12));
 }
 
-/// A ball on 96² cells and a cylinder on 2048 reach the closed forms of slow and fast motion with the order of the remainder in the velocity, over three retardation
-/// times.
+/// The friction of a ball and of a cylinder, over three retardation times, reaches the closed forms of slow and fast motion in the order of their remainders.
 #[test]
 fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
     let (radius, terms) = (10e-3, [(3e-6, 0.3), (2e-6, 1.0), (1e-6, 2.0)]);
-    let (glassy, relaxed, longest, shortest) = (0.25e-6, 1.75e-6, 2.0, 0.3);
     let body = || Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &terms).unwrap());
-    for (line, force, half) in [
-        (true, 500.0, [glassy, relaxed].map(|c| f64::sqrt(4.0 * 500.0 * radius * c / PI))),
-        (false, 1.0, [glassy, relaxed].map(|c| f64::cbrt(0.75 * radius * c))),
+    // the reach of the longest time over half the contact with the relaxed body, of the shortest with the glassy one; the order, and the greatest remainder
+    for (line, fast, [far, near], orders, most) in [
+        (true, false, [0.2, 0.025], 0.98..1.02, 0.012),
+        (false, false, [0.2, 0.05], 0.98..1.08, 0.027),
+        (true, true, [16.0, 128.0], 1.98..2.08, 5e-5),
+        // but for the logarithm
+        (false, true, [64.0, 512.0], 0.98..1.08, 8e-3),
     ] {
-        let limits =
-            if line { SlidingLimits::cylinder(radius, &body(), force) } else { SlidingLimits::ellipsoid([radius; 2], &body(), force) }
-                .unwrap();
-        // the cells lie on the contact of the limit
-        let error = |fast: bool, reach: f64, cells: usize| {
-            let own = half[usize::from(!fast)];
-            let (counts, width) = if line { ([cells, 1], 1.0) } else { ([cells; 2], 2.6 * own) };
-            let grid = Grid::new(counts, [2.6 * own, width]).unwrap();
-            let shape: Box<dyn Geometry> =
-                if line { Box::new(Cylinder::new(radius).unwrap()) } else { Box::new(Sphere::new(radius).unwrap()) };
-            let kernel = if line { InfluenceKernel::line(&grid, 1.0) } else { InfluenceKernel::half_space(&grid) };
-            let mut sliding = ViscoelasticContact::builder(grid)
-                .geometry(&shape)
-                .material(body())
-                .kernel(kernel.unwrap())
-                .settings(Settings::default().with_tolerance(1e-9))
-                .build_sliding()
-                .unwrap();
-            let speed = reach * own / if fast { shortest } else { longest };
-            let friction = sliding.at([speed, 0.0], Load::force(force)).unwrap().friction();
-            friction / if fast { limits.fast(speed) } else { limits.slow(speed) } - 1.0
+        let (compliance, time, length) = if fast { (0.25e-6, 0.3, 4.0) } else { (1.75e-6, 2.0, 2.6) };
+        let (force, half) = if line {
+            (500.0, f64::sqrt(4.0 * 500.0 * radius * compliance / PI))
+        } else {
+            (1.0, f64::cbrt(0.75 * radius * compliance))
         };
-        let meshes = if line { [1024, 2048] } else { [64, 128] };
-        for reach in [0.4, 0.2, 0.1, 0.05, 0.025] {
-            println!("line {line}, slow {reach}: {:?}", meshes.map(|cells| error(false, reach, cells)));
-        }
-        for reach in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 512.0] {
-            println!("line {line}, fast {reach}: {:?}", meshes.map(|cells| error(true, reach, cells)));
-        }
+        let (counts, shape): ([usize; 2], Box<dyn Geometry>) = if line {
+            ([2048, 1], Box::new(Cylinder::new(radius).unwrap()))
+        } else {
+            ([128; 2], Box::new(Sphere::new(radius).unwrap()))
+        };
+        let grid = Grid::new(counts, [length * half, if line { 1.0 } else { length * half }]).unwrap();
+        let kernel = if line { InfluenceKernel::line(&grid, 1.0) } else { InfluenceKernel::half_space(&grid) };
+        let mut sliding = ViscoelasticContact::builder(grid)
+            .geometry(&shape)
+            .material(body())
+            .kernel(kernel.unwrap())
+            .settings(Settings::default().with_tolerance(1e-9))
+            .build_sliding()
+            .unwrap();
+        let limits = match line {
+            true => SlidingLimits::cylinder(radius, &body(), force),
+            false => SlidingLimits::ellipsoid([radius; 2], &body(), force),
+        };
+        let limits = limits.unwrap();
+        let [greater, less] = [far, near].map(|reach| {
+            let speed = reach * half / time;
+            let exact = if fast { limits.fast(speed) } else { limits.slow(speed) };
+            (sliding.at([speed, 0.0], Load::force(force)).unwrap().friction() / exact - 1.0).abs()
+        });
+        let log = if fast && !line { f64::ln(far) / f64::ln(near) } else { 1.0 };
+        let order = (greater / less / log).ln() / f64::ln(far / near).abs();
+        println!("line {line}, fast {fast}: remainders {greater:e} {less:e}, order {order}");
+        assert!(orders.contains(&order) && less < most, "line {line}, fast {fast}: {greater:e} {less:e} {order}");
     }
 }
 
