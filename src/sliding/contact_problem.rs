@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::gmres::gmres;
+use super::gmres::{dot, gmres, norm};
 use super::operator::MovingBodies;
 use super::watch::Watch;
 use crate::Grid;
@@ -278,14 +278,6 @@ impl Problem<'_> {
         };
         self.gap.iter().map(|&h| h <= level).collect()
     }
-}
-
-fn norm(field: &[f64]) -> f64 {
-    dot(field, field).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn scatter(values: &[f64], set: &[usize], field: &mut [f64]) {

@@ -13,7 +13,6 @@ pub(super) fn gmres(
     goal: f64,
     mut apply: impl FnMut(&[f64]) -> Option<[Vec<f64>; 2]>,
 ) -> f64 {
-    let norm = |field: &[f64]| field.iter().map(|v| v * v).sum::<f64>().sqrt();
     let first = norm(residual);
     if first <= goal || first == 0.0 {
         return first;
@@ -29,7 +28,7 @@ pub(super) fn gmres(
         // twice: rounding of the first round is left in the second
         for _ in 0..2 {
             for (own, along) in column.iter_mut().zip(&basis) {
-                let part: f64 = image.iter().zip(along).map(|(a, b)| a * b).sum();
+                let part = dot(&image, along);
                 *own += part;
                 image.iter_mut().zip(along).for_each(|(a, b)| *a -= part * b);
             }
@@ -69,4 +68,12 @@ pub(super) fn gmres(
         x.iter_mut().zip(direction).for_each(|(x, d)| *x += part * d);
     }
     right[count].abs()
+}
+
+pub(super) fn norm(field: &[f64]) -> f64 {
+    dot(field, field).sqrt()
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

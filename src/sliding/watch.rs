@@ -1,8 +1,9 @@
 //! Progress within the search for a state, and its end by the caller.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::SteadySliding;
 
@@ -18,11 +19,11 @@ pub struct SlidingProgress {
     pub residual: f64,
 }
 
-type Call = dyn FnMut(&SlidingProgress) -> ControlFlow<()> + Send + Sync;
-
 /// The caller's function, if there is one.
-#[derive(Default)]
-pub(super) struct Watcher(Option<Box<Call>>);
+#[derive(Clone, Default)]
+pub(super) struct Watcher(Option<Arc<Mutex<Call>>>);
+
+type Call = dyn FnMut(&SlidingProgress) -> ControlFlow<()> + Send;
 
 impl fmt::Debug for Watcher {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -32,20 +33,15 @@ impl fmt::Debug for Watcher {
 
 /// The watch over one search.
 pub(super) struct Watch {
-    watcher: RefCell<Watcher>,
+    watcher: Watcher,
     progress: Cell<SlidingProgress>,
     ended: Cell<bool>,
 }
 
 impl Watch {
-    pub(super) fn new(watcher: Watcher) -> Watch {
+    pub(super) fn new(watcher: &Watcher) -> Watch {
         let progress = SlidingProgress { sets: 0, iterations: 0, residual: f64::INFINITY };
-        Watch { watcher: RefCell::new(watcher), progress: Cell::new(progress), ended: Cell::new(false) }
-    }
-
-    /// The watcher, and whether it ended the search.
-    pub(super) fn into_parts(self) -> (Watcher, bool) {
-        (self.watcher.into_inner(), self.ended.get())
+        Watch { watcher: watcher.clone(), progress: Cell::new(progress), ended: Cell::new(false) }
     }
 
     /// Whether the watcher has ended the search.
@@ -56,7 +52,8 @@ impl Watch {
     /// Before an iteration: whether the search goes on.
     pub(super) fn goes_on(&self) -> bool {
         let progress = self.progress.get();
-        let ends = self.watcher.borrow_mut().0.as_mut().is_some_and(|call| call(&progress).is_break());
+        let call = |call: &Arc<Mutex<Call>>| call.lock().unwrap_or_else(PoisonError::into_inner)(&progress);
+        let ends = self.watcher.0.as_ref().is_some_and(|own| call(own).is_break());
         self.ended.set(self.ended.get() || ends);
         self.progress.set(SlidingProgress { iterations: progress.iterations + 1, ..progress });
         !self.ended.get()
@@ -70,7 +67,7 @@ impl Watch {
 }
 
 impl SteadySliding {
-    /// Calls `watcher` before each iteration within [`SteadySliding::at`], and within the states of a sweep. Where it breaks the search ends in
+    /// Calls `watcher` before each iteration within [`SteadySliding::at`], and within the states of a sweep, on any of its threads. Where it breaks the search ends in
     /// [`Error::Cancelled`](crate::Error::Cancelled), and the state found last is kept: another thread may ask for it by a flag.
     ///
     /// ```
@@ -95,9 +92,9 @@ impl SteadySliding {
     #[must_use]
     pub fn watched_by(
         mut self,
-        watcher: impl FnMut(&SlidingProgress) -> ControlFlow<()> + Send + Sync + 'static,
+        watcher: impl FnMut(&SlidingProgress) -> ControlFlow<()> + Send + 'static,
     ) -> SteadySliding {
-        self.watcher = Watcher(Some(Box::new(watcher)));
+        self.watcher = Watcher(Some(Arc::new(Mutex::new(watcher))));
         self
     }
 }

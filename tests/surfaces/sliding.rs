@@ -233,6 +233,72 @@ fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
     }
 }
 
+/// An eccentric force on a blunt body that tilts freely: at rest all that is read of the steady state are the readings of the elastic contact with the relaxed body,
+/// and in motion load and moments balance, and the mirrored motion under the mirrored force is the mirror image.
+#[test]
+fn a_steady_state_is_read_like_a_contact() {
+    let grid = Grid::square(48, 1.0).unwrap();
+    let shape = FnGeometry::new(|x1, x2| 0.4 * (x1 * x1 + x2 * x2).powi(2));
+    let builder = |body| {
+        let settings = Settings::default().with_tolerance(1e-10);
+        ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(body).settings(settings)
+    };
+    let load = Load::eccentric_force(500.0, [0.03, -0.02]);
+    let mut sliding = builder(rubber()).build_sliding().unwrap();
+    sliding.at([0.0; 2], load).unwrap();
+    let mut still = builder(Material::incompressible(Elastic::new(1e5).unwrap())).build().unwrap();
+    still.step(0.0, load).unwrap();
+    let gap = |contact: &ViscoelasticContact| {
+        let mut gap = vec![0.0; grid.len()];
+        contact.gap_into(&mut gap).unwrap();
+        gap
+    };
+    let readings = |contact: &ViscoelasticContact| -> Vec<(&'static str, Vec<f64>)> {
+        let (patches, profile) = (contact.patches().unwrap(), contact.profile(Axis::X2, 0.1).unwrap());
+        let stress = contact.stress().unwrap().at(&[[0.0, 0.0, 0.1], [0.1, 0.2, 0.3]]).unwrap();
+        let file = crate::common::Temporary::file("steady_gap.npy");
+        viscocontact::output::write_field_npy(&*file, contact, viscocontact::output::Field::Gap).unwrap();
+        let bytes = std::fs::read(&*file).unwrap();
+        let numbers = bytes[bytes.len() - 8 * grid.len()..].chunks(8);
+        vec![
+            ("pressure", contact.pressure().to_vec()),
+            ("displacement", contact.displacement().to_vec()),
+            ("gap", gap(contact)),
+            ("gap of a file", numbers.map(|own| f64::from_le_bytes(own.try_into().unwrap())).collect()),
+            ("approach", vec![contact.approach()]),
+            ("tilt", contact.tilt().to_vec()),
+            ("force", vec![contact.force()]),
+            ("area", vec![contact.contact_area(), contact.contact_cells() as f64]),
+            ("maximum", vec![contact.max_pressure(), contact.mean_pressure()]),
+            ("patches", patches.all.iter().flat_map(|patch| [patch.area, patch.force / 500.0]).collect()),
+            ("profile", [profile.pressure, profile.gap.iter().map(|gap| 1e6 * gap).collect()].concat()),
+            ("stress", stress.iter().map(|own| own.von_mises()).collect()),
+            ("stiffness", vec![contact.stiffness_over_modulus().unwrap()]),
+        ]
+    };
+    let both: Vec<_> = readings(sliding.contact()).into_iter().zip(readings(&still)).collect();
+    assert_eq!(both.len(), 13);
+    for ((what, found), (_, exact)) in both {
+        let scale = exact.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+        let differ = found.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(found.len() == exact.len() && scale > 0.0 && differ < 1e-6 * scale, "{what}: {differ:e} of {scale:e}");
+    }
+    let [ahead, back] = [1.0, -1.0].map(|sign: f64| {
+        let report = sliding.at([0.5 * sign, 0.0], Load::eccentric_force(500.0, [0.03 * sign, -0.02])).unwrap();
+        let contact = sliding.contact();
+        let cells = contact.pressure().iter().enumerate().map(|(k, p)| (*p, grid.center(k / 48, k % 48)));
+        let moments = cells
+            .fold([0.0; 3], |[f, m1, m2], (p, [x1, x2])| [f + p, m1 + p * (x1 - 0.03 * sign), m2 + p * (x2 + 0.02)]);
+        assert!((moments[0] / (48.0 * 48.0) / 500.0 - 1.0).abs() < 1e-12);
+        assert!(moments[1..].iter().all(|moment| moment.abs() < 1e-10 * moments[0]), "{moments:?}");
+        let deepest = gap(contact).into_iter().fold(f64::INFINITY, f64::min);
+        assert!(deepest > -1e-8 && contact.pressure().iter().all(|p| *p >= 0.0), "{deepest}");
+        (report.friction(), report.approach, contact.tilt())
+    });
+    assert!(ahead.0 > 1e-3 && (ahead.0 / back.0 - 1.0).abs() < 1e-7 && (ahead.1 / back.1 - 1.0).abs() < 1e-8);
+    assert!((ahead.2[0] + back.2[0]).abs() < 1e-8 && (ahead.2[1] - back.2[1]).abs() < 1e-8, "{ahead:?} {back:?}");
+}
+
 /// A watcher sees the sets and iterations of a search, and ends it at any of them: the state found last is kept, and the search repeated is the search that was not
 /// watched.
 #[test]
@@ -353,6 +419,10 @@ fn a_sweep_is_its_states() {
         assert!((state.report.friction() - single.friction()).abs() < 1e-8 * single.friction().abs().max(1e-3), "{k}");
         assert!((state.report.mean_gap - single.mean_gap).abs() < 1e-10);
         assert_eq!(state.report.contact_cells, single.contact_cells);
+    }
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(|| wavy(16).sweep(&sweep)).unwrap(), table, "the same bits on {threads} threads");
     }
     let ended = wavy(16).sweep_with(&sweep, |_, _| ControlFlow::Break(())).unwrap();
     assert_eq!(ended.states().len(), 1);
