@@ -2,6 +2,7 @@ use std::f64::consts::LN_2;
 
 use super::HertzEllipse;
 use crate::error::{Result, finite, positive, within};
+use crate::numeric::EULER;
 use crate::rheology::Material;
 
 /// Friction of an indenter without an edge in steady motion, with no friction of its surface, over any creeping body, where the motion is slow or fast against
@@ -34,9 +35,6 @@ pub struct SlidingLimits {
     fast: f64,
     fast_per_log: f64,
 }
-
-/// Euler's constant.
-const EULER: f64 = 0.577_215_664_901_532_9;
 
 impl SlidingLimits {
     /// An ellipsoid, or a sphere, of these `radii` of curvature along the motion and across it \[m\], under a `force` \[N\].

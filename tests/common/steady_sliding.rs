@@ -278,7 +278,7 @@ impl SteadySliding {
     }
 
     /// K at x along the motion from a cell, j cells across it: Love's integral, or of ln(D/|x|) over a side.
-    fn influence(&self, x: f64, j: usize) -> f64 {
+    pub fn influence(&self, x: f64, j: usize) -> f64 {
         let [a, b] = self.spacing.map(|side| 0.5 * side);
         if let Below::Line(datum) = self.below {
             let primitive = |x: f64| if x == 0.0 { 0.0 } else { x * ((x.abs() / datum).ln() - 1.0) };
