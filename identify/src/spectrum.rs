@@ -221,7 +221,7 @@ fn nearest(fit: &Fit, rates: &[f64]) -> Prony {
 }
 
 /// Force of each term per unit modulus, by term, curve and sample.
-fn basis(problem: &Problem<'_>, values: &[f64], prony: &Prony) -> Result<Vec<Vec<Vec<f64>>>> {
+fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Vec<Vec<Vec<f64>>>> {
     let mut basis = vec![Vec::with_capacity(problem.parts.len()); prony.moduli.len()];
     for (curve, part) in problem.parts.iter().enumerate() {
         let contact_point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();

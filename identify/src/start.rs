@@ -6,8 +6,9 @@ use crate::model::Model;
 use crate::parameters::Kind;
 use crate::problem::Problem;
 
-/// A force whose range is below this many standard deviations of its scatter has no contact.
-const LEAST_RANGE: f64 = 9.0;
+/// The variance of a force without contact is above the square of its scatter by less than this over the root of the number of samples:
+/// six deviations of their ratio if the noise is white (J. von Neumann, 1941).
+const NO_CONTACT: f64 = 11.0;
 /// Contact points tried at first, and then between the neighbours of the best.
 const CONTACT_POINTS: usize = 24;
 /// Searches at most.
@@ -16,7 +17,7 @@ const STARTS: usize = 4;
 const TIMES: usize = 6;
 
 /// Coordinates from which searches may begin, best first.
-pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
+pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
     let initial = |parameter: &crate::parameters::Parameter| match (parameter.given, parameter.kind) {
         (Some(value), _) => value,
         (None, Kind::Stiffness) => problem.parts[0].experiment.stiffness,
@@ -24,16 +25,11 @@ pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
     };
     let mut values: Vec<f64> = problem.parameters.iter().map(initial).collect();
     for (curve, part) in problem.parts.iter().enumerate() {
-        let scatter = scatter(&part.data);
-        let [low, high] = part.data.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-        if high - low <= LEAST_RANGE * scatter {
-            return Err(Error::NoContact { curve });
-        }
         let at = problem.parameters.iter().position(|p| p.kind == Kind::ContactPoint(curve));
         if let Some(at) = at.filter(|&at| problem.parameters[at].given.is_none()) {
             let has_offset = problem.parameters.iter().any(|p| p.kind == Kind::Offset(curve) && p.is_free);
             let give = 1.0 / problem.stiffness(curve, &values);
-            values[at] = contact_point(part.experiment, &part.data, give, has_offset);
+            values[at] = contact_point(&part.experiment, &part.data, give, has_offset);
         }
     }
     let reference = elastic_modulus(problem, &values);
@@ -64,7 +60,7 @@ fn is_modulus(name: &str) -> bool {
 
 /// The modulus of an elastic body that fits the forces best, at the depths that a spring leaves of the drive: a softer body would let
 /// the tip deeper than it was, perhaps beyond its last elastic state.
-fn elastic_modulus(problem: &Problem<'_>, values: &[f64]) -> f64 {
+fn elastic_modulus(problem: &Problem, values: &[f64]) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for (curve, part) in problem.parts.iter().enumerate() {
         let tip = &part.experiment.tip;
@@ -82,6 +78,18 @@ fn elastic_modulus(problem: &Problem<'_>, values: &[f64]) -> f64 {
     if modulus.is_finite() && modulus > 0.0 { modulus } else { 1.0 }
 }
 
+/// Refuses curves without contact.
+pub(crate) fn check_contact(problem: &Problem) -> Result<()> {
+    let is_flat = |data: &[f64]| {
+        let count = data.len() as f64;
+        let mean = data.iter().sum::<f64>() / count;
+        let variance = data.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / count;
+        variance <= (1.0 + NO_CONTACT / count.sqrt()) * scatter(data).powi(2)
+    };
+    let flat = problem.parts.iter().position(|part| is_flat(&part.data));
+    flat.map_or(Ok(()), |curve| Err(Error::NoContact { curve }))
+}
+
 /// Standard deviation of the noise, from second differences.
 pub(crate) fn scatter(data: &[f64]) -> f64 {
     let differences = data.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
@@ -89,7 +97,7 @@ pub(crate) fn scatter(data: &[f64]) -> f64 {
 }
 
 /// Scales the free moduli to the data; returns the sum of squared deviations.
-fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
+fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
     // with a spring, the force is not proportional to the moduli
     let is_stiff = (0..problem.parts.len()).all(|curve| problem.stiffness(curve, values) == f64::INFINITY);
     let rounds = if is_stiff { 1 } else { 2 };

@@ -16,7 +16,7 @@ const SINGULAR: f64 = 1e-13;
 
 /// The standard deviation that gives, with the weighted columns, the deviations of an estimate with the weights w = 1 − u² of residuals r
 /// (P. J. Huber, *Robust Statistics*, 1981): √(Σψ²/freedom · mean w²)/mean ψ′, with ψ = w² r.
-pub(super) fn robust_deviation(problem: &Problem<'_>, weighted: &[f64], freedom: f64) -> f64 {
+pub(super) fn robust_deviation(problem: &Problem, weighted: &[f64], freedom: f64) -> f64 {
     let weights = problem.parts.iter().flat_map(|part| &part.outliers);
     let (mut square, mut slope, mut mean, mut count) = (0.0, 0.0, 0.0, 0.0);
     for (&weight, &residual) in weights.zip(weighted) {

@@ -68,12 +68,13 @@ pub struct Fit {
     sum: f64,
     log_weight: f64,
     iterations: usize,
+    work: usize,
     /// The least sum of squares of a model that this one contains.
     contained: Option<(Model, f64)>,
 }
 
 impl Fit {
-    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, found: Found) -> Result<Fit> {
+    pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
         let Found { minimum, contained } = found;
         let values = problem.values(&minimum.coordinates);
         let prony = problem.prony(&values)?;
@@ -133,7 +134,7 @@ impl Fit {
         });
         let noise = noise.collect();
         let curve =
-            |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
+            |part: &crate::problem::Part| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
         Ok(Fit {
             identification: identification.clone(),
             curves: problem.parts.iter().map(curve).collect(),
@@ -150,6 +151,7 @@ impl Fit {
             sum,
             log_weight: problem.parts.iter().map(|part| part.log_weight()).sum(),
             iterations: minimum.iterations,
+            work: problem.work.get(),
             contained,
         })
     }
@@ -274,6 +276,11 @@ impl Fit {
         self.iterations
     }
 
+    /// Work of the search: exponentials that were advanced by a sample, each derivative counted.
+    pub fn work(&self) -> usize {
+        self.work
+    }
+
     /// Samples with the tip in contact.
     pub fn points_in_contact(&self) -> usize {
         self.samples.iter().flatten().filter(|sample| sample.contact_depth > 0.0).count()
@@ -304,7 +311,7 @@ impl Fit {
     }
 
     /// The problem that was solved.
-    pub(crate) fn problem(&self) -> Result<Problem<'_>> {
+    pub(crate) fn problem(&self) -> Result<Problem> {
         self.identification.refit_problem(&self.curves, &self.noise)
     }
 

@@ -22,17 +22,17 @@ const MEDIAN: f64 = 0.6745;
 
 impl Identification {
     /// Whether something of the noise is found from the residuals of a fit, and changes the fit.
-    pub(super) fn finds_noise(&self, problem: &Problem<'_>) -> bool {
+    pub(super) fn finds_noise(&self, problem: &Problem) -> bool {
         self.fits_correlation() || self.is_robust() || self.finds_deviations(problem)
     }
 
     /// Whether each curve has a standard deviation of its own.
-    fn finds_deviations(&self, problem: &Problem<'_>) -> bool {
+    fn finds_deviations(&self, problem: &Problem) -> bool {
         self.sigma().is_none() && problem.parts.len() > 1
     }
 
     /// Sets correlation and weights of each curve by the residuals at a minimum; whether they were as good as found.
-    pub(super) fn reweigh(&self, problem: &mut Problem<'_>, minimum: &Minimum) -> Result<bool> {
+    pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Minimum) -> Result<bool> {
         let mut bare = problem.clone();
         for part in &mut bare.parts {
             part.weights.fill(1.0);
