@@ -141,27 +141,32 @@ fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
     let time = |k: f64| (low + (high - low) * k).exp();
     let times = || (0..TIMES).map(move |k| time((k as f64 + 0.5) / TIMES as f64));
     let ratios = [0.6, 0.2, 0.04];
-    match model {
-        Model::Elastic => vec![vec![1.0]],
-        Model::Maxwell => times().map(|tau| vec![1.0, tau]).collect(),
-        Model::Zener => ratios.iter().flat_map(|&ratio| times().map(move |tau| vec![1.0, ratio, tau])).collect(),
-        Model::PowerLaw { .. } => [0.03, 0.1, 0.2, 0.35, 0.5, 0.75].iter().map(|&alpha| vec![1.0, alpha]).collect(),
-        Model::FractionalZener => {
-            let pairs = ratios.iter().flat_map(|&ratio| [0.35, 0.7].map(move |alpha| (ratio, alpha)));
-            pairs.flat_map(|(ratio, alpha)| times().map(move |tau| vec![1.0, ratio, tau, alpha])).collect()
-        }
-        Model::Prony(terms) => {
-            // the times spread over the whole range, or over a part of it
-            let spreads = [(0.05, 0.95), (0.05, 0.6), (0.4, 0.95)];
-            let grid = ratios.iter().flat_map(|&ratio| spreads.map(move |spread| (ratio, spread)));
-            grid.map(|(ratio, (from, to))| {
-                let each = (1.0 - ratio) / terms.max(1) as f64;
-                let place = |k: usize| from + (to - from) * (k as f64 + 0.5) / terms as f64;
-                std::iter::once(ratio).chain((0..terms).flat_map(|k| [each, time(place(k))])).collect()
-            })
-            .collect()
-        }
+    if let Model::Prony(terms) = model {
+        // the times spread over the whole range, or over a part of it
+        let spreads = [(0.05, 0.95), (0.05, 0.6), (0.4, 0.95)];
+        let grid = ratios.iter().flat_map(|&ratio| spreads.map(move |spread| (ratio, spread)));
+        let spread = |(ratio, (from, to)): (f64, (f64, f64))| {
+            let each = (1.0 - ratio) / terms.max(1) as f64;
+            let place = |k: usize| from + (to - from) * (k as f64 + 0.5) / terms as f64;
+            std::iter::once(ratio).chain((0..terms).flat_map(|k| [each, time(place(k))])).collect()
+        };
+        return grid.map(spread).collect();
     }
+    let names = model.parameters();
+    let has_times = names.iter().any(|name| name.starts_with("tau"));
+    let values = |index: usize| -> Vec<f64> {
+        match names[index].as_str() {
+            _ if index == 0 => vec![1.0],
+            name if is_modulus(name) => ratios.to_vec(),
+            name if name.starts_with("tau") => times().collect(),
+            _ if has_times => vec![0.35, 0.7],
+            _ => vec![0.03, 0.1, 0.2, 0.35, 0.5, 0.75],
+        }
+    };
+    (0..names.len()).fold(vec![vec![]], |grid, index| {
+        let values = values(index);
+        grid.iter().flat_map(|first| values.iter().map(move |&value| [&first[..], &[value]].concat())).collect()
+    })
 }
 
 /// The contact point for which an elastic law, with an offset if there is one, fits the loading best.

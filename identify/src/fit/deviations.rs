@@ -52,8 +52,8 @@ pub(super) fn limit(name: &str, value: f64) -> &'static str {
     match name {
         "E0" => "E0 = Einf: no relaxation",
         "Einf" => "Einf = 0: no equilibrium",
-        "alpha" if value < 0.5 => "alpha = 0: no relaxation",
-        "alpha" => "alpha = 1: one relaxation time",
+        "alpha" | "beta" if value < 0.5 => "an exponent of 0: no relaxation",
+        "alpha" | "beta" => "an exponent of 1: one relaxation time",
         "stiffness" => "a rigid spring",
         name if name.starts_with("tau") => "a time without effect, or beyond the data",
         _ => "0",

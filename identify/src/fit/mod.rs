@@ -320,8 +320,9 @@ impl Fit {
         &self.values
     }
 
-    pub(crate) fn prony(&self) -> &Prony {
-        &self.prony
+    /// The exponentials, with moduli of zero or more.
+    pub(crate) fn prony(&self) -> Prony {
+        self.prony.positive()
     }
 
     /// Shortest interval and longest curve \[s\].
