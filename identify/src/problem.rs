@@ -17,9 +17,9 @@ use crate::series::Prony;
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
 /// Samples of a curve with which a search begins.
-const ROUGH: usize = 200;
+const ROUGH: usize = 128;
 /// A search ends where the linearised residuals promise less than this fraction of the sum of squares; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-8, 1e-3];
+const ENOUGH: [f64; 2] = [1e-7, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 
@@ -53,13 +53,15 @@ impl Part {
         Part { experiment: experiment.clone(), data, whitening, weights, scale: 1.0, outliers, forward, speed }
     }
 
-    /// Some of the samples, as if their noise were white.
+    /// Means of neighbouring samples, as if their noise were white.
     fn thinned(&self) -> Part {
-        let of = |values: &[f64]| values.iter().step_by(self.len().div_ceil(ROUGH)).copied().collect::<Vec<f64>>();
+        let of = |values: &[f64]| -> Vec<f64> {
+            let means = values.chunks(self.len().div_ceil(ROUGH));
+            means.map(|chunk| chunk.iter().sum::<f64>() / chunk.len() as f64).collect()
+        };
         let Protocol { times, drive } = &self.experiment.protocol;
         let protocol = Protocol { times: of(times), drive: of(drive) };
-        let (data, speed, weights, outliers) =
-            (of(&self.data), of(&self.speed), of(&self.weights), of(&self.outliers));
+        let (data, speed, weights, outliers) = (of(&self.data), of(&self.speed), of(&self.weights), of(&self.outliers));
         let experiment = Experiment { protocol, ..self.experiment.clone() };
         let whitening = Whitening::Autoregressive(0.0);
         Part { experiment, data, whitening, weights, outliers, speed, ..self.clone() }

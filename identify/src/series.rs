@@ -17,9 +17,9 @@ const SPACING: f64 = 0.55;
 const RATES: [f64; 2] = [0.2, 50.0];
 /// A narrow peak of a spectrum has twice as many rates up to so many halves of the spacing from it.
 const PEAK: i64 = 4;
-/// First time at which sums and laws agree, over the shortest; a last exponential has the integral of the law before.
+/// First time at which sums and laws agree, over the shortest; two last exponentials have the integral of the law before.
 const FIRST: f64 = 0.5;
-/// The rate of the last exponential, over the greatest other one.
+/// The lesser rate of the last two, over the greatest other one.
 const LAST: f64 = 10.0;
 /// Weight of the moduli, which makes those without effect small.
 const RIDGE: f64 = 1e-8;
@@ -53,9 +53,9 @@ impl Prony {
         if self.moduli.iter().all(|modulus| *modulus >= 0.0) {
             return self.clone();
         }
-        let relaxing = || self.rates.iter().copied().filter(|rate| *rate > 0.0);
-        let [slowest, fastest] = [relaxing().fold(f64::INFINITY, f64::min), relaxing().fold(0.0, f64::max)];
-        let times = times([1.0 / fastest, 1.0 / slowest], 3 * self.rates.len());
+        // without equilibrium and the last two
+        let rates = &self.rates[1..self.rates.len() - 2];
+        let times = times([FIRST * RATES[1] / rates[rates.len() - 1], 1.0 / rates[0]], 3 * rates.len());
         let entry = |row: usize, column: usize| (-times[row] * self.rates[column]).exp() / self.modulus(times[row]);
         let moduli = non_negative_least_squares(&vec![1.0; times.len()], self.rates.len(), entry);
         Prony { moduli, rates: self.rates.clone() }
@@ -105,12 +105,12 @@ impl Model {
         moved: impl Fn(usize, f64) -> Vec<f64>,
     ) -> Result<(Prony, Vec<Prony>)> {
         self.check(parameters)?;
-        let both = (0..coordinates).flat_map(|coordinate| [moved(coordinate, DIFFERENCE), moved(coordinate, -DIFFERENCE)]);
+        let both =
+            (0..coordinates).flat_map(|coordinate| [moved(coordinate, DIFFERENCE), moved(coordinate, -DIFFERENCE)]);
         let all: Vec<Vec<f64>> = std::iter::once(parameters.to_vec()).chain(both).collect();
         let mut sums = self.sums(&all, window);
-        let slope = |up: &[f64], down: &[f64]| {
-            up.iter().zip(down).map(|(up, down)| (up - down) / (2.0 * DIFFERENCE)).collect()
-        };
+        let slope =
+            |up: &[f64], down: &[f64]| up.iter().zip(down).map(|(up, down)| (up - down) / (2.0 * DIFFERENCE)).collect();
         let by = |pair: &[Prony]| Prony {
             moduli: slope(&pair[0].moduli, &pair[1].moduli),
             rates: slope(&pair[0].rates, &pair[1].rates),
@@ -198,8 +198,8 @@ impl Model {
     }
 }
 
-/// The sums of exponentials of given rates and an equilibrium that are nearest to some laws, relative to the first of them. A last term has
-/// E(0) and the integral of the law before the first time.
+/// The sums of exponentials of given rates and an equilibrium that are nearest to some laws, relative to the first of them. Two last
+/// terms have E(0) and the integral of the law before the first time.
 fn nearest_sums(rates: &[f64], laws: &[Box<dyn Fn(f64) -> f64>], [first, last]: [f64; 2]) -> Vec<Prony> {
     let times = times([first, last], 2 * rates.len());
     let weights: Vec<f64> = times.iter().map(|&t| 1.0 / laws[0](t)).collect();
@@ -220,11 +220,13 @@ fn nearest_sums(rates: &[f64], laws: &[Box<dyn Fn(f64) -> f64>], [first, last]: 
         let mut sum = Prony::of(moduli.zip(std::iter::once(0.0).chain(rates.iter().copied())));
         let rest = |t: f64| law(t) - sum.modulus(t);
         let (integral, instant) = (integral(&rest, first), rest(0.0));
-        let least = LAST * rates[rates.len() - 1];
-        // of all laws that of the first
-        let fast = *fast.get_or_insert(Some(instant / integral).filter(|r| *r > least && r.is_finite()).unwrap_or(least));
-        sum.moduli.push(integral * fast);
-        sum.rates.push(fast);
+        let slow = LAST * rates[rates.len() - 1];
+        // the rate of all laws is that of the first: its modulus alone has both, if that is fast enough
+        let fast =
+            *fast.get_or_insert(Some(instant / integral).filter(|r| r.is_finite()).unwrap_or(0.0).max(2.0 * slow));
+        let modulus = (instant - slow * integral) / (1.0 - slow / fast);
+        sum.moduli.extend([instant - modulus, modulus]);
+        sum.rates.extend([slow, fast]);
         sum
     };
     laws.iter().enumerate().map(sum).collect()

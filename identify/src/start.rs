@@ -68,9 +68,9 @@ fn elastic_modulus(problem: &Problem, values: &[f64]) -> f64 {
         let give = 1.0 / problem.stiffness(curve, values);
         for (z, force) in part.experiment.protocol.drive().iter().zip(&part.data) {
             let depth = z - point - give * force.max(0.0);
-            let elastic = if depth > 0.0 { tip.level_at(tip.approach(0.0) + depth) } else { 0.0 };
+            let elastic = part.scale * if depth > 0.0 { tip.level_at(tip.approach(0.0) + depth) } else { 0.0 };
             if elastic.is_finite() {
-                (product, square) = (product + elastic * force, square + elastic * elastic);
+                (product, square) = (product + elastic * part.scale * force, square + elastic * elastic);
             }
         }
     }
@@ -109,9 +109,10 @@ fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
             let samples = problem.samples(curve, values, &prony)?;
             let rest: Vec<f64> = problem.measured(curve, values, samples.iter().map(|_| 0.0));
             for ((sample, data), rest) in samples.iter().zip(&part.data).zip(rest) {
-                product += sample.force * (data - rest);
-                square += sample.force * sample.force;
-                data_square += (data - rest) * (data - rest);
+                let (force, data) = (part.scale * sample.force, part.scale * (data - rest));
+                product += force * data;
+                square += force * force;
+                data_square += data * data;
             }
         }
         let factor = product / square;

@@ -7,7 +7,7 @@ use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
 use crate::model::Model;
 use crate::problem::Problem;
-use crate::start::{check_contact, starts};
+use crate::start::{check_contact, scatter, starts};
 
 /// Rounds of fits, each with the noise of the one before.
 const MAX_ROUNDS: usize = 12;
@@ -32,6 +32,8 @@ impl Identification {
         let mut problem = self.problem(pairs)?;
         let free = problem.free().count();
         check_contact(&problem)?;
+        let scatters: Vec<f64> = problem.parts.iter().map(|part| scatter(&part.data)).collect();
+        self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
         if self.finds_noise(&problem) {
             for _ in 0..MAX_ROUNDS {
