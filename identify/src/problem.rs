@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 1e-12;
 /// Samples of a curve with which a search begins.
 const ROUGH: usize = 128;
 /// A search ends where the linearised residuals promise less than this fraction of the sum of squares; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-7, 1e-4];
+const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 
@@ -147,6 +147,13 @@ impl Problem {
         let mut all = self.model.of_contained(inner, material, self.window[1]);
         all.extend_from_slice(others);
         all
+    }
+
+    /// The same problem with the weights of curves alone.
+    pub(crate) fn without_outliers(&self) -> Problem {
+        let mut problem = self.clone();
+        problem.parts.iter_mut().for_each(|part| part.weights.fill(part.scale));
+        problem
     }
 
     /// Number of samples of all curves.

@@ -96,7 +96,7 @@ fn intervals_between_samples_cost_little() {
     let body = [("E0", 4.0e3), ("Einf", 1.0e3), ("tau", 0.5)];
     let zener = Identification::new(Model::Zener);
     let tips = [
-        ("cone", ElasticStates::cone(0.7).unwrap(), 1e-6),
+        ("cone", ElasticStates::cone(0.7).unwrap(), 1e-5),
         ("punch", ElasticStates::punch(2.0e-6).unwrap(), 1e-6),
         ("sphere", ElasticStates::sphere(5.0e-6).unwrap(), 1e-5),
     ];

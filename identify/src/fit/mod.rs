@@ -92,9 +92,10 @@ impl Fit {
         };
         let free: Vec<Parameter> = problem.free().cloned().collect();
         let scales = problem.scales(&values);
-        let (inverse, limits) = inverse(&free, &minimum.jacobian, sigma)?;
+        let (weighted, _) = inverse(&free, &minimum.jacobian, sigma)?;
         let lengths: Vec<usize> = problem.parts.iter().map(|part| part.len()).collect();
-        let sandwich = &scales * sandwich(&minimum, &inverse, &lengths) * scales.transpose();
+        let sandwich = &scales * sandwich(&minimum, &weighted, &lengths) * scales.transpose();
+        let (inverse, limits) = inverse(&free, &problem.without_outliers().jacobian(&minimum.coordinates)?, sigma)?;
         let covariance = &scales * &inverse * scales.transpose();
         let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
         let mut at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
