@@ -29,6 +29,9 @@ const NODES: f64 = 0.5;
 /// Width of coordinates over which derivatives of the terms are taken.
 const DIFFERENCE: f64 = 1e-5;
 
+/// E(t).
+type Relaxation = Box<dyn Fn(f64) -> f64>;
+
 /// A sum of exponentials: E(t) = Σ Ek exp(−t ratek). A rate of 0 is the equilibrium modulus.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Prony<T = f64> {
@@ -162,7 +165,7 @@ impl Model {
     }
 
     /// E(t) of a model that is no sum of a few exponentials, between the times that some rates show.
-    fn law(&self, parameters: &[f64], rates: &[f64]) -> Box<dyn Fn(f64) -> f64> {
+    fn law(&self, parameters: &[f64], rates: &[f64]) -> Relaxation {
         match (*self, parameters) {
             (Model::PowerLaw { cutoff }, &[e1, alpha]) => Box::new(move |t| e1 * (t + cutoff).powf(-alpha)),
             (Model::PowerLawSolid { cutoff }, &[e1, alpha, einf]) => {
@@ -200,7 +203,7 @@ impl Model {
 
 /// The sums of exponentials of given rates and an equilibrium that are nearest to some laws, relative to the first of them. Two last
 /// terms have E(0) and the integral of the law before the first time.
-fn nearest_sums(rates: &[f64], laws: &[Box<dyn Fn(f64) -> f64>], [first, last]: [f64; 2]) -> Vec<Prony> {
+fn nearest_sums(rates: &[f64], laws: &[Relaxation], [first, last]: [f64; 2]) -> Vec<Prony> {
     let times = times([first, last], 2 * rates.len());
     let weights: Vec<f64> = times.iter().map(|&t| 1.0 / laws[0](t)).collect();
     let columns = rates.len() + 1;
@@ -215,11 +218,11 @@ fn nearest_sums(rates: &[f64], laws: &[Box<dyn Fn(f64) -> f64>], [first, last]: 
     });
     let solved = matrix.qr().solve_lstsq(&right);
     let mut fast = None;
-    let sum = |(column, law): (usize, &Box<dyn Fn(f64) -> f64>)| {
+    let sum = |(column, law): (usize, &Relaxation)| {
         let moduli = (0..columns).map(|row| solved[(row, column)]);
         let mut sum = Prony::of(moduli.zip(std::iter::once(0.0).chain(rates.iter().copied())));
         let rest = |t: f64| law(t) - sum.modulus(t);
-        let (integral, instant) = (integral(&rest, first), rest(0.0));
+        let (integral, instant) = (integral(rest, first), rest(0.0));
         let slow = LAST * rates[rates.len() - 1];
         // the rate of all laws is that of the first: its modulus alone has both, if that is fast enough
         let fast =
@@ -327,10 +330,18 @@ mod tests {
             of[0] * (-t / of[1]).exp() + of[2] * (-t / of[3]).exp()
         }
         let custom = Law { name: "Burgers", parameters: &["E1", "tau1", "E2", "tau2"], modulus: burgers };
-        let cases: [(Model, Vec<f64>, &dyn Fn(f64) -> f64); 3] = [
-            (Model::Stretched, vec![3.0, 1.0, 0.3, 0.4], &|t| 1.0 + 2.0 * (-(t / 0.3).powf(0.4)).exp()),
-            (Model::PowerLawSolid { cutoff: 1e-5 }, vec![3.0, 0.4, 1.0], &|t| 1.0 + 3.0 * (t + 1e-5).powf(-0.4)),
-            (Model::Custom(custom), vec![1.0, 0.1, 2.0, 20.0], &|t| burgers(&[1.0, 0.1, 2.0, 20.0], t)),
+        let cases: [(Model, Vec<f64>, Relaxation); 3] = [
+            (Model::Stretched, vec![3.0, 1.0, 0.3, 0.4], Box::new(|t| 1.0 + 2.0 * (-(t / 0.3).powf(0.4)).exp())),
+            (
+                Model::PowerLawSolid { cutoff: 1e-5 },
+                vec![3.0, 0.4, 1.0],
+                Box::new(|t| 1.0 + 3.0 * (t + 1e-5).powf(-0.4)),
+            ),
+            (
+                Model::Custom(custom),
+                vec![1.0, 0.1, 2.0, 20.0],
+                Box::new(|t| (-t / 0.1).exp() + 2.0 * (-t / 20.0).exp()),
+            ),
         ];
         for (model, parameters, exact) in cases {
             let prony = model.prony(&parameters, [1e-3, 10.0]).unwrap();

@@ -69,6 +69,7 @@ pub struct Fit {
     log_weight: f64,
     iterations: usize,
     work: usize,
+    window: [f64; 2],
     /// The least sum of squares of a model that this one contains.
     contained: Option<(Model, f64)>,
 }
@@ -153,6 +154,7 @@ impl Fit {
             log_weight: problem.parts.iter().map(|part| part.log_weight()).sum(),
             iterations: minimum.iterations,
             work: problem.work.get(),
+            window: problem.window,
             contained,
         })
     }
@@ -328,9 +330,7 @@ impl Fit {
 
     /// Shortest interval and longest curve \[s\].
     pub(crate) fn window(&self) -> [f64; 2] {
-        let times = || self.curves.iter().map(|curve| curve.experiment.protocol.times());
-        let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
-        [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)]
+        self.window
     }
 
     /// The value of the contact point of a curve \[m\].
