@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 1e-12;
 /// Samples of a curve with which a search begins.
 const ROUGH: usize = 128;
 /// A search ends where the linearised residuals promise less than this fraction of the sum of squares; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-10, 1e-4];
+const ENOUGH: [f64; 2] = [1e-12, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 

@@ -137,7 +137,7 @@ fn searches_take_little_work() {
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 5),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 5),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 5),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 15),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 25),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 8),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 8),
     ];
