@@ -103,10 +103,21 @@ pub fn raised_number<T>(result: PyResult<T>, nan: T) -> T {
     })
 }
 
+/// Raises the exception of a function whose NaN the crate does not look at.
+pub fn no_exception() -> PyResult<()> {
+    raised().map_or(Ok(()), Err)
+}
+
 static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
 
 fn raised() -> Option<PyErr> {
     RAISED.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// Raises the violation of a law of a trait, or what a function of the user raised meanwhile.
+pub fn no_violation(verdict: Result<(), viscocontact::rheology::laws::Violation>) -> PyResult<()> {
+    no_exception()?;
+    verdict.map_err(|violation| PyValueError::new_err(violation.to_string()))
 }
 
 /// The option of this name, or an error that lists the names.

@@ -248,6 +248,18 @@ impl MasterCurve {
             .collect()
     }
 
+    /// Temperature [K] and vertical factor of each isotherm.
+    #[getter]
+    fn vertical_factors(&self) -> Vec<(f64, f64)> {
+        self.0.vertical_factors()
+    }
+
+    /// Temperature [K] of each isotherm, and how far it is off its neighbours where they overlap, relative.
+    #[getter]
+    fn disagreements(&self) -> Vec<(f64, f64)> {
+        self.0.disagreements()
+    }
+
     /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`.
     fn wlf(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
         let law = self.0.wlf().or_raise()?;
