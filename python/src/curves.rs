@@ -13,7 +13,7 @@ use viscocontact_identify as id;
 use crate::arrays::{Array, column, to_array};
 use crate::errors::{OrRaise, choice, no_exception, raised_number};
 use crate::loads::{Load, LoadHistory};
-use crate::measured::text_format;
+use crate::measured::text_table;
 use crate::states::ElasticStates;
 
 /// A drive and the tip that it presses onto the sample, before the force is measured.
@@ -170,7 +170,7 @@ impl Curve {
     ///
     /// >>> tip = ElasticStates.sphere(10e-6)
     /// >>> experiment = Experiment.trapezoid(0.2e-6, (1.0, 1.0, 1.0), 0.01, tip)
-    /// >>> force, _ = Identification("elastic").respond(experiment, {"E0": 1e9})
+    /// >>> force, _ = Identification("elastic").respond(experiment, {"E": 1e9})
     /// >>> read = Curve(experiment, force).oliver_pharr(0.0, lambda h: 6.2832 * 10e-6 * h)
     /// >>> abs(read["modulus"] / 1e9 - 1) < 0.02
     /// True
@@ -300,11 +300,15 @@ impl Recording {
         Ok(Recording(recording))
     }
 
-    /// Reads a text file whose headings name the columns and their units.
+    /// Reads a text file whose headings name the columns and their units, with the keywords of `Measurements.from_csv`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, decimal_comma=None))]
-    fn from_csv(py: Python<'_>, path: PathBuf, decimal_comma: Option<bool>) -> PyResult<Recording> {
-        py.detach(|| id::Recording::from_csv(path, text_format(decimal_comma))).or_raise().map(Recording)
+    #[pyo3(
+        signature = (path, **reading),
+        text_signature = "(path, *, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
+    )]
+    fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<Recording> {
+        let table = text_table(path, reading)?;
+        py.detach(|| id::Recording::from_table(&table)).or_raise().map(Recording)
     }
 
     /// The same with the other sign of force and deflection.

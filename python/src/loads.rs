@@ -241,7 +241,8 @@ impl LoadHistory {
     /// first violation.
     fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
         let times = column("times", times)?;
-        no_violation(py.detach(|| ld::laws::all(&*self.history, &times)))
+        let verdict = py.detach(|| ld::laws::all(&*self.history, &times));
+        self.history.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
     }
 }
 

@@ -279,8 +279,8 @@ impl HeightMap {
     /// A self-affine random surface of whole periods, of the lengths of `grid`: a periodic map.
     ///
     /// Waves run from `longest` to `shortest` [m] with the Hurst exponent `hurst`; longer than `roll_off` their spectrum is flat. Give
-    /// `rms_slope` or `rms_height` [m]. `anisotropy` is (ratio, direction [rad]). With a `period` [m], longer than the grid, the map is a part
-    /// of the surface and does not repeat. The same seed gives the same surface everywhere.
+    /// `rms_slope` or `rms_height` [m]. `anisotropy` is (ratio, direction [rad]). With a `period` [m], longer than the grid, the map
+    /// is one period, of which the grid holds a part. The same seed gives the same surface everywhere.
     ///
     /// >>> HeightMap.rough(Grid(64, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.1, seed=3).statistics()["rms_slope"].__round__(3)
     /// 0.1

@@ -54,7 +54,7 @@ pub fn settings(base: Settings, given: &Bound<'_, PyDict>) -> PyResult<Settings>
     })
 }
 
-fn unexpected(name: &str) -> PyErr {
+pub fn unexpected(name: &str) -> PyErr {
     PyTypeError::new_err(format!("got an unexpected keyword argument '{name}'"))
 }
 

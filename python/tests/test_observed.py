@@ -68,7 +68,7 @@ def test_mixed_tilts():
     contact.step(0.0, vc.Load.force(1.0, at=(0.2e-3, None), tilt=(None, 1e-4)))
     assert contact.tilt[1] == 1e-4 and repr(contact.load) == "Load.force(1.0, at=(0.0002, None), tilt=(None, 0.0001))"
     contact.step(0.0, vc.Load.approach(contact.approach, at=(0.0, 0.0)))
-    assert contact.tilt == pytest.approx((0, 0), abs=1e-9)
+    assert contact.tilt == pytest.approx((0, 0), abs=1e-6)
     with pytest.raises(TypeError, match="not both"):
         vc.Load.force(1.0, at=(0.0, 0.0), tilt=(1e-3, None))
     tilted = vc.ElasticStates.sweep(vc.Grid(32, 4e-3), punch + BALL, level=1e-6, at=(0.1e-3, None))
@@ -97,7 +97,7 @@ def test_stress():
     own = vc.SubsurfaceStress(vc.InfluenceKernel.half_space(contact.grid), contact.pressure, 0.5)
     volume = stress.in_volume(depths)
     assert volume.shape == (3, 32, 32, 6) and own.on_plane(2e-4) == pytest.approx(volume[1], rel=1e-9, abs=1e-6)
-    assert stress.in_volume(depths, quantity="von_mises").max() == stress.on_plane(2e-4, quantity="von_mises").max()
+    assert (stress.in_volume(depths, quantity="von_mises")[1] == stress.on_plane(2e-4, quantity="von_mises")).all()
     positions, section = stress.on_section(0, 0.0, depths, quantity="tresca")
     assert section.shape == (32, 3) and len(positions) == 32
     s = volume[1, 16, 16]
@@ -105,7 +105,7 @@ def test_stress():
     assert mean == pytest.approx([s[:3].mean()], rel=1e-9)
     with pytest.raises(ValueError, match='"von_mises", "tresca"'):
         stress.on_plane(1e-4, quantity="mises")
-    with pytest.raises(ValueError, match="pressure: the shape"):
+    with pytest.raises(ValueError, match="pressure: two axes"):
         vc.SubsurfaceStress(vc.InfluenceKernel.half_space(contact.grid), np.ones(3), 0.5)
 
 
@@ -208,14 +208,14 @@ def test_pictures(tmp_path):
     whole.save(tmp_path / "whole.png"), whole.save(tmp_path / "whole.svg")
     with pytest.raises(OSError, match="png"):
         whole.save(tmp_path / "whole.jpg")
-    with pytest.raises(ValueError, match="values: the shape"):
+    with pytest.raises(ValueError, match="values: two axes"):
         vc.Picture.map(contact.grid, np.ones(3), "pressure")
 
 
 def test_own_models_are_checked():
     times, grid = np.geomspace(1e-3, 1e3, 50), vc.Grid(16, 1e-3)
     vc.Rheology.zener(1e6, 1e6, 1.0).check(times), BALL.check(grid), vc.LoadHistory.held(vc.Load.force(1.0)).check(times)
-    with pytest.raises(ValueError, match="concave"):
+    with pytest.raises(ValueError, match="creep rate never increases"):
         vc.Rheology.function(lambda t: 1e-6 * (1 + t**2)).check(times)
     with pytest.raises(ValueError, match="touch"):
         vc.Shape.function(lambda x1, x2: float("inf")).check(grid)
@@ -246,9 +246,9 @@ def test_more_of_materials():
 
 def test_more_of_surfaces():
     grid = vc.Grid(32, 1e-3)
-    part = vc.HeightMap.rough(grid, 1e-3, 0.1e-3, rms_height=1e-6, period=2e-3)
+    longer = vc.HeightMap.rough(grid, 1e-3, 0.1e-3, rms_height=1e-6, period=2e-3)
     whole = vc.HeightMap.rough(grid, 1e-3, 0.1e-3, rms_height=1e-6)
-    assert whole.is_periodic and not part.is_periodic and whole.center == (0, 0)
+    assert whole.is_periodic and whole.center == (0, 0) and longer.shape == (64, 64) and longer.gap(grid).shape == (32, 32)
     heights, density = whole.height_distribution(10).T
     assert density.sum() * (heights[1] - heights[0]) == pytest.approx(1)
     ramp = vc.HeightMap(np.add.outer(np.arange(8) * 1e-6, np.zeros(8)), 8e-3)
@@ -323,7 +323,7 @@ def test_contact_points_of_each_curve(curve):
 def test_parts_of_curves(curve):
     assert len(curve.within(0.0, 0.5)) == 25 and len(curve.approach()) < len(curve.loading()) < len(curve)
     assert len(curve.until_release()) <= len(curve) and curve.pull_off() is None
-    elastic, _ = vc.Identification("elastic").respond(curve.experiment, {"E0": 1e4})
+    elastic, _ = vc.Identification("elastic").respond(curve.experiment, {"E": 1e4})
     read = vc.Curve(curve.experiment, elastic).oliver_pharr(0.0, lambda h: 2 * np.pi * 5e-6 * h)
     assert read["modulus"] == pytest.approx(1e4, rel=0.1)
     with pytest.raises(ZeroDivisionError):
@@ -332,16 +332,30 @@ def test_parts_of_curves(curve):
     assert hold["glassy"] == pytest.approx(hold["equilibrium"] + hold["relaxing"])
 
 
-def test_planned_experiments(tmp_path):
+def test_planned_experiments():
     tip = vc.ElasticStates.sphere(5e-6)
     stairs = vc.Experiment.staircase([1e-6, 2e-6], 0.1, 1.0, 0.05, tip)
     assert stairs.drive.max() == 2e-6 and stairs.times[-1] == pytest.approx(2.2)
     afm = vc.Experiment.ramp_hold_retract(2e-6, 1e-6, 3e-6, 5.0, 0.01, tip, stiffness=0.1)
     assert afm.drive[0] == -1e-6 and afm.times[-1] == pytest.approx(9.0)
     assert afm.load_history().at(3.0) == vc.Load.spring(0.1, 3e-6)
-    (tmp_path / "curve.csv").write_text("time [s],force [nN]\n" + "\n".join(f"{k},{k}" for k in range(5)))
-    columns = vc.Recording.from_csv(tmp_path / "curve.csv").columns
-    assert [column[1] for column in columns] == [0, 1] and columns[1][2] == "force [nN]"
+
+
+def test_text_files_are_read_as_told(tmp_path):
+    rows = "\n".join(f"{k};{k},5;{2 * k},0;0" for k in range(5))
+    (tmp_path / "curve.txt").write_text("made by a machine\nt [s];force [nN];base [um];other force [nN]\n" + rows)
+    told = dict(skipped_lines=1, delimiter="semicolon", decimal_comma=True)
+    for choice in ({"headings": {3: ""}}, {"only": ["t", "force", "base"]}):
+        recording = vc.Recording.from_csv(tmp_path / "curve.txt", **told, **choice)
+        assert recording.column("force") == pytest.approx((np.arange(5) + 0.5) * 1e-9)
+        assert [column[1:] for column in recording.columns][:2] == [(0, "t [s]"), (1, "force [nN]")]
+    with pytest.raises(OSError, match="absent"):
+        vc.Recording.from_csv(tmp_path / "curve.txt", **told, only=["absent"])
+    with pytest.raises(TypeError, match="unexpected keyword argument 'skip'"):
+        vc.Recording.from_csv(tmp_path / "curve.txt", skip=1)
+    (tmp_path / "creep.txt").write_text("\n".join(f"{t}\t{1 + t / (1 + t)}" for t in (0.1, 0.3, 1, 3, 10, 100)))
+    creep = vc.Measurements.from_csv("creep", tmp_path / "creep.txt", delimiter="tab", units=(1.0, 1e-6))
+    assert creep.fit().creep_compliance(1.0) == pytest.approx(1.5e-6, rel=0.05)
 
 
 def test_exceptions_of_functions_on_two_threads():

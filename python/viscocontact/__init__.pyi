@@ -490,8 +490,12 @@ class MasterCurve:
         reference: float,
         *,
         units: Literal["headings"] | tuple[float, float] | None = None,
-        decimal_comma: bool | None = None,
         vertical_shifts: bool = False,
+        decimal_comma: bool | None = None,
+        delimiter: Literal["comma", "semicolon", "tab", "blanks"] | None = None,
+        skipped_lines: int = 0,
+        headings: dict[int, str] | None = None,
+        only: Sequence[str] | None = None,
     ) -> MasterCurve: ...
     @property
     def shift_factors(self) -> list[tuple[float, float, float]]: ...
@@ -545,6 +549,10 @@ class Measurements:
         *,
         units: Literal["headings"] | tuple[float, float] | None = None,
         decimal_comma: bool | None = None,
+        delimiter: Literal["comma", "semicolon", "tab", "blanks"] | None = None,
+        skipped_lines: int = 0,
+        headings: dict[int, str] | None = None,
+        only: Sequence[str] | None = None,
     ) -> Measurements: ...
     def with_scatter(self, scatter: float) -> Measurements: ...
     def fit(self, extrapolated: bool = False) -> Rheology: ...
@@ -599,7 +607,15 @@ class Recording:
         depth: ArrayLike | None = None,
     ) -> Recording: ...
     @staticmethod
-    def from_csv(path: _StrPath, *, decimal_comma: bool | None = None) -> Recording: ...
+    def from_csv(
+        path: _StrPath,
+        *,
+        decimal_comma: bool | None = None,
+        delimiter: Literal["comma", "semicolon", "tab", "blanks"] | None = None,
+        skipped_lines: int = 0,
+        headings: dict[int, str] | None = None,
+        only: Sequence[str] | None = None,
+    ) -> Recording: ...
     def flip_force(self) -> Recording: ...
     def flip_drive(self) -> Recording: ...
     def column(self, name: Literal["times", "force", "deflection", "drive", "depth"]) -> Any | None: ...
