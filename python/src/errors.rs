@@ -41,7 +41,7 @@ impl<T> OrRaise<T> for Result<T, IdentifyError> {
     fn or_raise(self) -> PyResult<T> {
         self.map_err(|error| match &error {
             IdentifyError::Contact(error) => raise(error),
-            IdentifyError::NotConverged { .. } => ConvergenceError::new_err(error.to_string()),
+            IdentifyError::NotConverged { .. } => ConvergenceError::new_err(in_python(error)),
             IdentifyError::Unwritable { .. } => PyOSError::new_err(with_causes(&error)),
             _ => PyValueError::new_err(with_causes(&error)),
         })
@@ -79,7 +79,12 @@ fn with_causes(error: &dyn StdError) -> String {
         }
         cause = error.source();
     }
-    text
+    in_python(text)
+}
+
+/// A message with the names of methods as Python writes them.
+pub fn in_python(text: impl ToString) -> String {
+    text.to_string().replace("::", ".")
 }
 
 /// The exception that a function of the user raised, among the causes of an error.

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
 use crate::arrays::{Array, mapped, to_array};
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, in_python};
 use crate::grid::Grid;
 use crate::materials::Material;
 use crate::pictures::Picture;
@@ -227,7 +227,7 @@ getters! {Fit, of:
     /// The identified parameters, of the material first.
     estimates: Vec<Estimate> = of.estimates().iter().cloned().map(Estimate).collect();
     /// What a user should know before the parameters are used, a line each.
-    warnings: Vec<String> = of.warnings().iter().map(ToString::to_string).collect();
+    warnings: Vec<String> = of.warnings().iter().map(in_python).collect();
     /// Standard deviation of the noise [N].
     sigma: f64 = of.sigma();
     /// Akaike's criterion, corrected for the number of samples: less is better.

@@ -4,6 +4,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::contact as ct;
 
+use crate::errors::in_python;
+
 /// The outcome and the cost of one step.
 #[pyclass(frozen, module = "viscocontact")]
 pub struct StepReport(pub ct::StepReport);
@@ -26,7 +28,7 @@ impl StepReport {
             "time_error": of.time_error,
             "iterations": of.iterations,
             "fallback_iterations": of.fallback_iterations,
-            "warnings": of.messages().collect::<Vec<_>>(),
+            "warnings": self.warnings(),
         })
     }
 
@@ -81,7 +83,7 @@ getters! {StepReport, of:
     /// Residual reached, in the measure of the setting `tolerance`.
     residual: f64 = of.residual;
     /// Reasons why the result may be less accurate than expected, a line each.
-    warnings: Vec<String> = of.messages().collect();
+    warnings: Vec<String> = of.messages().map(in_python).collect();
 }
 
 /// The state of one rigid body.
