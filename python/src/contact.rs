@@ -22,7 +22,7 @@ use crate::scene::builder;
 use crate::shapes::{Shape, geometries};
 
 /// Steps on more cells, ...
-const MANY_CELLS: usize = 1 << 15;
+const MANY_CELLS: usize = 1 << 17;
 /// ... and steps after one that took longer are computed while the thread that called listens for Ctrl-C.
 const LONG: Duration = Duration::from_millis(10);
 
