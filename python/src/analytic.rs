@@ -58,12 +58,7 @@ impl GrowingSphere {
 
 /// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
 #[pyfunction]
-pub fn hertz_ellipse<'py>(
-    py: Python<'py>,
-    radii: [f64; 2],
-    modulus: f64,
-    force: f64,
-) -> PyResult<Bound<'py, PyDict>> {
+pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
     let of = an::HertzEllipse::new(radii, modulus, force).or_raise()?;
     Ok(dict! { py; "semi_axes": of.semi_axes, "max_pressure": of.max_pressure, "approach": of.approach })
 }
@@ -241,13 +236,7 @@ impl OpeningEdge {
 
     /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the greatest pull: "force" [N], "approach" and
     /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²].
-    fn pull_off<'py>(
-        &self,
-        py: Python<'py>,
-        radius: f64,
-        approach: f64,
-        speed: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
         let of = py.detach(|| self.0.pull_off(radius, approach, speed)).or_raise()?;
         Ok(dict! { py;
             "force": of.force,

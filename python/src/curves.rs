@@ -174,12 +174,7 @@ impl Curve {
     /// >>> read = Curve(experiment, force).oliver_pharr(0.0, lambda h: 6.2832 * 10e-6 * h)
     /// >>> abs(read["modulus"] / 1e9 - 1) < 0.02
     /// True
-    fn oliver_pharr<'py>(
-        &self,
-        py: Python<'py>,
-        contact_point: f64,
-        area: Py<PyAny>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Py<PyAny>) -> PyResult<Bound<'py, PyDict>> {
         let area = |h: f64| raised_number(Python::attach(|py| area.call1(py, (h,))?.extract(py)), f64::NAN);
         let of = py.detach(|| id::usual::oliver_pharr(&self.0, contact_point, area)).or_raise();
         no_exception()?;

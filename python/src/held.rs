@@ -7,12 +7,12 @@ use std::time::Duration;
 
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
+use viscocontact as vc;
 use viscocontact::contact::Contact;
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::{Elastic, Material};
 use viscocontact::run::{self as vr, Crossing, RunContact, Stepping};
 use viscocontact::states::{ElasticStates, StatesContact as InStates};
-use viscocontact as vc;
 
 use crate::arrays::column;
 use crate::errors::OrRaise;

@@ -190,7 +190,8 @@ getters! {Identification, of:
 /// Raises ValueError if fits are of different curves.
 #[pyfunction]
 pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Fit, f64, f64)>> {
-    let fits: Vec<id::Fit> = fits.iter().filter_map(|fit| fit.cast::<Fit>().ok()).map(|fit| fit.get().0.clone()).collect();
+    let fits: Vec<id::Fit> =
+        fits.iter().filter_map(|fit| fit.cast::<Fit>().ok()).map(|fit| fit.get().0.clone()).collect();
     let ranked = id::ranked(fits.into_iter().map(Ok)).or_raise()?;
     Ok(ranked.into_iter().map(|(fit, difference, weight)| (Fit(fit), difference, weight)).collect())
 }

@@ -63,11 +63,11 @@ mod _native {
     #[pymodule_export]
     use crate::errors::{Cancelled, ConvergenceError};
     #[pymodule_export]
+    use crate::fits::{Estimate, Fit, write_fits};
+    #[pymodule_export]
     use crate::grid::Grid;
     #[pymodule_export]
     use crate::held::Times;
-    #[pymodule_export]
-    use crate::fits::{Estimate, Fit, write_fits};
     #[pymodule_export]
     use crate::identify::{Identification, drainage_or_creep, ranked};
     #[pymodule_export]

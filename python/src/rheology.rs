@@ -168,13 +168,7 @@ impl Rheology {
 
     /// The fractional standard linear solid whose modulus relaxes from `glassy` to `rubbery` [Pa], of relaxation `time` [s].
     #[staticmethod]
-    fn fractional_relaxing(
-        py: Python<'_>,
-        glassy: f64,
-        rubbery: f64,
-        time: f64,
-        exponent: f64,
-    ) -> PyResult<Rheology> {
+    fn fractional_relaxing(py: Python<'_>, glassy: f64, rubbery: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
         let body = rh::FractionalZener::relaxing(glassy, rubbery, time, exponent).or_raise()?;
         Rheology::made(py, "fractional_relaxing", (glassy, rubbery, time, exponent), Arc::new(body))
     }

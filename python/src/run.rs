@@ -292,10 +292,7 @@ fn kept<C: Led>(sample: &vr::Sample<'_, C>) -> (Report, Option<vr::FieldReport>,
 }
 
 /// What the samples that were asked for have.
-pub fn asked_for<C: Led, T>(
-    run: &vr::Run<'static, C>,
-    of: impl Fn(&vr::Sample<'_, C>) -> T,
-) -> vc::Result<Vec<T>> {
+pub fn asked_for<C: Led, T>(run: &vr::Run<'static, C>, of: impl Fn(&vr::Sample<'_, C>) -> T) -> vc::Result<Vec<T>> {
     let samples = run.samples().filter(|sample| sample.as_ref().map_or(true, |sample| sample.is_asked_for()));
     samples.map(|sample| sample.map(|sample| of(&sample))).collect()
 }

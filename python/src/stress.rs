@@ -111,12 +111,7 @@ impl SubsurfaceStress {
 
     /// The components at points (x1, x2, depth) [m], an array of shape (n, 3): an array of shape (n, 6).
     #[pyo3(signature = (points, *, quantity=None))]
-    fn at<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyAny>,
-        quantity: Option<&str>,
-    ) -> PyResult<Array<'py>> {
+    fn at<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>, quantity: Option<&str>) -> PyResult<Array<'py>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
         let values = py.detach(|| self.0.at(&points)).or_raise()?;
         shown(py, &values, quantity, &[points.len()])
