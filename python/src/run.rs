@@ -263,6 +263,7 @@ pub fn as_table(py: Python<'_>, columns: [Vec<f64>; 4]) -> PyResult<Bound<'_, Py
 }
 
 type Quantity<C> = Box<dyn Fn(&C) -> f64 + Send + Sync>;
+type Named<C> = (&'static str, fn(&C) -> f64);
 
 /// The quantity of a name, or of a function of the contact.
 fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) -> PyResult<Quantity<C>> {
@@ -276,7 +277,7 @@ fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) ->
     }
     let needed = "quantity: a name or a function of the contact is needed";
     let name: String = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
-    let all: [(&str, fn(&C) -> f64); 4] = [
+    let all: [Named<C>; 4] = [
         ("force", |contact| contact.force()),
         ("approach", |contact| contact.approach()),
         ("contact_area", |contact| contact.contact_area()),

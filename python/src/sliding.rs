@@ -193,6 +193,9 @@ impl SteadySliding {
 /// A column of a table, by name.
 type Column = (&'static str, fn(&sl::SweptState) -> f64);
 
+/// A column in a picture: name, unit and value.
+type Shown = (&'static str, &'static str, fn(&sl::SlidingReport) -> f64);
+
 const COLUMNS: [Column; 11] = [
     ("velocity1", |state| state.report.velocity[0]),
     ("velocity2", |state| state.report.velocity[1]),
@@ -226,7 +229,7 @@ impl SlidingTable {
     /// A picture of a column over the speed, a curve for each temperature and load.
     #[pyo3(signature = (column="friction"))]
     fn picture(&self, py: Python<'_>, column: &str) -> PyResult<Picture> {
-        let charts: [(&str, (&str, &str, fn(&sl::SlidingReport) -> f64)); 5] = [
+        let charts: [(&str, Shown); 5] = [
             ("friction", ("coefficient of friction", "", sl::SlidingReport::friction)),
             ("approach", ("approach", "m", |report| report.approach)),
             ("contact_area", ("contact area", "m²", |report| report.contact_area)),
