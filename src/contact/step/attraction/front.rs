@@ -1,0 +1,82 @@
+//! The edge of a line contact that runs over many cells within a step.
+//!
+//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where cells were lost several times,
+//! the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
+//! cells that are left, since the edge may stop. The trial is kept where the energy falls.
+
+/// Losses after which the profile is moved.
+const LOSSES: usize = 8;
+/// The part of the contact by which each edge is moved at most, and losses between a failure and the next trial.
+const MOST: usize = 16;
+const PAUSE: usize = 4;
+
+/// How the edge has moved so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Front {
+    /// Whether there are edges to move: of a line contact, whose cells begin at its middle where it is folded.
+    is_line: bool,
+    folded: bool,
+    touching: usize,
+    /// How often cells were lost, less a pause.
+    losses: usize,
+    span: usize,
+}
+
+/// Where the profile of a contact was before it moved.
+pub(super) struct Moved {
+    by: usize,
+    /// The middles of the parts in contact.
+    middles: Vec<f64>,
+}
+
+impl Front {
+    pub(super) fn new(cells: [usize; 2], folded: [bool; 2]) -> Front {
+        let is_line = cells.contains(&1);
+        Front { is_line, folded: folded[usize::from(cells[0] == 1)], touching: 0, losses: 0, span: 1 }
+    }
+
+    /// Looks at the cells that touch; returns how the profile is to be moved.
+    pub(super) fn look(&mut self, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
+        if !self.is_line {
+            return None;
+        }
+        let (mut parts, mut start, mut touching) = (Vec::new(), None, 0);
+        for k in 0..=cells {
+            if k < cells && touches(k) {
+                (start, touching) = (start.or(Some(k)), touching + 1);
+            } else if let Some(first) = start.take() {
+                parts.push((first, k));
+            }
+        }
+        let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
+        self.losses += usize::from(lost > 0);
+        if lost == 0 || self.losses < LOSSES {
+            return None;
+        }
+        let at_mirror = |first: usize| self.folded && first == 0;
+        let of_part = |&(first, end): &(usize, usize)| if at_mirror(first) { 2 * end } else { end - first };
+        let longest = parts.iter().map(of_part).max()?;
+        let middle = |&(first, end): &(usize, usize)| if at_mirror(first) { -0.5 } else { 0.5 * (first + end) as f64 };
+        let by = (lost.div_ceil(2 * parts.len()) * self.span).min(longest / MOST).max(1);
+        Some(Moved { by, middles: parts.iter().map(middle).collect() })
+    }
+
+    /// Takes note of whether the profile that was moved is kept.
+    pub(super) fn learn(&mut self, kept: bool) {
+        if kept {
+            self.span *= 2;
+        } else {
+            self.span = (self.span / 2).max(1);
+            self.losses = LOSSES.saturating_sub(PAUSE);
+        }
+    }
+}
+
+impl Moved {
+    /// The cell whose value cell `k` of so many takes.
+    pub(super) fn source(&self, k: usize, cells: usize) -> usize {
+        let off = |middle: &f64| k as f64 - middle;
+        let nearest = self.middles.iter().map(off).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+        if nearest < 0.0 { k.saturating_sub(self.by) } else { (k + self.by).min(cells - 1) }
+    }
+}
