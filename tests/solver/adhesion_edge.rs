@@ -48,7 +48,7 @@ fn the_attraction_beyond_the_edge_is_measured() {
         });
         println!("{law:?}, side {side}: {beyond:.1e} beyond the edge, found {found:?}");
         let share = found[0].unwrap_or(0.0);
-        assert!((share - found[1].unwrap_or(0.0)).abs() <= 1e-3 * share, "symmetry");
+        assert!((share - found[1].unwrap_or(0.0)).abs() <= 5e-3 * share, "symmetry");
         match found[0] {
             Some(share) => {
                 assert!((0.5..2.0).contains(&(share / beyond)), "{law:?}, {side}: {share} {beyond}");

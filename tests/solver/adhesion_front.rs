@@ -46,10 +46,7 @@ fn an_edge_that_runs_ends() {
     let cells = from_environment("ADHESION_FRONT", 512) as usize;
     let line = |grid: &Grid, layer: Layer| InfluenceKernel::layer_line(grid, layer, None);
     let periodic = |grid: &Grid, layer: Layer| InfluenceKernel::layer_periodic(grid, layer);
-    let kernels: [(&str, &dyn Fn(&Grid, Layer) -> Result<InfluenceKernel, Error>); 2] =
-        [("periodic", &periodic), ("line", &line)];
-    for (name, kernel) in kernels {
-        let (apart, passes, work) = pull_off(cells, kernel);
+    for (name, (apart, passes, work)) in [("periodic", pull_off(cells, &periodic)), ("line", pull_off(cells, &line))] {
         let most = passes[passes.len() - 1];
         println!(
             "{cells} cells, {name}: apart at {apart:.3}; passes: median {}, most {most}; equivalents: all {:.0}, most {}",

@@ -130,7 +130,7 @@ fn check_honesty(features: Features, count: (&'static str, u64)) {
 #[test]
 fn errors_of_surfaces_that_attract_are_honest() {
     let [scenes, seed, first, most_steps] =
-        [("HONEST_ATTRACTED", 5), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", 2000)]
+        [("HONEST_ATTRACTED", 2), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", 2000)]
             .map(|(name, default)| from_environment(name, default));
     let mut ratios: [Ratios; 2] = Default::default();
     let (mut unknown, mut unjudged) = (0, 0);

@@ -34,6 +34,8 @@ const ROUNDING: f64 = 1e-13;
 /// is r over the curvature. The least of so many iterations counts.
 const SOFT: f64 = 0.1;
 const REMEMBERED: usize = 8;
+/// Iterations that lose cells before the edge of a line contact is moved on.
+const LOSSES: usize = 16;
 /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
 const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
@@ -122,7 +124,7 @@ impl AttractedStep<'_> {
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
         let (mut steepest, mut has_last, mut softness) = (0.0, false, [1.0_f64; REMEMBERED]);
-        let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded()));
+        let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
         for iteration in 0..=MAX_ITERATIONS {
             let gradient = self.gradient(balance, window, trial);
             if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
@@ -193,7 +195,7 @@ impl AttractedStep<'_> {
             own.last[1].copy_from_slice(&trial.solution.pressure);
             let Trial { gap, solution, .. } = &*trial;
             let (x, cells) = (&solution.potential, gap.len());
-            if let Some(profile) = front.look(cells, |k| gap[k] + x[k] <= 0.0) {
+            if let Some(profile) = front.look((gradient.greatest, curvature <= 0.0), cells, |k| gap[k] + x[k] <= 0.0) {
                 for (k, tried) in own.far.iter_mut().enumerate() {
                     let from = profile.source(k, cells);
                     let rise = gap[from] - gap[k];

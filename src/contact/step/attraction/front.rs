@@ -1,11 +1,12 @@
 //! The edge of a line contact that runs over many cells within a step.
 //!
-//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where cells were lost several times,
-//! the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
+//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where the energy bends down, and cells
+//! were lost several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
 //! cells that are left, since the edge may stop. The trial is kept where the energy falls.
 
-/// Losses after which the profile is moved.
-const LOSSES: usize = 8;
+/// Losses count anew where the residual falls to this part, or below so much of the greatest traction.
+const FALLEN: f64 = 0.3;
+const FINE: f64 = 0.01;
 /// The part of the contact by which each edge is moved at most, and losses between a failure and the next trial.
 const MOST: usize = 16;
 const PAUSE: usize = 4;
@@ -17,8 +18,11 @@ pub(super) struct Front {
     is_line: bool,
     folded: bool,
     touching: usize,
-    /// How often cells were lost, less a pause.
+    least: usize,
+    /// How often cells were lost while the residual did not fall, less a pause.
     losses: usize,
+    residual: f64,
+    bends_down: bool,
     span: usize,
 }
 
@@ -30,16 +34,36 @@ pub(super) struct Moved {
 }
 
 impl Front {
-    pub(super) fn new(cells: [usize; 2], folded: [bool; 2]) -> Front {
+    /// A front that is moved after so many losses.
+    pub(super) fn new(cells: [usize; 2], folded: [bool; 2], least: usize) -> Front {
         let is_line = cells.contains(&1);
-        Front { is_line, folded: folded[usize::from(cells[0] == 1)], touching: 0, losses: 0, span: 1 }
+        Front {
+            is_line,
+            folded: folded[usize::from(cells[0] == 1)],
+            touching: 0,
+            least,
+            losses: 0,
+            residual: 0.0,
+            bends_down: false,
+            span: 1,
+        }
     }
 
-    /// Looks at the cells that touch; returns how the profile is to be moved.
-    pub(super) fn look(&mut self, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
+    /// Looks at the residual, over the greatest traction, whether the energy bends down, and which cells touch; returns how the profile is to be moved.
+    pub(super) fn look(
+        &mut self,
+        (residual, bends_down): (f64, bool),
+        cells: usize,
+        touches: impl Fn(usize) -> bool,
+    ) -> Option<Moved> {
         if !self.is_line {
             return None;
         }
+        self.bends_down |= bends_down;
+        if residual < FINE || residual < FALLEN * self.residual {
+            (self.losses, self.residual) = (0, residual);
+        }
+        self.residual = self.residual.max(residual);
         let (mut parts, mut start, mut touching) = (Vec::new(), None, 0);
         for k in 0..=cells {
             if k < cells && touches(k) {
@@ -50,7 +74,7 @@ impl Front {
         }
         let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
         self.losses += usize::from(lost > 0);
-        if lost == 0 || self.losses < LOSSES {
+        if lost == 0 || self.losses < self.least || !self.bends_down {
             return None;
         }
         let at_mirror = |first: usize| self.folded && first == 0;
@@ -67,7 +91,7 @@ impl Front {
             self.span *= 2;
         } else {
             self.span = (self.span / 2).max(1);
-            self.losses = LOSSES.saturating_sub(PAUSE);
+            self.losses = self.least.saturating_sub(PAUSE);
         }
     }
 }

@@ -57,6 +57,8 @@ const LEAST_EXACT: f64 = 1e-3;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
+/// Passes that lose cells before the edge of a line contact is moved on.
+const LOSSES: usize = 64;
 /// The greatest error of s after the first pass, over what the pass changed.
 const MOST_ERROR: f64 = 100.0;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
@@ -141,7 +143,7 @@ impl AttractedStep<'_> {
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1_usize);
         let region = &self.state.region;
-        let (mut front, mut moved) = (Front::new(region.cells(), region.folded()), false);
+        let (mut front, mut moved) = (Front::new(region.cells(), region.folded(), LOSSES), false);
         for _ in 0..MAX_PASSES {
             self.open_gap(window, trial);
             own.report.passes += 1;
@@ -218,7 +220,7 @@ impl AttractedStep<'_> {
             plain = !own.has_last || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
-            if let Some(profile) = front.look(s.len(), |k| trial.solution.pressure[k] > 0.0) {
+            if let Some(profile) = front.look((1.0, true), s.len(), |k| trial.solution.pressure[k] > 0.0) {
                 s.iter_mut().enumerate().for_each(|(k, s)| *s = own.last[1][profile.source(k, g.len())]);
                 (plain, moved) = (false, true);
             }
