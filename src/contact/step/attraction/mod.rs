@@ -58,7 +58,7 @@ const LEAST_EXACT: f64 = 1e-3;
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
 /// Passes that lose cells before the edge of a line contact is moved on.
-const LOSSES: usize = 64;
+const LOSSES: usize = 200;
 /// The greatest error of s after the first pass, over what the pass changed.
 const MOST_ERROR: f64 = 100.0;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
