@@ -56,6 +56,19 @@ pub enum AdhesionError {
         force: f64,
     },
 
+    /// The attraction beyond the edge of the grid, which is not computed, would add more than 5 % of the force. Enlarge the grid, or choose
+    /// [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends there. From 1e-3 on steps warn
+    /// ([`Warnings::BEYOND_EDGE`](crate::contact::Warnings::BEYOND_EDGE)).
+    #[error("at t = {} s the attraction beyond the edge of the grid of {:e} × {:e} m would add {:.0} % of the force, where 5 % are allowed: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", rounded(*.time, TIME), rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * share)]
+    BeyondEdge {
+        /// End of the step \[s\].
+        time: f64,
+        /// The part of the force that is left out.
+        share: f64,
+        /// Lengths of the grid \[m\].
+        lengths: [f64; 2],
+    },
+
     /// The passes of a step have not found its state.
     #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its greatest, where {tolerance:.1e} is allowed: take a shorter step", rounded(*.time, TIME))]
     NotConverged {
