@@ -48,7 +48,7 @@ pub struct Map {
     /// Ends of the colour scale, in the unit of the values (default: the least and the greatest finite value). Values
     /// outside have the colour of the nearer end, and the colour bar has a triangle at that end.
     pub range: [f64; 2],
-    /// The colours of the scale (default: sequential; that of [`Map::traction`] diverges about zero).
+    /// The colours of the scale (default: sequential; [`Map::traction`] has one that diverges about zero).
     pub colors: ColorScale,
     /// The colour of cells without a value (default: white).
     pub blank: Color,

@@ -218,7 +218,7 @@ impl AttractedStep<'_> {
         Err(AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance: limit }.into())
     }
 
-    /// Exchanges x and q of the trial for those that were tried; returns their energy.
+    /// Exchanges x and q of the trial for the tried ones; returns their energy.
     fn swap_energy(&self, balance: Balance, own: &mut Passes, window: &Window, trial: &mut Trial) -> [f64; 2] {
         std::mem::swap(&mut own.far, &mut trial.solution.potential);
         std::mem::swap(&mut own.image, &mut trial.solution.attraction);
