@@ -25,7 +25,7 @@ struct Args {
     #[arg(long, default_value_t = 2.0e3, value_parser = support::positive)]
     load: f64,
     /// Cells along the belt.
-    #[arg(long, default_value_t = 512)]
+    #[arg(long, default_value_t = 1024)]
     cells: usize,
     /// Fewer cells and speeds: seconds.
     #[arg(long)]
@@ -38,7 +38,7 @@ struct Args {
 /// Thicknesses of the rubber below the cords [m].
 const COVERS: [f64; 4] = [2.0e-3, 4.0e-3, 8.0e-3, 16.0e-3];
 /// Length of belt that is computed [m].
-const LENGTH: f64 = 40.0e-3;
+const LENGTH: f64 = 16.0e-3;
 
 fn main() {
     support::finish(run(&Args::parse()));
@@ -90,7 +90,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let name = format!("{} mm of rubber", 1e3 * cover);
         friction.add(&name, COLORS[k], Style::LineAndDots, points);
         let profile = (0..cells).map(|i| (grid.center(i, 0)[0], belt.contact().pressure()[i]));
-        pressure.add(&name, COLORS[k], Style::Line, profile.filter(|(x, _)| x.abs() < 0.25 * LENGTH).collect());
+        pressure.add(&name, COLORS[k], Style::Line, profile.filter(|(x, _)| x.abs() < 0.3 * LENGTH).collect());
     }
     table.flush()?;
     friction.save(args.output.join("friction.png"))?;

@@ -79,7 +79,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let (began, mut steps) = (Instant::now(), 0);
     let exponents: Vec<f64> =
         (0..args.rheologies).map(|k| 0.05 + 0.55 * k as f64 / args.rheologies.max(2) as f64).collect();
-    for (k, &exponent) in exponents.iter().enumerate() {
+    let mut curves = Vec::new();
+    for &exponent in &exponents {
         let mut contact = StatesContact::new(&states, &body(exponent)?)?;
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), TIMES[2]);
         let mut points = Vec::new();
@@ -89,8 +90,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 points.push((report.time, share(run.contact().contact_area())));
             }
         }
-        chart.add("", COLORS[k % COLORS.len()], Style::Line, points);
+        curves.push((exponent, points));
     }
+    chart.add_family("exponent of the creep", Style::Line, curves);
     let run = began.elapsed();
     println!(
         "{} rheologies, {steps} steps: {:.3} s, {:.1} µs a step with its trials, 21 relaxation times",
@@ -113,7 +115,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         }
     }
     println!("one of them in space: {steps} steps in {:.2} s", began.elapsed().as_secs_f64());
-    chart.add("one of them, stepped in space", COLORS[0], Style::Dots, points);
+    chart.add("one of them, stepped in space", COLORS[1], Style::Dots, points);
     chart.save(args.output.join("areas.png"))?;
     println!("the picture is in {}", args.output.display());
     Ok(())

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -135,16 +135,17 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let profiles = &runs[0].profiles;
     let history = &runs[0].history;
     let run_at = |time: f64| history[history.partition_point(|[t, ..]| *t < 0.999 * time).min(history.len() - 1)];
-    for (k, (time, profile)) in profiles.iter().step_by(2).take(COLORS.len()).enumerate() {
+    let mut shapes = Vec::new();
+    for (time, profile) in profiles.iter().step_by(2) {
         let inside: Vec<_> = profile.iter().filter(|(_, p)| *p > 0.0).copied().collect();
         let most = inside.iter().fold(0.0_f64, |most, (_, p)| most.max(*p));
         let radius = 1e3 * run_at(*time)[1];
-        let label = format!("{time:.0e} s: {radius:.2} mm, {most:.1} MPa");
         let shape = |&(x, p): &(f64, f64)| (x / radius, p / most);
         // the last cells are in contact in part
         let shape = inside.iter().map(shape).filter(|(x, _)| x.abs() < 0.97);
-        chart.add(label, COLORS[k], Style::Line, shape.collect());
+        shapes.push((*time, shape.collect()));
     }
+    chart.add_family(Quantity::new("time", "s"), Style::Line, shapes);
     chart.save(args.output.join("profiles.png"))?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
 use viscocontact::analytic::{Jkr, OpeningEdge};
-use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 
 /// A ball that is pulled off a creeping body, at speeds over five decades.
@@ -67,11 +67,12 @@ fn main() {
 /// A point of a history: time \[s\], approach \[m\], force \[N\] and contact area \[m²\].
 type Point = [f64; 4];
 
-/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart.
+/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart; a quarter as long while the pull is near
+/// its greatest.
 fn pull(contact: &mut ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::Result<Vec<Point>> {
     let (began, start) = (contact.time(), contact.approach());
     let mut path = vec![[0.0, start, contact.force(), contact.contact_area()]];
-    let (mut moved, mut step) = (0.0, 0.1 * longest);
+    let (mut moved, mut step, mut least) = (0.0, 0.1 * longest, 0.0_f64);
     loop {
         moved += step;
         let report = contact.step(step / speed, Load::approach(start - moved))?;
@@ -79,7 +80,8 @@ fn pull(contact: &mut ViscoelasticContact, speed: f64, longest: f64) -> viscocon
         if contact.is_separated() {
             return Ok(path);
         }
-        step = (1.1 * step).min(longest);
+        least = least.min(report.force);
+        step = (1.1 * step).min(if report.force < 0.7 * least { 0.25 * longest } else { longest });
     }
 }
 
@@ -140,7 +142,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let exponents: Vec<i32> = (3 * DECADES[0]..=3 * DECADES[1]).step_by(every).collect();
     let progress = support::progress(exponents.len() as u64);
     let (mut apparent, mut theories) = (Vec::new(), Vec::new());
-    for (n, &exponent) in exponents.iter().enumerate() {
+    let mut curves = Vec::new();
+    for &exponent in &exponents {
         let speed = 10f64.powf(f64::from(exponent) / 3.0) * depth / args.tau;
         let path = pull(&mut rested.clone(), speed, longest * depth)?;
         for [time, approach, force, area] in &path {
@@ -152,7 +155,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         summary.serialize((speed, greatest, adhesion, theory, path.len() - 1))?;
         progress.suspend(|| {
             println!(
-                "{speed:.1e} m/s (V τ/l = {:.1e}): greatest pull {:.3} mN, apparent work of adhesion {:.2} w (theory {:.2} w), {} steps",
+                "{} (V τ/l = {:.1e}): greatest pull {:.3} mN, apparent work of adhesion {:.2} w (theory {:.2} w), {} steps",
+                measure(speed, "m/s"),
                 speed * args.tau / edge.length(),
                 1e3 * greatest,
                 adhesion / work,
@@ -163,9 +167,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         apparent.push((speed, adhesion));
         theories.push((speed, theory));
         if exponent % 3 == 0 {
-            let color = COLORS[(n * every / 3) % 6];
-            let points = path.iter().map(|point| (point[1], point[2])).collect();
-            forces.add(format!("{speed:.0e} m/s"), color, Style::Line, points);
+            curves.push((speed, path.iter().map(|point| (point[1], point[2])).collect()));
         }
         progress.inc(1);
     }
@@ -176,18 +178,19 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut works = Chart::new(
         "Greatest pull F over speed",
         Quantity::new("speed", "m/s"),
-        Quantity::new("apparent work of adhesion 2F/3πR", "J/m²"),
+        Quantity::new("apparent work of adhesion", "J/m²"),
         Legend::LowerRight,
     );
     works.scale = Scale::LogLog;
     let across = |value: f64| apparent.iter().map(|&(speed, _)| (speed, value)).collect();
-    for (n, name) in ["JKR, relaxed: w", "JKR, at once: k w"].into_iter().enumerate() {
+    for (n, name) in ["JKR, relaxed: w", "JKR, instantaneous: k w"].into_iter().enumerate() {
         works.add(name, COLORS[n], Style::Line, across(-limits[n].pull_off_force() / (1.5 * PI * radius)));
     }
     works.add("computed", COLORS[2], Style::LineAndDots, apparent.clone());
     works.add("an edge that opens, relaxed bulk", COLORS[3], Style::Line, theories);
     let [slow, fast] = dots;
-    forces.add("JKR, relaxed; at once, kR", COLORS[6], Style::Dots, slow);
+    forces.add_family(Quantity::new("speed", "m/s"), Style::Line, curves);
+    forces.add("JKR: relaxed, and instantaneous with radius kR", COLORS[6], Style::Dots, slow);
     forces.add("", COLORS[6], Style::Dots, fast);
     works.save(args.output.join("work.png"))?;
     forces.save(args.output.join("force.png"))?;

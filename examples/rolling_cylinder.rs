@@ -226,9 +226,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         "pressure [kPa]",
         Legend::UpperLeft,
     );
-    for ((ratio, points), color) in profiles.into_iter().zip(COLORS) {
-        chart.add(format!("v τ/a0 = {ratio}"), color, Style::Line, points);
-    }
+    chart.add_family("v τ / half the width of the glassy contact", Style::Line, profiles);
     chart.save(args.output.join("pressure.png"))?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())

@@ -33,7 +33,7 @@ use viscocontact::rheology::library;
 /// The real contact area of a rough polymer, growing over decades of time.
 #[derive(Parser)]
 struct Args {
-    /// PublishedMaterial material.
+    /// Published material.
     #[arg(long, default_value = "adhesive")]
     material: String,
     /// Temperature [K], where it is published how the material shifts with it.
@@ -230,8 +230,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     // κ from the first point; with it the law of small loads says how the area would go on
     let kappa = growth[0].cells / args.pressure;
     println!("κ at {:.0e} s: {kappa:.3}", args.from);
-    let title = format!("Real contact area of a rough surface under {:.2} MPa, on {}", mean * 1e-6, args.material);
-    let mut chart = Chart::new(&title, "time [s]", "cells in contact / all cells", Legend::UpperLeft);
+    let title =
+        format!("Real contact area of a rough surface under {:.2} MPa (polymer: {})", mean * 1e-6, args.material);
+    let mut chart =
+        Chart::new(&title, "time since the load changed [s]", "cells in contact / all cells", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     let small = shown.iter().map(|&t| (t, kappa * mean * compliance(t) / args.slope));
     let small = small.filter(|(_, share)| *share < 1.05 * last.cells).collect();
@@ -239,10 +241,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let theory = shown.iter().map(|&t| (t, persson(mean * compliance(t) / args.slope))).collect();
     chart.add("Persson, erf(√2 p C(t)/h')", COLORS[1], Style::Line, theory);
     let points = growth.iter().map(|m| (m.time, m.cells)).collect();
-    chart.add("creeping", COLORS[0], Style::Line, points);
+    chart.add("creeping, after the load was applied", COLORS[0], Style::Line, points);
     chart.add("elastic body of compliance C(t), same surface", COLORS[6], Style::Dots, elastic);
     let points = hold[1..].iter().map(|m| (m.time, m.cells)).collect();
-    chart.add("creeping, time since half of the load was taken off", COLORS[2], Style::Line, points);
+    chart.add("creeping, after half of the load was taken off", COLORS[2], Style::Line, points);
     chart.save(args.output.join("area.png"))?;
 
     let mut chart = Chart::new("Patches of contact", "time [s]", "number of patches", Legend::UpperRight);

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use viscocontact::analytic::PerssonFriction;
-use viscocontact::plot::{COLORS, Legend, Map, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TimeTemperature, library};
 use viscocontact::sliding::{SlidingSweep, SlidingTable};
@@ -106,7 +106,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     for speed in [1e2, 1e-2, 1e-6] {
         let report = sliding.at([speed, 0.0], load)?;
         let mut map = Map::pressure(sliding.contact())?;
-        map.title = format!("{speed:.0e} m/s: {:.1} % in contact", 100.0 * report.contact_area / args.length.powi(2));
+        map.title =
+            format!("{}: {:.1} % in contact", measure(speed, "m/s"), 100.0 * report.contact_area / args.length.powi(2));
         maps.push(map);
     }
     Map::save_row(&maps, args.output.join("pressure.png"))?;
@@ -114,28 +115,39 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Friction and area over the speed, with Persson's theory.
+/// Friction and area over the speed: dots are contact problems, lines of the same colour Persson's theory.
 fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<(), Box<dyn Error>> {
     let spectrum = Material::incompressible(rubber()?).contact_spectrum()?.ok_or("the rubber has no series")?;
-    let law = law()?;
-    let mut friction = table.chart("coefficient of friction", |own| own.friction());
-    let mut area = table.chart("part of the road in contact", |own| own.contact_area / args.length.powi(2));
-    (friction.title, area.title) = ("Friction of a rubber on a road".into(), "Contact of a rubber on a road".into());
-    area.legend = Legend::UpperRight;
-    for (k, kelvin) in TEMPERATURES.into_iter().enumerate() {
-        let (shift, mut points) = (law.shift_factor(kelvin)?, [Vec::new(), Vec::new()]);
-        for decade in 4 * DECADES[0]..=4 * DECADES[1] {
+    let (law, modulus) = (law()?, |omega: f64| spectrum.complex_modulus(omega));
+    let chart = |title: &str, quantity: &str, legend| {
+        let mut chart = Chart::new(title, Quantity::new("speed", "m/s"), quantity, legend);
+        chart.scale = Scale::LogX;
+        chart
+    };
+    let mut charts = [
+        chart("Friction of a rubber on a road", "coefficient of friction", Legend::UpperLeft),
+        chart("Contact of a rubber on a road", "part of the road in contact", Legend::UpperRight),
+    ];
+    let area = args.length.powi(2);
+    for (k, states) in table.states().chunk_by(|a, b| a.temperature == b.temperature).enumerate() {
+        let kelvin = TEMPERATURES[k];
+        let shift = law.shift_factor(kelvin)?;
+        let found =
+            states.iter().map(|own| (own.report.velocity[0], [own.report.friction(), own.report.contact_area / area]));
+        let theory = (4 * DECADES[0]..=4 * DECADES[1]).map(|decade| {
             let speed = 10f64.powf(0.25 * f64::from(decade));
-            let modulus = |omega: f64| spectrum.complex_modulus(omega);
-            let theory = PerssonFriction::new(grid, road, modulus, args.pressure, [speed * shift, 0.0], 0.5)?;
-            points[0].push((speed, theory.friction));
-            points[1].push((speed, theory.contact_share));
-        }
-        for (chart, points) in [&mut friction, &mut area].into_iter().zip(points) {
-            chart.add(format!("{kelvin} K, Persson's theory"), COLORS[3 + k], Style::Line, points);
+            let own = PerssonFriction::new(grid, road, modulus, args.pressure, [speed * shift, 0.0], 0.5)?;
+            Ok((speed, [own.friction, own.contact_share]))
+        });
+        let (found, theory) = (found.collect::<Vec<_>>(), theory.collect::<viscocontact::Result<Vec<_>>>()?);
+        let label = if k == 0 { "lines: Persson's theory" } else { "" };
+        for (which, chart) in charts.iter_mut().enumerate() {
+            let of = |all: &[(f64, [f64; 2])]| all.iter().map(|(speed, own)| (*speed, own[which])).collect();
+            chart.add(format!("{kelvin} K"), COLORS[k], Style::Dots, of(&found));
+            chart.add(label, COLORS[k], Style::Line, of(&theory));
         }
     }
-    friction.save(args.output.join("friction.png"))?;
-    area.save(args.output.join("area.png"))?;
+    charts[0].save(args.output.join("friction.png"))?;
+    charts[1].save(args.output.join("area.png"))?;
     Ok(())
 }

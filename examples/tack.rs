@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use clap::Parser;
 use viscocontact::adhesion::ExponentialAttraction;
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 
 /// A flat probe and a ball pulled off a layer of gel.
@@ -65,7 +65,8 @@ struct Pull {
     strongest: ViscoelasticContact,
 }
 
-/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart.
+/// Pulls at `speed` with steps of at most `longest` \[m\] until the bodies are apart; a seventh as long while the pull is near
+/// its greatest.
 fn pull(held: &ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::Result<Pull> {
     let (mut contact, mut strongest, start) = (held.clone(), held.clone(), held.approach());
     let mut path = vec![[0.0, contact.force(), contact.contact_area()]];
@@ -80,7 +81,8 @@ fn pull(held: &ViscoelasticContact, speed: f64, longest: f64) -> viscocontact::R
         if contact.is_separated() {
             return Ok(Pull { path, strongest });
         }
-        step = (1.1 * step).min(longest);
+        let near_greatest = report.force < 0.7 * strongest.force();
+        step = (1.1 * step).min(if near_greatest { 0.15 * longest } else { longest });
     }
 }
 
@@ -136,7 +138,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             Quantity::new("force", "N"),
             Legend::LowerRight,
         );
-        let (mut apparent, mut maps, mut drawn) = (Vec::new(), Vec::new(), 0);
+        let (mut apparent, mut maps, mut curves) = (Vec::new(), Vec::new(), Vec::new());
         for &exponent in &exponents {
             let speed = 10f64.powf(f64::from(exponent) / 3.0) * args.range / args.tau;
             let Pull { path, strongest } = pull(&held, speed, 0.2 * args.range)?;
@@ -147,25 +149,24 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             progress.suspend(|| {
                 let pull = -1e3 * strongest.force();
                 println!(
-                    "{name}, {speed:.1e} m/s: greatest pull {pull:.2} mN, work of separation {:.2} w",
+                    "{name}, {}: greatest pull {pull:.2} mN, work of separation {:.2} w",
+                    measure(speed, "m/s"),
                     work / args.work
                 );
             });
             apparent.push((speed, work / args.work));
             if exponent % 3 == 0 || args.quick {
-                let color = COLORS[drawn % 6];
-                drawn += 1;
-                let points = path.iter().map(|point| (point[0], point[1])).collect();
-                forces.add(format!("{speed:.1e} m/s"), color, Style::Line, points);
+                curves.push((speed, path.iter().map(|point| (point[0], point[1])).collect()));
             }
             if [exponents.first(), exponents.last()].contains(&Some(&exponent)) {
                 let mut map = Map::traction(&strongest)?;
-                map.title = format!("{name}, {speed:.1e} m/s: greatest pull");
+                map.title = format!("{name}, {}: greatest pull", measure(speed, "m/s"));
                 map.range = [-args.work / args.range, 0.0];
                 maps.push(map);
             }
             progress.inc(1);
         }
+        forces.add_family(Quantity::new("speed", "m/s"), Style::Line, curves);
         works.add(name, COLORS[n], Style::LineAndDots, apparent);
         let file = name.replace(' ', "_");
         forces.save(args.output.join(format!("{file}.png")))?;

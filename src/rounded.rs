@@ -1,17 +1,35 @@
 //! Numbers as people want to read them.
 
+use std::fmt;
+
 /// Decimals, in scientific notation, of a time in a message: times are sums of steps, whose last digits are rounding.
 pub(crate) const TIME: usize = 11;
 
+/// A number as a person would write it: 0.25 and 143.4, but 4e-11.
+#[derive(Clone, Copy)]
+pub(crate) struct Rounded(f64);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Rounded(value) = *self;
+        let short = value == 0.0 || !value.is_finite() || (1e-3..1e6).contains(&value.abs());
+        if short { write!(f, "{value}") } else { write!(f, "{value:e}") }
+    }
+}
+
 /// The nearest number with so many decimals in scientific notation.
-pub(crate) fn rounded(value: f64, decimals: usize) -> f64 {
+pub(crate) fn rounded(value: f64, decimals: usize) -> Rounded {
+    Rounded(nearest(value, decimals))
+}
+
+fn nearest(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$e}").parse().unwrap_or(value)
 }
 
 /// A value out of range without the noise of its last digits, unless they are all that puts it out of the range: where the rounded
 /// value is a limit that `allowed` names, or where `allowed` names none.
 pub(crate) fn without_noise(value: f64, allowed: &str) -> f64 {
-    let short = rounded(value, TIME);
+    let short = nearest(value, TIME);
     let of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | 'e');
     let mut limits = allowed.split(|c| !of_number(c)).filter_map(|word| word.parse::<f64>().ok()).peekable();
     if limits.peek().is_some() && limits.all(|limit| limit != short) { short } else { value }
@@ -21,7 +39,7 @@ pub(crate) fn without_noise(value: f64, allowed: &str) -> f64 {
 #[cfg(feature = "checkpoint")]
 pub(crate) fn texts_without_noise(texts: [String; 2]) -> [String; 2] {
     let of_word = |word: &str| match word.parse::<f64>() {
-        Ok(number) if word.len() > NOISY => format!("{:e}", rounded(number, SHOWN)),
+        Ok(number) if word.len() > NOISY => format!("{:e}", nearest(number, SHOWN)),
         _ => word.to_owned(),
     };
     let short = texts.each_ref().map(|text| text.split(' ').map(of_word).collect::<Vec<_>>().join(" "));
@@ -58,10 +76,9 @@ mod tests {
 
     #[test]
     fn sums_of_steps_lose_their_last_digits() {
-        assert_eq!(rounded(0.1 + 0.2, TIME).to_string(), "0.3");
-        assert_eq!(rounded(1.0e-12, TIME), 1.0e-12);
-        assert_eq!(rounded(-123_456.789, 5), -123_457.0);
-        assert_eq!(rounded(f64::INFINITY, TIME), f64::INFINITY);
-        assert!(rounded(f64::NAN, TIME).is_nan());
+        let text = |value, decimals| rounded(value, decimals).to_string();
+        assert_eq!([text(0.1 + 0.2, TIME), text(1.0e-12, TIME), text(4.0e-11, 3)], ["0.3", "1e-12", "4e-11"]);
+        assert_eq!([text(-123_456.789, 5), text(1.434_372e2, 3), text(0.0, 5)], ["-123457", "143.4", "0"]);
+        assert_eq!([text(f64::INFINITY, TIME), text(f64::NAN, TIME)], ["inf", "NaN"]);
     }
 }

@@ -23,7 +23,7 @@ cp "$CARGO_TARGET_DIR/debug/lib_native.so" "$folder/viscocontact/_native.abi3.so
 cp -r tests "$folder"
 cp pyproject.toml LICENSE "$folder"
 cd "$folder"
-export VISCOCONTACT_SCENES_IN_RUST="$CARGO_TARGET_DIR/debug/examples/scenes" PYTHONPATH="$folder"
+export VISCOCONTACT_SCENES_IN_RUST="$CARGO_TARGET_DIR/debug/examples/scenes" PYTHONPATH="$folder" VISCOCONTACT_REPOSITORY="$repository"
 "$python" -m pytest --quiet tests
 "$python" -m mypy.stubtest viscocontact
 for example in "$repository"/python/examples/*.py; do

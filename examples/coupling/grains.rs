@@ -147,7 +147,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         Legend::UpperRight,
     );
     for (color, k) in COLORS.into_iter().zip([0, args.grains / 2, args.grains - 1]) {
-        chart.add(format!("below grain {}", k + 1), color, Style::Line, curves[k].clone());
+        let settling = curves[k].iter().copied().take_while(|(time, _)| *time <= 0.6).collect();
+        chart.add(format!("below grain {}", k + 1), color, Style::Line, settling);
     }
     chart.save(args.output.join("force.png"))?;
     let error = (0..args.grains).map(|k| (forces[k] / (weight * (args.grains - k) as f64) - 1.0).abs());

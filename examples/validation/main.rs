@@ -58,7 +58,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 35] = [
+const SCENES: [fn() -> Outcome; 36] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -83,6 +83,7 @@ const SCENES: [fn() -> Outcome; 35] = [
     creep::rolling,
     sliding::slow,
     sliding::fast,
+    sliding::limits,
     sliding::wave,
     sliding::rolling_cylinder,
     sliding::rough_full_contact,

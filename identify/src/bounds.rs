@@ -19,7 +19,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    pub(crate) fn new(problem: &Problem<'_>, values: &[f64], jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
+    pub(crate) fn new(problem: &Problem, values: &[f64], jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
         let names: Vec<String> = problem.free().map(|parameter| parameter.name.clone()).collect();
         let inverse = inverse_gram(jacobian, 0.0)?;
         let scales = problem.scales(values);

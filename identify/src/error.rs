@@ -7,7 +7,7 @@
 #[non_exhaustive]
 pub enum Error {
     /// A value is outside the allowed range.
-    #[error("{field} = {value:e} is not allowed: it must be {allowed}")]
+    #[error("{field} = {value:?} is not allowed: it must be {allowed}")]
     OutOfRange {
         /// Which value.
         field: &'static str,
@@ -30,7 +30,7 @@ pub enum Error {
 
     /// Times do not ascend.
     #[error(
-        "time[{index}] = {value:e} s follows {previous:e} s: times must ascend; sort the rows, and drop repeated ones"
+        "time[{index}] = {value:?} s follows {previous:?} s: times must ascend; sort the rows, and drop repeated ones"
     )]
     TimesNotAscending {
         /// Index of the first time that does not ascend.
@@ -42,7 +42,7 @@ pub enum Error {
     },
 
     /// A load history prescribes the force, and the force is what an experiment measures.
-    #[error("the load at {time:e} s is a force: the drive is an approach, or the far end of a spring")]
+    #[error("the load at {time:?} s is a force: the drive is an approach, or the far end of a spring")]
     DrivenByForce {
         /// The time \[s\].
         time: f64,
@@ -70,7 +70,7 @@ pub enum Error {
 
     /// The tip goes deeper than the elastic states reach.
     #[error(
-        "curve {curve}: the depth of {depth:e} m is beyond the last elastic state of the tip: sweep it further, or check the unit of the drive"
+        "curve {curve}: the depth of {depth:.2e} m is beyond the last elastic state of the tip: sweep it further, or check the unit of the drive"
     )]
     BeyondStates {
         /// Index of the curve.

@@ -167,7 +167,7 @@ impl Identification {
     }
 
     /// The problem of fitted curves with the noise of the fit: whitening, scale and weights of each curve.
-    pub(crate) fn refit_problem<'a>(&self, curves: &'a [Curve], noise: &[CurveNoise]) -> Result<Problem<'a>> {
+    pub(crate) fn refit_problem(&self, curves: &[Curve], noise: &[CurveNoise]) -> Result<Problem> {
         let mut problem = self.problem(curves.iter().map(|curve| (&curve.experiment, Some(&curve.force))))?;
         for (part, noise) in problem.parts.iter_mut().zip(noise) {
             if let Some(phi) = noise.correlation {
@@ -209,15 +209,15 @@ impl Identification {
     }
 
     /// Minimum from a start.
-    pub(crate) fn minimum(&self, problem: &Problem<'_>, coordinates: Vec<f64>) -> Result<Minimum> {
-        minimise(coordinates, problem.rounding(), |x| problem.residuals(x), |x| problem.jacobian(x))
+    pub(crate) fn minimum(&self, problem: &Problem, coordinates: Vec<f64>) -> Result<Minimum> {
+        minimise(coordinates, [problem.rounding(), problem.enough], |x| problem.residuals(x), |x| problem.jacobian(x))
     }
 
     /// The problem of some curves, which may have no data yet.
     pub(crate) fn problem<'a>(
         &self,
         curves: impl Iterator<Item = (&'a Experiment, Option<&'a Vec<f64>>)>,
-    ) -> Result<Problem<'a>> {
+    ) -> Result<Problem> {
         if let Some(sigma) = self.sigma {
             positive("standard deviation of the noise", sigma)?;
         }
@@ -242,7 +242,7 @@ impl Identification {
     }
 
     /// Values of all parameters from the material's by name.
-    fn given(&self, problem: &Problem<'_>, named: &[(&str, f64)]) -> Result<Vec<f64>> {
+    fn given(&self, problem: &Problem, named: &[(&str, f64)]) -> Result<Vec<f64>> {
         let names = || problem.model.parameters().join(", ");
         if let Some((name, _)) = named.iter().find(|(name, _)| problem.parameters.iter().all(|p| p.name != *name)) {
             return Err(Error::UnknownParameter { name: (*name).to_string(), names: names() });

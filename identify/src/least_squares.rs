@@ -7,9 +7,7 @@ use crate::error::{Error, Result};
 
 /// Iterations after which a search has failed.
 const MAX_ITERATIONS: usize = 200;
-/// A search ends where the linearised residuals promise less than this fraction of the sum of squares.
-const ENOUGH: f64 = 1e-10;
-/// The same where steps are damped so much that the linearised residuals hold nowhere: at kinks, where samples are about to touch or to leave.
+/// A search ends where the sum of squares falls by less than this where steps are damped so much that the linearised residuals hold nowhere: at kinks, where samples are about to touch or to leave.
 const AT_KINK: f64 = 1e-9;
 /// A search that reduces the sum of squares by less than this fraction in its last iteration has not failed.
 const SLOW: f64 = 1e-6;
@@ -30,11 +28,12 @@ pub(crate) struct Minimum {
     pub(crate) iterations: usize,
 }
 
-/// Minimises the sum of squares of `residuals` from `start`, or until it is at most `exact`. Residuals that cannot be computed reject a
+/// Minimises the sum of squares of `residuals` from `start`, or until it is at most `exact`, or the linearised residuals promise less than the
+/// fraction `enough` of it. Residuals that cannot be computed reject a
 /// step. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter in Marquardt's Method*, 1999).
 pub(crate) fn minimise(
     start: Vec<f64>,
-    exact: f64,
+    [exact, enough]: [f64; 2],
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
     jacobian: impl Fn(&[f64]) -> Result<Mat<f64>>,
 ) -> Result<Minimum> {
@@ -46,7 +45,7 @@ pub(crate) fn minimise(
         let slopes = jacobian(&x)?;
         let model = Linear::new(&slopes, &r);
         let done = loop {
-            if sum <= exact || model.promised(&model.step(0.0)) <= ENOUGH * sum {
+            if sum <= exact || model.promised(&model.step(0.0)) <= enough * sum {
                 break true;
             }
             let mut step = model.step(damping);
@@ -61,14 +60,14 @@ pub(crate) fn minimise(
                 let gain = (sum - reduced) / promised;
                 // at a kink, shorter and shorter steps reduce the sum less and less
                 let reduction = promised.max(sum - reduced);
-                let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK } else { ENOUGH };
+                let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
                 is_slow = reduction <= SLOW * sum;
                 damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
                 growth = 2.0;
                 (x, r, sum) = (moved, residuals, reduced);
                 break is_enough;
             }
-            if promised <= ENOUGH * sum {
+            if promised <= enough * sum {
                 break true;
             }
             (damping, growth) = (damping * growth, growth * 2.0);
@@ -196,7 +195,7 @@ mod tests {
     fn finds_the_end_of_a_curved_valley() {
         let found = minimise(
             vec![-1.2, 1.0],
-            0.0,
+            [0.0, 1e-10],
             |x| Ok(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]),
             |x| Ok(Mat::from_fn(2, 2, |i, j| [[-20.0 * x[0], 10.0], [-1.0, 0.0]][i][j])),
         );

@@ -82,7 +82,7 @@ pub use experiment::{Curve, Experiment};
 pub use fit::{Estimate, Fit, FitWarning, Variant, ranked};
 pub use forward::Sample;
 pub use identification::Identification;
-pub use model::{Model, Scale};
+pub use model::{Law, Model, Scale};
 pub use noise::Noise;
 pub use parameters::{Nuisance, PerCurve};
 pub use protocol::{Protocol, ProtocolBuilder};

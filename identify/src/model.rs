@@ -12,9 +12,12 @@ use crate::error::Result;
 /// | `Zener` | Einf + (E0 − Einf) exp(−t/tau) | `E0`, `Einf`, `tau` |
 /// | `Prony(n)` | Einf + Σ Ek exp(−t/tauk) | `Einf`, `E1`, `tau1`, … |
 /// | `PowerLaw` | E1 ((t + cutoff)/1 s)^(−alpha) | `E1`, `alpha` |
+/// | `PowerLawSolid` | Einf + E1 ((t + cutoff)/1 s)^(−alpha) | `E1`, `alpha`, `Einf` |
+/// | `Stretched` | Einf + (E0 − Einf) exp(−(t/tau)^beta) | `E0`, `Einf`, `tau`, `beta` |
 /// | `FractionalZener` | Einf + (E0 − Einf) E_alpha(−(t/tau)^alpha), with the Mittag-Leffler function | `E0`, `Einf`, `tau`, `alpha` |
+/// | `Custom(law)` | a [`Law`] of your own | of the law |
 ///
-/// The two laws with powers of time are evaluated as sums of exponentials that agree to 1e-6 with the law at all times
+/// Laws with powers of time and custom ones are evaluated as sums of exponentials that agree to 1e-6 with the law at all times
 /// between the shortest sampling interval and the length of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -33,8 +36,49 @@ pub enum Model {
         /// Time below which the modulus no longer rises \[s\]: well below the sampling interval, which makes it irrelevant.
         cutoff: f64,
     },
+    /// A power of time above an equilibrium, with a finite modulus at times below `cutoff`.
+    PowerLawSolid {
+        /// As of [`Model::PowerLaw`] \[s\].
+        cutoff: f64,
+    },
+    /// A stretched exponential (Kohlrausch, Williams and Watts).
+    Stretched,
     /// A fractional solid (Cole and Cole).
     FractionalZener,
+    /// Any other law.
+    Custom(Law),
+}
+
+/// A relaxation law of a user. A name tells how a parameter is searched for, and between which starts: moduli begin with `E`, times with `tau`,
+/// exponents between 0 and 1 with any other letter.
+///
+/// ```
+/// use viscocontact_identify::{Law, Model};
+///
+/// let logarithmic = Law {
+///     name: "logarithmic",
+///     parameters: &["E0", "tau"],
+///     modulus: |of, t| of[0] / (1.0 + (t / of[1]).ln_1p()),
+/// };
+/// assert_eq!(Model::Custom(logarithmic).parameters(), ["E0", "tau"]);
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Law {
+    /// Its name.
+    pub name: &'static str,
+    /// Names of its parameters.
+    pub parameters: &'static [&'static str],
+    /// E(t) \[Pa\] of the parameters and a time \[s\], falling with time and finite at 0.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub modulus: fn(&[f64], f64) -> f64,
+}
+
+/// Laws are equal if their names and those of their parameters are.
+impl PartialEq for Law {
+    fn eq(&self, other: &Law) -> bool {
+        (self.name, self.parameters) == (other.name, other.parameters)
+    }
 }
 
 /// Which function of a parameter is searched for.
@@ -75,7 +119,10 @@ impl Model {
             Model::Maxwell => &["E0", "tau"],
             Model::Zener => &["E0", "Einf", "tau"],
             Model::PowerLaw { .. } => &["E1", "alpha"],
+            Model::PowerLawSolid { .. } => &["E1", "alpha", "Einf"],
+            Model::Stretched => &["E0", "Einf", "tau", "beta"],
             Model::FractionalZener => &["E0", "Einf", "tau", "alpha"],
+            Model::Custom(law) => law.parameters,
             Model::Prony(terms) => {
                 let pairs = (1..=*terms).flat_map(|k| [format!("E{k}"), format!("tau{k}")]);
                 return std::iter::once("Einf".to_string()).chain(pairs).collect();
@@ -86,7 +133,7 @@ impl Model {
 
     /// On which scale each parameter is searched for.
     pub(crate) fn scale(name: &str) -> Scale {
-        if name == "alpha" { Scale::Logit } else { Scale::Logarithm }
+        if name.starts_with('E') || name.starts_with("tau") { Scale::Logarithm } else { Scale::Logit }
     }
 
     /// E(t) of given parameters, evaluated as a fit does for data of the same time.
@@ -100,10 +147,11 @@ impl Model {
     /// Models of which this one is a generalisation: the last links of a chain, whose first is the elastic body.
     pub(crate) fn contained(&self) -> Vec<Model> {
         match *self {
-            Model::Elastic => vec![],
+            Model::Elastic | Model::Custom(_) => vec![],
+            Model::PowerLawSolid { cutoff } => vec![Model::PowerLaw { cutoff }],
             Model::Maxwell | Model::PowerLaw { .. } | Model::Prony(0) => vec![Model::Elastic],
             Model::Zener => vec![Model::Maxwell],
-            Model::Prony(1) | Model::FractionalZener => vec![Model::Zener],
+            Model::Prony(1) | Model::FractionalZener | Model::Stretched => vec![Model::Zener],
             Model::Prony(terms) => vec![Model::Prony(terms - 1)],
         }
     }
@@ -115,7 +163,8 @@ impl Model {
             (Model::PowerLaw { .. }, _, &[e]) => vec![e, NEXT_TO],
             (Model::Zener, _, &[e0, tau]) => vec![e0, NEXT_TO * e0, tau],
             (Model::Prony(_), Model::Zener, &[e0, einf, tau]) => vec![einf, e0 - einf, tau],
-            (Model::FractionalZener, _, &[e0, einf, tau]) => vec![e0, einf, tau, 1.0 - NEXT_TO],
+            (Model::PowerLawSolid { .. }, _, &[e1, alpha]) => vec![e1, alpha, NEXT_TO * e1],
+            (Model::FractionalZener | Model::Stretched, _, &[e0, einf, tau]) => vec![e0, einf, tau, 1.0 - NEXT_TO],
             // another term without strength
             (Model::Prony(_), _, values) => [values, &[NEXT_TO * values[0], 0.1 * length]].concat(),
             _ => values.to_vec(),

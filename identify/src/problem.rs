@@ -1,5 +1,8 @@
 //! A least-squares problem: the model forces of all curves, less the measured ones, made white.
 
+use std::cell::Cell;
+use std::rc::Rc;
+
 use faer::Mat;
 
 use crate::error::Result;
@@ -8,17 +11,22 @@ use crate::forward::{Drive, Dual, Forward, LANES, Real, Response, Roots, Sample,
 use crate::model::Model;
 use crate::noise::Whitening;
 use crate::parameters::{Kind, Parameter};
+use crate::protocol::Protocol;
 use crate::series::Prony;
 
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
+/// Samples of a curve with which a search begins.
+const ROUGH: usize = 128;
+/// A search ends where the linearised residuals promise less than this fraction of the sum of squares; one with few samples, early.
+const ENOUGH: [f64; 2] = [1e-12, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 
 /// One curve of a problem.
 #[derive(Clone, Debug)]
-pub(crate) struct Part<'a> {
-    pub(crate) experiment: &'a Experiment,
+pub(crate) struct Part {
+    pub(crate) experiment: Experiment,
     /// The measured forces; zeros where none are measured yet.
     pub(crate) data: Vec<f64>,
     pub(crate) whitening: Whitening,
@@ -31,8 +39,8 @@ pub(crate) struct Part<'a> {
     speed: Vec<f64>,
 }
 
-impl<'a> Part<'a> {
-    pub(crate) fn new(experiment: &'a Experiment, data: Vec<f64>, whitening: Whitening) -> Part<'a> {
+impl Part {
+    pub(crate) fn new(experiment: &Experiment, data: Vec<f64>, whitening: Whitening) -> Part {
         let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
         let last = times.len() - 1;
         let speed = |k: usize| {
@@ -41,17 +49,22 @@ impl<'a> Part<'a> {
         };
         let speed = (0..times.len()).map(speed).collect();
         let weights = vec![1.0; times.len()];
-        let outliers = weights.clone();
-        Part {
-            experiment,
-            data,
-            whitening,
-            weights,
-            scale: 1.0,
-            outliers,
-            forward: Forward::new(&experiment.tip),
-            speed,
-        }
+        let (outliers, forward) = (weights.clone(), Forward::new(&experiment.tip));
+        Part { experiment: experiment.clone(), data, whitening, weights, scale: 1.0, outliers, forward, speed }
+    }
+
+    /// Means of neighbouring samples, as if their noise were white.
+    fn thinned(&self) -> Part {
+        let of = |values: &[f64]| -> Vec<f64> {
+            let means = values.chunks(self.len().div_ceil(ROUGH));
+            means.map(|chunk| chunk.iter().sum::<f64>() / chunk.len() as f64).collect()
+        };
+        let Protocol { times, drive } = &self.experiment.protocol;
+        let protocol = Protocol { times: of(times), drive: of(drive) };
+        let (data, speed, weights, outliers) = (of(&self.data), of(&self.speed), of(&self.weights), of(&self.outliers));
+        let experiment = Experiment { protocol, ..self.experiment.clone() };
+        let whitening = Whitening::Autoregressive(0.0);
+        Part { experiment, data, whitening, weights, outliers, speed, ..self.clone() }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -88,24 +101,37 @@ impl<'a> Part<'a> {
 
 /// All curves, and the parameters of their forces.
 #[derive(Clone, Debug)]
-pub(crate) struct Problem<'a> {
+pub(crate) struct Problem {
     pub(crate) model: Model,
-    pub(crate) parts: Vec<Part<'a>>,
+    pub(crate) parts: Vec<Part>,
     pub(crate) parameters: Vec<Parameter>,
     /// Shortest interval between samples and longest curve \[s\].
     pub(crate) window: [f64; 2],
+    /// Fraction of the sum of squares that a search leaves.
+    pub(crate) enough: f64,
+    /// Exponentials that were advanced by a sample, each derivative counted.
+    pub(crate) work: Rc<Cell<usize>>,
 }
 
-impl<'a> Problem<'a> {
-    pub(crate) fn new(model: Model, parts: Vec<Part<'a>>, parameters: Vec<Parameter>) -> Problem<'a> {
+impl Problem {
+    pub(crate) fn new(model: Model, parts: Vec<Part>, parameters: Vec<Parameter>) -> Problem {
         let times = || parts.iter().map(|part| part.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
         let longest = times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max);
-        Problem { model, parts, parameters, window: [shortest, longest] }
+        let (enough, work) = (ENOUGH[0], Rc::default());
+        Problem { model, parts, parameters, window: [shortest, longest], enough, work }
+    }
+
+    /// The same problem with few samples, on which a search is cheap; `None` where there are few, or their noise is given by a matrix.
+    pub(crate) fn thinned(&self) -> Option<Problem> {
+        let is_long = self.parts.iter().any(|part| part.len() > ROUGH);
+        let is_simple = self.parts.iter().all(|part| matches!(part.whitening, Whitening::Autoregressive(_)));
+        let parts = || self.parts.iter().map(Part::thinned).collect();
+        (is_long && is_simple).then(|| Problem { parts: parts(), enough: ENOUGH[1], ..self.clone() })
     }
 
     /// The same problem with a simpler model; `None` where parameters of the material are given.
-    pub(crate) fn with_model(&self, model: Model) -> Option<Problem<'a>> {
+    pub(crate) fn with_model(&self, model: Model) -> Option<Problem> {
         let is_material = |parameter: &&Parameter| matches!(parameter.kind, Kind::Material(_));
         if self.parameters.iter().filter(is_material).any(|parameter| parameter.given.is_some()) {
             return None;
@@ -121,6 +147,13 @@ impl<'a> Problem<'a> {
         let mut all = self.model.of_contained(inner, material, self.window[1]);
         all.extend_from_slice(others);
         all
+    }
+
+    /// The same problem with the weights of curves alone.
+    pub(crate) fn without_outliers(&self) -> Problem {
+        let mut problem = self.clone();
+        problem.parts.iter_mut().for_each(|part| part.weights.fill(part.scale));
+        problem
     }
 
     /// Number of samples of all curves.
@@ -212,12 +245,19 @@ impl<'a> Problem<'a> {
         self.value_of(values, Kind::Stiffness).unwrap_or(self.parts[curve].experiment.stiffness)
     }
 
+    /// Counts an evaluation of a curve.
+    fn count<T: Real>(&self, curve: usize, prony: &Prony<T>) {
+        let each = if T::DERIVES { LANES + 1 } else { 1 };
+        self.work.set(self.work.get() + each * self.parts[curve].len() * prony.moduli.len());
+    }
+
     /// Response of one curve.
     pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
         let contact_point = self.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
         let mut samples = Vec::with_capacity(self.parts[curve].len());
         let push = |response: Response<f64>, _: &[Term<f64>]| samples.push(response.into());
         let stiffness = self.stiffness(curve, values);
+        self.count(curve, prony);
         self.parts[curve].respond(curve, prony, contact_point, stiffness, &mut Roots::default(), push)?;
         Ok(samples)
     }
@@ -310,6 +350,8 @@ impl<'a> Problem<'a> {
                 });
                 let spring =
                     dual(stiffness, &|_, parameter| if parameter.kind == Kind::Stiffness { stiffness } else { 0.0 });
+                self.count(curve, &prony);
+                self.count(curve, &derived);
                 part.respond(curve, &prony, contact_point, stiffness, &mut roots, |_, _| {})?;
                 let mut forces = Vec::with_capacity(part.len());
                 part.respond(curve, &derived, shift, spring, &mut roots, |response, _| forces.push(response.force))?;

@@ -149,7 +149,7 @@ impl Fit {
         let rates: Vec<f64> = std::iter::once(0.0).chain(times.map(|time| 1.0 / time)).collect();
         let total = self.modulus(0.0);
         let prony = Prony { moduli: vec![LEAST * total; rates.len()], rates: rates.clone() };
-        let mut path = self.prony().clone();
+        let mut path = self.prony();
         let own = path.moduli.len();
         path.moduli.extend(prony.moduli);
         path.rates.extend(prony.rates);
@@ -180,8 +180,8 @@ impl Fit {
             reason: "the forces of the decades are not finite: check the times and the noise",
         })?;
         let inverse = inverse.inverse();
+        let prony = self.prony();
         let modulus = |[low, high]: [f64; 2]| {
-            let prony = self.prony();
             let inside =
                 prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| (low..high).contains(&(1.0 / **rate)));
             inside.fold(0.0, |sum, (modulus, _)| sum + modulus)
@@ -204,9 +204,10 @@ fn rates([shortest, longest]: [f64; 2]) -> Vec<f64> {
 
 /// The modulus of a fit, shared out to the nearest rates.
 fn nearest(fit: &Fit, rates: &[f64]) -> Prony {
-    let total: f64 = fit.prony().moduli.iter().sum();
+    let prony = fit.prony();
+    let total: f64 = prony.moduli.iter().sum();
     let mut moduli = vec![LEAST * total; rates.len()];
-    for (modulus, rate) in fit.prony().moduli.iter().zip(&fit.prony().rates) {
+    for (modulus, rate) in prony.moduli.iter().zip(&prony.rates) {
         let distance = |other: f64| {
             if *rate == 0.0 || other == 0.0 {
                 if *rate == other { 0.0 } else { 1e9 }
@@ -221,7 +222,7 @@ fn nearest(fit: &Fit, rates: &[f64]) -> Prony {
 }
 
 /// Force of each term per unit modulus, by term, curve and sample.
-fn basis(problem: &Problem<'_>, values: &[f64], prony: &Prony) -> Result<Vec<Vec<Vec<f64>>>> {
+fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Vec<Vec<Vec<f64>>>> {
     let mut basis = vec![Vec::with_capacity(problem.parts.len()); prony.moduli.len()];
     for (curve, part) in problem.parts.iter().enumerate() {
         let contact_point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();

@@ -6,8 +6,9 @@ use crate::model::Model;
 use crate::parameters::Kind;
 use crate::problem::Problem;
 
-/// A force whose range is below this many standard deviations of its scatter has no contact.
-const LEAST_RANGE: f64 = 9.0;
+/// The variance of a force without contact is above the square of its scatter by less than this over the root of the number of samples:
+/// six deviations of their ratio if the noise is white (J. von Neumann, 1941).
+const NO_CONTACT: f64 = 11.0;
 /// Contact points tried at first, and then between the neighbours of the best.
 const CONTACT_POINTS: usize = 24;
 /// Searches at most.
@@ -16,7 +17,7 @@ const STARTS: usize = 4;
 const TIMES: usize = 6;
 
 /// Coordinates from which searches may begin, best first.
-pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
+pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
     let initial = |parameter: &crate::parameters::Parameter| match (parameter.given, parameter.kind) {
         (Some(value), _) => value,
         (None, Kind::Stiffness) => problem.parts[0].experiment.stiffness,
@@ -24,16 +25,11 @@ pub(crate) fn starts(problem: &Problem<'_>) -> Result<Vec<Vec<f64>>> {
     };
     let mut values: Vec<f64> = problem.parameters.iter().map(initial).collect();
     for (curve, part) in problem.parts.iter().enumerate() {
-        let scatter = scatter(&part.data);
-        let [low, high] = part.data.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-        if high - low <= LEAST_RANGE * scatter {
-            return Err(Error::NoContact { curve });
-        }
         let at = problem.parameters.iter().position(|p| p.kind == Kind::ContactPoint(curve));
         if let Some(at) = at.filter(|&at| problem.parameters[at].given.is_none()) {
             let has_offset = problem.parameters.iter().any(|p| p.kind == Kind::Offset(curve) && p.is_free);
             let give = 1.0 / problem.stiffness(curve, &values);
-            values[at] = contact_point(part.experiment, &part.data, give, has_offset);
+            values[at] = contact_point(&part.experiment, &part.data, give, has_offset);
         }
     }
     let reference = elastic_modulus(problem, &values);
@@ -64,7 +60,7 @@ fn is_modulus(name: &str) -> bool {
 
 /// The modulus of an elastic body that fits the forces best, at the depths that a spring leaves of the drive: a softer body would let
 /// the tip deeper than it was, perhaps beyond its last elastic state.
-fn elastic_modulus(problem: &Problem<'_>, values: &[f64]) -> f64 {
+fn elastic_modulus(problem: &Problem, values: &[f64]) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for (curve, part) in problem.parts.iter().enumerate() {
         let tip = &part.experiment.tip;
@@ -72,14 +68,26 @@ fn elastic_modulus(problem: &Problem<'_>, values: &[f64]) -> f64 {
         let give = 1.0 / problem.stiffness(curve, values);
         for (z, force) in part.experiment.protocol.drive().iter().zip(&part.data) {
             let depth = z - point - give * force.max(0.0);
-            let elastic = if depth > 0.0 { tip.level_at(tip.approach(0.0) + depth) } else { 0.0 };
+            let elastic = part.scale * if depth > 0.0 { tip.level_at(tip.approach(0.0) + depth) } else { 0.0 };
             if elastic.is_finite() {
-                (product, square) = (product + elastic * force, square + elastic * elastic);
+                (product, square) = (product + elastic * part.scale * force, square + elastic * elastic);
             }
         }
     }
     let modulus = product / square;
     if modulus.is_finite() && modulus > 0.0 { modulus } else { 1.0 }
+}
+
+/// Refuses curves without contact.
+pub(crate) fn check_contact(problem: &Problem) -> Result<()> {
+    let is_flat = |data: &[f64]| {
+        let count = data.len() as f64;
+        let mean = data.iter().sum::<f64>() / count;
+        let variance = data.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / count;
+        variance <= (1.0 + NO_CONTACT / count.sqrt()) * scatter(data).powi(2)
+    };
+    let flat = problem.parts.iter().position(|part| is_flat(&part.data));
+    flat.map_or(Ok(()), |curve| Err(Error::NoContact { curve }))
 }
 
 /// Standard deviation of the noise, from second differences.
@@ -89,7 +97,7 @@ pub(crate) fn scatter(data: &[f64]) -> f64 {
 }
 
 /// Scales the free moduli to the data; returns the sum of squared deviations.
-fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
+fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
     // with a spring, the force is not proportional to the moduli
     let is_stiff = (0..problem.parts.len()).all(|curve| problem.stiffness(curve, values) == f64::INFINITY);
     let rounds = if is_stiff { 1 } else { 2 };
@@ -101,9 +109,10 @@ fn scaled(problem: &Problem<'_>, values: &mut [f64]) -> Result<f64> {
             let samples = problem.samples(curve, values, &prony)?;
             let rest: Vec<f64> = problem.measured(curve, values, samples.iter().map(|_| 0.0));
             for ((sample, data), rest) in samples.iter().zip(&part.data).zip(rest) {
-                product += sample.force * (data - rest);
-                square += sample.force * sample.force;
-                data_square += (data - rest) * (data - rest);
+                let (force, data) = (part.scale * sample.force, part.scale * (data - rest));
+                product += force * data;
+                square += force * force;
+                data_square += data * data;
             }
         }
         let factor = product / square;
@@ -133,27 +142,32 @@ fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
     let time = |k: f64| (low + (high - low) * k).exp();
     let times = || (0..TIMES).map(move |k| time((k as f64 + 0.5) / TIMES as f64));
     let ratios = [0.6, 0.2, 0.04];
-    match model {
-        Model::Elastic => vec![vec![1.0]],
-        Model::Maxwell => times().map(|tau| vec![1.0, tau]).collect(),
-        Model::Zener => ratios.iter().flat_map(|&ratio| times().map(move |tau| vec![1.0, ratio, tau])).collect(),
-        Model::PowerLaw { .. } => [0.03, 0.1, 0.2, 0.35, 0.5, 0.75].iter().map(|&alpha| vec![1.0, alpha]).collect(),
-        Model::FractionalZener => {
-            let pairs = ratios.iter().flat_map(|&ratio| [0.35, 0.7].map(move |alpha| (ratio, alpha)));
-            pairs.flat_map(|(ratio, alpha)| times().map(move |tau| vec![1.0, ratio, tau, alpha])).collect()
-        }
-        Model::Prony(terms) => {
-            // the times spread over the whole range, or over a part of it
-            let spreads = [(0.05, 0.95), (0.05, 0.6), (0.4, 0.95)];
-            let grid = ratios.iter().flat_map(|&ratio| spreads.map(move |spread| (ratio, spread)));
-            grid.map(|(ratio, (from, to))| {
-                let each = (1.0 - ratio) / terms.max(1) as f64;
-                let place = |k: usize| from + (to - from) * (k as f64 + 0.5) / terms as f64;
-                std::iter::once(ratio).chain((0..terms).flat_map(|k| [each, time(place(k))])).collect()
-            })
-            .collect()
-        }
+    if let Model::Prony(terms) = model {
+        // the times spread over the whole range, or over a part of it
+        let spreads = [(0.05, 0.95), (0.05, 0.6), (0.4, 0.95)];
+        let grid = ratios.iter().flat_map(|&ratio| spreads.map(move |spread| (ratio, spread)));
+        let spread = |(ratio, (from, to)): (f64, (f64, f64))| {
+            let each = (1.0 - ratio) / terms.max(1) as f64;
+            let place = |k: usize| from + (to - from) * (k as f64 + 0.5) / terms as f64;
+            std::iter::once(ratio).chain((0..terms).flat_map(|k| [each, time(place(k))])).collect()
+        };
+        return grid.map(spread).collect();
     }
+    let names = model.parameters();
+    let has_times = names.iter().any(|name| name.starts_with("tau"));
+    let values = |index: usize| -> Vec<f64> {
+        match names[index].as_str() {
+            _ if index == 0 => vec![1.0],
+            name if is_modulus(name) => ratios.to_vec(),
+            name if name.starts_with("tau") => times().collect(),
+            _ if has_times => vec![0.35, 0.7],
+            _ => vec![0.03, 0.1, 0.2, 0.35, 0.5, 0.75],
+        }
+    };
+    (0..names.len()).fold(vec![vec![]], |grid, index| {
+        let values = values(index);
+        grid.iter().flat_map(|first| values.iter().map(move |&value| [&first[..], &[value]].concat())).collect()
+    })
 }
 
 /// The contact point for which an elastic law, with an offset if there is one, fits the loading best.

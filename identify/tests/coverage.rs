@@ -84,7 +84,7 @@ fn curves_of_unequal_noise_are_weighed() {
     let (mut joint, mut alone) = (Vec::new(), Vec::new());
     for seed in 0..seeds() {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);
-        let curves = [noisy(&experiments[0], 0.002, 0.0, rng), noisy(&experiments[1], 0.04, 0.0, rng)];
+        let curves = [noisy(&experiments[0], 0.004, 0.0, rng), noisy(&experiments[1], 0.08, 0.0, rng)];
         alone.push(fitting.fit(&curves[..1]).unwrap());
         joint.push(fitting.fit(&curves).unwrap());
     }
@@ -126,5 +126,35 @@ fn outliers_have_no_weight() {
         );
         assert_covers(covered, name);
         assert!(error < 1.3 * clean && error < plain, "{name}");
+    }
+}
+
+/// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 15 million are a second of one core.
+#[test]
+fn searches_take_little_work() {
+    let models: [(Model, &[f64], usize); 7] = [
+        (Model::Zener, &[4.0e3, 1.0e3, 0.5], 1),
+        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 5),
+        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 5),
+        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 5),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 25),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 8),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 8),
+    ];
+    let rng = &mut ChaCha8Rng::seed_from_u64(3);
+    for (model, values, millions) in models {
+        let times: Vec<f64> = (0..1000).map(|k| 2.0 * f64::from(k) / 999.0).collect();
+        let drive = times.iter().map(|&t: &f64| 1.2e-6 * t.min(1.0) - 0.2e-6 + 1e-9 * normal(rng)).collect();
+        let sphere = ElasticStates::sphere(5e-6).unwrap();
+        let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere).with_spring(0.05).unwrap();
+        let names = model.parameters();
+        let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
+        let samples = Identification::new(model).respond(&experiment, &named).unwrap();
+        let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
+        let force = samples.iter().map(|sample| sample.force + 0.01 * greatest * normal(rng)).collect();
+        let fitting = Identification::new(model).contact_point(Nuisance::Fitted);
+        let work = fitting.fit(&[Curve::new(experiment, force).unwrap()]).unwrap().work();
+        println!("{model:?} {values:?}: {:.2} million", work as f64 * 1e-6);
+        assert!(work > 50_000 && work < millions * 1_000_000, "{model:?} {values:?}: {work}");
     }
 }

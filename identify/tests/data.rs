@@ -81,7 +81,7 @@ fn errors_of_files_name_the_line() {
         ("t [s],z [nm],F [nN]\n1,2,3\n\n2,3,x\n", "line 4, column 3: \"x\" is not a number"),
         ("t [s];z [nm];F [nN]\n1;2,000;3,500\n", "decimal_comma"),
         ("t [s],z [nm],F [nN]\n1,2,NaN\n", "line 2, column 3: \"NaN\" is not a number"),
-        ("t [s],z [nm],F [nN]\n1,2,3\n1,2,4\n", "line 3: the time 1e0 s follows 1e0 s"),
+        ("t [s],z [nm],F [nN]\n1,2,3\n1,2,4\n", "line 3: the time 1.0 s follows 1.0 s"),
         ("", "line 1: not exactly one heading names the time"),
     ];
     for (text, expected) in cases {

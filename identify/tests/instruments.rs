@@ -114,7 +114,7 @@ fn six_instruments_give_the_material_of_their_files() -> Result<()> {
 
 /// Number of seeds: `SYSTEMATIC_SEEDS`, or fewer.
 fn seeds() -> u64 {
-    std::env::var("SYSTEMATIC_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(4)
+    std::env::var("SYSTEMATIC_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(40)
 }
 
 /// What instruments add: fits with the nuisance that describes it are unbiased, and where none is described, the fit says so.

@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
-use viscocontact_identify::{Curve, Experiment, Identification, Model, Nuisance, Protocol};
+use viscocontact_identify::{Curve, Experiment, Identification, Law, Model, Nuisance, Protocol};
 
 use crate::random::normal;
 use crate::scenes::scene;
@@ -120,4 +120,35 @@ fn intervals_between_samples_cost_little() {
         }
     }
     assert_eq!(errors.len(), 9);
+}
+
+/// Laws that are no sums of few exponentials, one of them the user's.
+#[test]
+fn laws_of_other_kinds_are_found() {
+    let logarithmic = Law {
+        name: "logarithmic",
+        parameters: &["E0", "tau"],
+        modulus: |of, t| of[0] / (1.0 + 0.2 * (t / of[1]).ln_1p()),
+    };
+    let cases: [(Model, &[f64]); 3] = [
+        (Model::Stretched, &[4.0e3, 1.0e3, 0.3, 0.6]),
+        (Model::PowerLawSolid { cutoff: 1e-6 }, &[1.0e3, 0.4, 5.0e2]),
+        (Model::Custom(logarithmic), &[4.0e3, 0.05]),
+    ];
+    let protocol = Protocol::trapezoid(1.0e-6, [0.2, 2.0, 0.3], 0.01).unwrap();
+    let experiment = Experiment::new(protocol, ElasticStates::sphere(5.0e-6).unwrap());
+    let mut compared = 0;
+    for (model, truth) in cases {
+        let (fitting, names) = (Identification::new(model), model.parameters());
+        let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(truth.iter().copied()).collect();
+        let samples = fitting.respond(&experiment, &named).unwrap();
+        let force = samples.iter().map(|sample| sample.force).collect();
+        let fit = fitting.fit(&[Curve::new(experiment.clone(), force).unwrap()]).unwrap();
+        for (name, value) in named {
+            let error = fit.estimate(name).unwrap().value / value - 1.0;
+            assert!(error.abs() < 1e-6, "{model}: {name} off by {error:e}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 9);
 }

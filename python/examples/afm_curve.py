@@ -1,6 +1,6 @@
 """An AFM curve of a gel, read by afmformats where it is installed (`--curve file`), else simulated, and identified.
 
-    python afm_curve.py --curve curve.jpk-force --radius 5e-6 --stiffness 0.05
+    python afm_curve.py --curve curve.jpk-force --radius 5e-6
 """
 
 import argparse
@@ -18,7 +18,7 @@ arguments.add_argument("--quick", action="store_true")
 arguments.add_argument("--output", type=pathlib.Path, default=pathlib.Path("out"))
 arguments.add_argument("--curve", type=pathlib.Path, help="file of an instrument; default: a simulated curve")
 arguments.add_argument("--radius", type=float, default=5e-6, help="radius of the tip [m]")
-arguments.add_argument("--stiffness", type=float, default=0.05, help="of the cantilever [N/m]")
+arguments.add_argument("--stiffness", type=float, help="of the cantilever [N/m]; default: that of the file")
 arguments = arguments.parse_args()
 arguments.output.mkdir(parents=True, exist_ok=True)
 
@@ -31,10 +31,12 @@ if arguments.curve:
     data = afmformats.load_data(arguments.curve)[0]
     # afmformats: the height of the piezo falls toward the sample
     recording = vc.Recording(data["time"], force=data["force"], drive=-data["height (measured)"])
-    curve = recording.curve(tip, stiffness=arguments.stiffness)
+    curve = recording.curve(tip, stiffness=arguments.stiffness or data.metadata["spring constant"])
+    if curve.pull_off():
+        curve = curve.until_release()  # the model does not stick
 else:
     step = 0.02 if arguments.quick else 0.005
-    experiment = vc.Experiment.trapezoid(2e-6, (1.0, 3.0, 1.0), step, tip, stiffness=arguments.stiffness)
+    experiment = vc.Experiment.trapezoid(2e-6, (1.0, 3.0, 1.0), step, tip, stiffness=arguments.stiffness or 0.05)
     force, _ = zener.respond(experiment, truth)
     curve = vc.Curve(experiment, force + 2e-11 * np.random.default_rng(1).normal(size=len(force)))
 curve.check()

@@ -22,11 +22,7 @@ use crate::sliding::complex;
 #[pyfunction]
 pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
     let of = an::Hertz::new(radius, modulus, force).or_raise()?;
-    let all = PyDict::new(py);
-    all.set_item("contact_radius", of.contact_radius)?;
-    all.set_item("max_pressure", of.max_pressure)?;
-    all.set_item("approach", of.approach)?;
-    Ok(all)
+    Ok(dict! { py; "contact_radius": of.contact_radius, "max_pressure": of.max_pressure, "approach": of.approach })
 }
 
 /// A sphere on a viscoelastic half-space under a force for which the contact never shrinks (Lee and Radok).
@@ -60,11 +56,201 @@ impl GrowingSphere {
     }
 }
 
-/// Pull-off force [N] of a sphere of `radius` [m] that sticks with the `work` of separation [J/m²] to a body of contact `modulus` E* [Pa],
-/// by Johnson, Kendall and Roberts.
+/// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
 #[pyfunction]
-pub fn jkr_pull_off(radius: f64, modulus: f64, work: f64) -> PyResult<f64> {
-    Ok(an::Jkr::new(radius, modulus, work).or_raise()?.pull_off_force())
+pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
+    let of = an::HertzEllipse::new(radii, modulus, force).or_raise()?;
+    Ok(dict! { py; "semi_axes": of.semi_axes, "max_pressure": of.max_pressure, "approach": of.approach })
+}
+
+/// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
+#[pyfunction]
+#[pyo3(signature = (radius, modulus, force, eccentricity=0.0))]
+pub fn rigid_punch<'py>(
+    py: Python<'py>,
+    radius: f64,
+    modulus: f64,
+    force: f64,
+    eccentricity: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let of = an::RigidPunch::new(radius, modulus, force, eccentricity).or_raise()?;
+    Ok(dict! { py; "approach": of.approach, "tilt": of.tilt })
+}
+
+/// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
+/// "half_width" and "center" of the contact [m], and "friction". `compliances` are C₀ at once and C₁ delayed [1/Pa], `reach` the velocity
+/// times the retardation time [m].
+#[pyfunction]
+pub fn rolling_cylinder<'py>(
+    py: Python<'py>,
+    radius: f64,
+    compliances: [f64; 2],
+    force: f64,
+    reach: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let of = an::RollingCylinder::new(radius, compliances, force, reach).or_raise()?;
+    Ok(dict! { py; "half_width": of.half_width, "center": of.center, "friction": of.friction })
+}
+
+/// Closed forms of bodies that stick: a class of each, its getters, and its functions of a number.
+macro_rules! sticking {
+    ($(
+        $(#[$about:meta])*
+        $class:ident($($given:ident),*) {
+            $($(#[$doc:meta])* $name:ident: $type:ty = |$of:ident| $value:expr;)*
+        }
+        [$(#[$told:meta] $function:ident($at:ident) -> $result:ty)?]
+    )*) => {$(
+        $(#[$about])*
+        #[pyclass(frozen, module = "viscocontact")]
+        pub struct $class(an::$class);
+
+        #[pymethods]
+        impl $class {
+            #[new]
+            fn new($($given: f64),*) -> PyResult<$class> {
+                an::$class::new($($given),*).or_raise().map($class)
+            }
+
+            $(
+                $(#[$doc])*
+                #[getter]
+                fn $name(&self) -> $type {
+                    let $of = &self.0;
+                    $value
+                }
+            )*
+
+            $(
+                #[$told]
+                fn $function(&self, $at: f64) -> $result {
+                    self.0.$function($at).into()
+                }
+            )?
+        }
+    )*};
+}
+
+sticking! {
+    /// Johnson, Kendall and Roberts: a sphere of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] by an attraction of vanishing
+    /// range, with the `work` of separation [J/m²].
+    ///
+    /// >>> gel = Jkr(1e-3, 1e5, 0.05)
+    /// >>> force, approach = gel.state(gel.radius_at_pull_off)
+    /// >>> abs(force / gel.pull_off_force - 1) < 1e-12 and approach < 0
+    /// True
+    Jkr(radius, modulus, work) {
+        /// The least force [N].
+        pull_off_force: f64 = |of| of.pull_off_force();
+        /// The contact radius at the least force [m].
+        radius_at_pull_off: f64 = |of| of.radius_at_pull_off();
+        /// The contact radius at the least approach [m].
+        radius_at_least_approach: f64 = |of| of.radius_at_least_approach();
+    }
+    [
+        /// Force [N] and approach [m] at a contact radius [m].
+        state(contact_radius) -> (f64, f64)
+    ]
+
+    /// Derjaguin, Muller and Toporov: a sphere of `radius` [m] that sticks to a stiff body of contact `modulus` E* [Pa] by an attraction of long
+    /// range, with the `work` of separation [J/m²].
+    Dmt(radius, modulus, work) {
+        /// The least force [N].
+        pull_off_force: f64 = |of| of.pull_off_force();
+    }
+    [
+        /// Force [N] and approach [m] at a contact radius [m].
+        state(contact_radius) -> (f64, f64)
+    ]
+
+    /// Maugis: a sphere of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] by a constant `traction` [Pa], with the `work` of
+    /// separation [J/m²].
+    MaugisDugdale(radius, modulus, work, traction) {
+        /// Maugis' parameter λ: `Dmt` is 0, `Jkr` infinity.
+        parameter: f64 = |of| of.parameter();
+        /// The least force [N], and the contact radius there [m].
+        pull_off: (f64, f64) = |of| of.pull_off().into();
+    }
+    [
+        /// Force [N] and approach [m] at a contact radius [m].
+        state(contact_radius) -> (f64, f64)
+    ]
+
+    /// Kendall: a rigid flat circular punch of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] with the `work` of separation
+    /// [J/m²].
+    AdhesivePunch(radius, modulus, work) {
+        /// The least force [N].
+        pull_off_force: f64 = |of| of.pull_off_force();
+        /// The approach at the least force [m].
+        approach_at_pull_off: f64 = |of| of.approach_at_pull_off();
+    } []
+
+    /// Barquins: a cylinder of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] in plane strain, with the `work` of separation
+    /// [J/m²].
+    AdhesiveCylinder(radius, modulus, work) {
+        /// The least force on a unit of length [N/m].
+        pull_off_force: f64 = |of| of.pull_off_force();
+        /// The half-width of the contact at the least force [m].
+        width_at_pull_off: f64 = |of| of.width_at_pull_off();
+    }
+    [
+        /// The force on a unit of length [N/m] at a half-width of the contact [m].
+        force(half_width) -> f64
+    ]
+
+    /// Johnson: a wavy surface of `amplitude` and `wavelength` [m] that sticks to a body of contact `modulus` E* [Pa] in plane strain, with the
+    /// `work` of separation [J/m²].
+    AdhesiveWave(amplitude, wavelength, modulus, work) {
+        /// The strength α of the attraction: from 0.57 on the surfaces jump into full contact without load.
+        strength: f64 = |of| of.strength();
+        /// The half-width of the contacts at the least mean pressure [m].
+        width_at_pull_off: f64 = |of| of.width_at_pull_off();
+        /// The least mean pressure [Pa].
+        pull_off_pressure: f64 = |of| of.pull_off_pressure();
+    }
+    [
+        /// The mean pressure [Pa] at a half-width of the contacts [m].
+        mean_pressure(half_width) -> f64
+    ]
+}
+
+/// The edge of a contact that opens on a creeping body (Schapery, Greenwood) under an attraction of `work` [J/m²] and `range` [m].
+///
+/// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct OpeningEdge(an::OpeningEdge);
+
+#[pymethods]
+impl OpeningEdge {
+    #[new]
+    #[pyo3(signature = (material, work, range, *, zone=None))]
+    fn new(material: &Material, work: f64, range: f64, zone: Option<f64>) -> PyResult<OpeningEdge> {
+        let edge = an::OpeningEdge::new(&material.material, work, range).or_raise()?;
+        zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise().map(OpeningEdge)
+    }
+
+    /// The work that opens a unit of area [J/m²] at a speed of the edge [m/s].
+    fn work(&self, speed: f64) -> PyResult<f64> {
+        self.0.work(speed).or_raise()
+    }
+
+    /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the greatest pull: "force" [N], "approach" and
+    /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²].
+    fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
+        let of = py.detach(|| self.0.pull_off(radius, approach, speed)).or_raise()?;
+        Ok(dict! { py;
+            "force": of.force,
+            "approach": of.approach,
+            "contact_radius": of.contact_radius,
+            "edge_speed": of.edge_speed,
+            "work": of.work,
+        })
+    }
+}
+
+getters! {OpeningEdge, of:
+    /// The length E*ρ²/w of the relaxed body [m].
+    length: f64 = of.length();
 }
 
 /// Persson's theory of a rubber that slides on a rough surface: the coefficient of friction and the share of the surface in contact.

@@ -61,13 +61,19 @@ pub fn plane(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, [usiz
 
 /// One value for each cell, none of them NaN.
 pub fn field(name: &str, object: &Bound<'_, PyAny>, cells: [usize; 2]) -> PyResult<Vec<f64>> {
+    let values = cell_values(name, object, cells)?;
+    no_nan(name, &values)?;
+    Ok(values)
+}
+
+/// One value for each cell.
+pub fn cell_values(name: &str, object: &Bound<'_, PyAny>, cells: [usize; 2]) -> PyResult<Vec<f64>> {
     let (values, shape) = plane(name, object)?;
     if shape != cells {
         return Err(PyValueError::new_err(format!(
             "{name}: the shape {cells:?} of the grid is needed, the array has {shape:?}"
         )));
     }
-    no_nan(name, &values)?;
     Ok(values)
 }
 

@@ -10,8 +10,8 @@ use viscocontact::UserError;
 use viscocontact::adhesion::{self as ad, Attraction as Law};
 
 use crate::arrays::mapped;
-use crate::errors::{OrRaise, raise};
-use crate::recipe::{Recipe, Reduced};
+use crate::errors::{OrRaise, no_violation, raise};
+use crate::recipe::Recipe;
 
 /// A law of the attraction between surfaces: traction [Pa] over gap [m].
 ///
@@ -116,6 +116,13 @@ impl Attraction {
         }
     }
 
+    /// Checks the laws of attractions: a traction that falls with the gap, and the energy its integral. Raises ValueError with the first
+    /// violation.
+    fn check(&self, py: Python<'_>) -> PyResult<()> {
+        let verdict = py.detach(|| ad::laws::all(&*self.law));
+        self.law.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+    }
+
     /// Traction [Pa] at gaps [m].
     fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         mapped("gap", gap, |gap| self.law.traction(gap))
@@ -142,15 +149,9 @@ impl Attraction {
     fn tabor_number(&self, radius: f64, modulus: f64) -> PyResult<f64> {
         ad::tabor_number(&*self.law, radius, modulus).or_raise()
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(Attraction);
 
 /// A law of two functions in Python.
 struct OwnLaw {

@@ -11,19 +11,18 @@ use viscocontact::{self as vc, motion};
 
 use crate::errors::OrRaise;
 use crate::grid::Grid;
-use crate::held::{Held, Options};
+use crate::held::Held;
 use crate::interrupt::interruptible;
 use crate::kernels::axis;
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::recipe::Recipe;
 use crate::reports::StepReport;
-use crate::run::Run;
 use crate::scene::builder;
 use crate::shapes::{Shape, geometries};
 
 /// Steps on more cells, ...
-const MANY_CELLS: usize = 1 << 15;
+const MANY_CELLS: usize = 1 << 17;
 /// ... and steps after one that took longer are computed while the thread that called listens for Ctrl-C.
 const LONG: Duration = Duration::from_millis(10);
 
@@ -42,8 +41,8 @@ const LONG: Duration = Duration::from_millis(10);
 ///     The bodies, if they are not half-spaces.
 /// attraction : Attraction, optional
 /// temperature : TemperatureHistory, optional
-/// times : (float, float), optional
-///     The loading times over which the material is needed [s].
+/// times : (float, float) or (load, float), optional
+///     The loading times over which the material is needed [s]: from the first to the last, or those of a load to the time `until`.
 /// tolerance : float, default 1e-6
 ///     Of the contact problem, relative to the displacement.
 /// max_iterations : int, default 1000
@@ -73,7 +72,7 @@ const LONG: Duration = Duration::from_millis(10);
 pub struct ViscoelasticContact {
     pub held: Held<vc::ViscoelasticContact>,
     pub recipe: Recipe,
-    cancel: Arc<AtomicBool>,
+    pub cancel: Arc<AtomicBool>,
     last: Duration,
 }
 
@@ -84,11 +83,6 @@ impl ViscoelasticContact {
 
     pub fn get(&self) -> PyResult<&vc::ViscoelasticContact> {
         self.held.contact()
-    }
-
-    /// A copy of a state of this contact.
-    pub fn copy_of(&self, py: Python<'_>, contact: vc::ViscoelasticContact) -> ViscoelasticContact {
-        ViscoelasticContact::of(contact, self.recipe.again(py))
     }
 
     /// Computes what may take long, on the contact taken out of its run.
@@ -225,51 +219,6 @@ impl ViscoelasticContact {
         })
     }
 
-    /// Follows a load to the time `until` [s]: an iterator over the reports of the steps.
-    ///
-    /// Parameters
-    /// ----------
-    /// load : LoadHistory, Load (held), sequence of (time, load), or function of time that returns a Load
-    /// until : float
-    /// tolerance : float, default 1e-3
-    ///     Steps are as long as their estimated error in time allows.
-    /// dt : float, optional
-    ///     Equal steps of this length instead [s].
-    /// stop_at : times, optional
-    ///     Where steps end too: a sequence of times [s], or `Times`.
-    /// sample_at : times, optional
-    ///     Times at which `Run.samples` and `Run.table` give the state. Samples leave the steps as they are.
-    /// progress : function, optional
-    ///     Called after each step with the share of the time that is over; the run ends with `Cancelled` where it returns False.
-    /// autosave : (path, seconds), optional
-    ///     Saves the run to a checkpoint as often.
-    ///
-    /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
-    /// >>> history = [(0, Load.force(0)), (0.5, Load.force(0.5)), (1, Load.force(0.1))]
-    /// >>> for report in contact.follow(history, until=1.0, tolerance=1e-2):
-    /// ...     area = contact.contact_area
-    /// >>> report.time
-    /// 1.0
-    #[pyo3(signature = (load, until, *, tolerance=None, dt=None, stop_at=None, sample_at=None, progress=None, autosave=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn follow(
-        slf: Bound<'_, Self>,
-        load: &Bound<'_, PyAny>,
-        until: f64,
-        tolerance: Option<f64>,
-        dt: Option<f64>,
-        stop_at: Option<Bound<'_, PyAny>>,
-        sample_at: Option<Bound<'_, PyAny>>,
-        progress: Option<Py<PyAny>>,
-        autosave: Option<(std::path::PathBuf, f64)>,
-    ) -> PyResult<Run> {
-        let options = Options::new(load, until, tolerance, dt, stop_at, sample_at, progress, autosave)?;
-        let mut contact = slf.borrow_mut();
-        let cancel = Arc::clone(&contact.cancel);
-        let run = contact.held.follow(&options, cancel)?;
-        Ok(Run::in_space(slf.clone().unbind(), run, options))
-    }
-
     /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.
     fn set_geometry(&mut self, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
         let contact = self.held.free()?;
@@ -300,16 +249,7 @@ impl ViscoelasticContact {
     fn within_step(&self, py: Python<'_>, time: f64) -> PyResult<ViscoelasticContact> {
         let contact = self.get()?;
         let within = py.detach(|| contact.within_step(time)).or_raise()?;
-        Ok(self.copy_of(py, within))
-    }
-
-    fn __copy__(&self, py: Python<'_>) -> PyResult<ViscoelasticContact> {
-        let contact = self.get()?;
-        Ok(self.copy_of(py, py.detach(|| contact.clone())))
-    }
-
-    fn __deepcopy__(&self, py: Python<'_>, _memo: Bound<'_, PyAny>) -> PyResult<ViscoelasticContact> {
-        self.__copy__(py)
+        Ok(ViscoelasticContact::of(within, self.recipe.again(py)))
     }
 
     fn __repr__(&self) -> PyResult<String> {
@@ -325,13 +265,12 @@ pub struct Snapshot(ct::Snapshot);
 
 #[pymethods]
 impl Snapshot {
-    /// The time of the state [s].
-    #[getter]
-    fn time(&self) -> f64 {
-        self.0.time()
-    }
-
     fn __repr__(&self) -> String {
         format!("Snapshot(time={} s)", self.0.time())
     }
+}
+
+getters! {Snapshot, of:
+    /// The time of the state [s].
+    time: f64 = of.time();
 }

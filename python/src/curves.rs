@@ -7,11 +7,13 @@ use numpy::IntoPyArray;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use viscocontact::load::LoadHistory as _;
 use viscocontact_identify as id;
 
 use crate::arrays::{Array, column, to_array};
-use crate::errors::{OrRaise, choice};
-use crate::measured::text_format;
+use crate::errors::{OrRaise, choice, no_exception, raised_number};
+use crate::loads::{Load, LoadHistory};
+use crate::measured::text_table;
 use crate::states::ElasticStates;
 
 /// A drive and the tip that it presses onto the sample, before the force is measured.
@@ -65,6 +67,45 @@ impl Experiment {
         Experiment::of(id::Protocol::trapezoid(depth, durations, interval).or_raise()?, tip, stiffness)
     }
 
+    /// A ramp at `speed` [m/s] from `distance` [m] above the surface to the drive `depth` [m], a hold [s], and the way back: the force curve of
+    /// an AFM, where the drive is the position of the base.
+    #[staticmethod]
+    #[pyo3(signature = (speed, distance, depth, hold, interval, tip, *, stiffness=None))]
+    fn ramp_hold_retract(
+        speed: f64,
+        distance: f64,
+        depth: f64,
+        hold: f64,
+        interval: f64,
+        tip: &ElasticStates,
+        stiffness: Option<f64>,
+    ) -> PyResult<Experiment> {
+        let protocol = id::Protocol::ramp_hold_retract(speed, [distance, depth], hold, interval);
+        Experiment::of(protocol.or_raise()?, tip, stiffness)
+    }
+
+    /// Each of the `depths` [m] is approached in the time `rise` [s] and held for `dwell` [s]; samples at `interval` [s].
+    #[staticmethod]
+    #[pyo3(signature = (depths, rise, dwell, interval, tip, *, stiffness=None))]
+    fn staircase(
+        depths: Vec<f64>,
+        rise: f64,
+        dwell: f64,
+        interval: f64,
+        tip: &ElasticStates,
+        stiffness: Option<f64>,
+    ) -> PyResult<Experiment> {
+        Experiment::of(id::Protocol::staircase(&depths, rise, dwell, interval).or_raise()?, tip, stiffness)
+    }
+
+    /// The drive as the load history of a contact: approaches, or springs.
+    fn load_history(&self, py: Python<'_>) -> PyResult<LoadHistory> {
+        let history = self.0.load_history().or_raise()?;
+        let loads = self.0.protocol().times().iter().map(|&t| Ok((t, Load::of(py, history.at(t))?)));
+        let rows = loads.collect::<PyResult<Vec<(f64, Load)>>>()?;
+        LoadHistory::table(py, rows.into_pyobject(py)?.into_any())
+    }
+
     /// The times [s].
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
@@ -91,18 +132,59 @@ impl Curve {
         id::Curve::new(experiment.0.clone(), column("force", force)?).or_raise().map(Curve)
     }
 
-    /// The experiment.
-    #[getter]
-    fn experiment(&self) -> Experiment {
-        Experiment(self.0.experiment().clone())
-    }
-
     /// The force [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         let force = self.0.force().to_vec();
         let n = force.len();
         to_array(py, force, &[n])
+    }
+
+    /// The part from the first time to before the last one [s].
+    fn within(&self, first: f64, last: f64) -> PyResult<Curve> {
+        self.0.within(first..last).or_raise().map(Curve)
+    }
+
+    /// The part until the drive first comes near its greatest value.
+    fn approach(&self) -> PyResult<Curve> {
+        self.0.approach().or_raise().map(Curve)
+    }
+
+    /// The part until the drive leaves its greatest value: approach and hold.
+    fn loading(&self) -> PyResult<Curve> {
+        self.0.loading().or_raise().map(Curve)
+    }
+
+    /// The part until the force returns to the base line: without the pull-off of a tip that sticks.
+    fn until_release(&self) -> PyResult<Curve> {
+        self.0.until_release().or_raise().map(Curve)
+    }
+
+    /// The force below the base line [N], where the tip is drawn back to the sample; None where noise explains it.
+    fn pull_off(&self) -> Option<f64> {
+        self.0.pull_off()
+    }
+
+    /// Oliver and Pharr: the modulus of the unloading, for comparison; off by the creep meanwhile. `area` is the cross section of the tip [m²]
+    /// at a distance from its end [m], a function: 2πR h of a paraboloid. "stiffness" [N/m], "contact_depth" [m], "area" [m²], "modulus" [Pa].
+    ///
+    /// >>> tip = ElasticStates.sphere(10e-6)
+    /// >>> experiment = Experiment.trapezoid(0.2e-6, (1.0, 1.0, 1.0), 0.01, tip)
+    /// >>> force, _ = Identification("elastic").respond(experiment, {"E": 1e9})
+    /// >>> read = Curve(experiment, force).oliver_pharr(0.0, lambda h: 6.2832 * 10e-6 * h)
+    /// >>> abs(read["modulus"] / 1e9 - 1) < 0.02
+    /// True
+    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Py<PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        let area = |h: f64| raised_number(Python::attach(|py| area.call1(py, (h,))?.extract(py)), f64::NAN);
+        let of = py.detach(|| id::usual::oliver_pharr(&self.0, contact_point, area)).or_raise();
+        no_exception()?;
+        let of = of?;
+        Ok(dict! { py;
+            "stiffness": of.stiffness,
+            "contact_depth": of.contact_depth,
+            "area": of.area,
+            "modulus": of.modulus,
+        })
     }
 
     /// Checks points, signs and units; raises ValueError with the cure.
@@ -126,15 +208,15 @@ impl Curve {
     #[pyo3(signature = (contact_point=None))]
     fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
         let of = py.detach(|| id::usual::loading_modulus(&self.0, contact_point)).or_raise()?;
-        let all = PyDict::new(py);
-        all.set_item("modulus", of.modulus)?;
-        all.set_item("offset", of.offset)?;
-        all.set_item("contact_point", of.contact_point)?;
-        Ok(all)
+        Ok(dict! { py;
+            "modulus": of.modulus,
+            "offset": of.offset,
+            "contact_point": of.contact_point,
+        })
     }
 
     /// The relaxation of a hold as E∞ + E₁ exp(−t/τ), with the `correction` of its ramp ("step", "half_ramp" or "factor"): "equilibrium",
-    /// "relaxing" [Pa], "time" [s].
+    /// "relaxing" and their sum "glassy" [Pa], "time" [s].
     #[pyo3(signature = (contact_point=0.0, correction="factor"))]
     fn hold_relaxation<'py>(
         &self,
@@ -146,16 +228,22 @@ impl Curve {
         let correction =
             choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
         let of = py.detach(|| id::usual::hold_relaxation(&self.0, contact_point, correction)).or_raise()?;
-        let all = PyDict::new(py);
-        all.set_item("equilibrium", of.equilibrium)?;
-        all.set_item("relaxing", of.relaxing)?;
-        all.set_item("time", of.time)?;
-        Ok(all)
+        Ok(dict! { py;
+            "equilibrium": of.equilibrium,
+            "relaxing": of.relaxing,
+            "glassy": of.glassy(),
+            "time": of.time,
+        })
     }
 
     fn __len__(&self) -> usize {
         self.0.force().len()
     }
+}
+
+getters! {Curve, of:
+    /// The experiment.
+    experiment: Experiment = Experiment(of.experiment().clone());
 }
 
 /// The columns of a measured curve, from arrays or a text file with headings.
@@ -207,11 +295,15 @@ impl Recording {
         Ok(Recording(recording))
     }
 
-    /// Reads a text file whose headings name the columns and their units.
+    /// Reads a text file whose headings name the columns and their units, with the keywords of `Measurements.from_csv`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, decimal_comma=None))]
-    fn from_csv(py: Python<'_>, path: PathBuf, decimal_comma: Option<bool>) -> PyResult<Recording> {
-        py.detach(|| id::Recording::from_csv(path, text_format(decimal_comma))).or_raise().map(Recording)
+    #[pyo3(
+        signature = (path, **reading),
+        text_signature = "(path, *, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
+    )]
+    fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<Recording> {
+        let table = text_table(path, reading)?;
+        py.detach(|| id::Recording::from_table(&table)).or_raise().map(Recording)
     }
 
     /// The same with the other sign of force and deflection.
@@ -222,6 +314,12 @@ impl Recording {
     /// The same with the other sign of drive and depth.
     fn flip_drive(&self) -> Recording {
         Recording(self.0.clone().flip_drive())
+    }
+
+    /// The columns taken from a file: name, number of the column from 0, and its heading.
+    #[getter]
+    fn columns(&self) -> Vec<(&str, usize, &str)> {
+        self.0.columns().iter().map(|taken| (taken.name(), taken.index(), taken.heading())).collect()
     }
 
     /// A column by its name: "times", "force", "deflection", "drive" or "depth"; None without it.

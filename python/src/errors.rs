@@ -41,7 +41,7 @@ impl<T> OrRaise<T> for Result<T, IdentifyError> {
     fn or_raise(self) -> PyResult<T> {
         self.map_err(|error| match &error {
             IdentifyError::Contact(error) => raise(error),
-            IdentifyError::NotConverged { .. } => ConvergenceError::new_err(error.to_string()),
+            IdentifyError::NotConverged { .. } => ConvergenceError::new_err(in_python(error)),
             IdentifyError::Unwritable { .. } => PyOSError::new_err(with_causes(&error)),
             _ => PyValueError::new_err(with_causes(&error)),
         })
@@ -79,7 +79,12 @@ fn with_causes(error: &dyn StdError) -> String {
         }
         cause = error.source();
     }
-    text
+    in_python(text)
+}
+
+/// A message with the names of methods as Python writes them.
+pub fn in_python(text: impl ToString) -> String {
+    text.to_string().replace("::", ".")
 }
 
 /// The exception that a function of the user raised, among the causes of an error.
@@ -103,10 +108,21 @@ pub fn raised_number<T>(result: PyResult<T>, nan: T) -> T {
     })
 }
 
+/// Raises the exception of a function whose NaN the crate does not look at.
+pub fn no_exception() -> PyResult<()> {
+    raised().map_or(Ok(()), Err)
+}
+
 static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
 
 fn raised() -> Option<PyErr> {
     RAISED.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// Raises the violation of a law of a trait, or what a function of the user raised meanwhile.
+pub fn no_violation(verdict: Result<(), viscocontact::rheology::laws::Violation>) -> PyResult<()> {
+    no_exception()?;
+    verdict.map_err(|violation| PyValueError::new_err(violation.to_string()))
 }
 
 /// The option of this name, or an error that lists the names.

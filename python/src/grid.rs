@@ -49,30 +49,6 @@ impl Grid {
         viscocontact::Grid::new(cells.both(), lengths.both()).or_raise().map(Grid)
     }
 
-    /// Number of cells along x1 and x2: the shape of every field.
-    #[getter]
-    fn shape(&self) -> (usize, usize) {
-        self.0.cells().into()
-    }
-
-    /// Sides of the whole grid [m].
-    #[getter]
-    fn lengths(&self) -> (f64, f64) {
-        self.0.lengths().into()
-    }
-
-    /// Sides of a cell [m].
-    #[getter]
-    fn spacing(&self) -> (f64, f64) {
-        self.0.spacing().into()
-    }
-
-    /// Area of a cell [m²].
-    #[getter]
-    fn cell_area(&self) -> f64 {
-        self.0.cell_area()
-    }
-
     /// Centres of the cells along x1, of shape (n1, 1), and along x2, of shape (1, n2) [m]: sums of functions of them have the
     /// shape of the grid.
     fn coordinates<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py>, Array<'py>)> {
@@ -89,4 +65,15 @@ impl Grid {
     fn __getnewargs__(&self) -> ((usize, usize), (f64, f64)) {
         (self.shape(), self.lengths())
     }
+}
+
+getters! {Grid, of:
+    /// Number of cells along x1 and x2: the shape of every field.
+    shape: (usize, usize) = of.cells().into();
+    /// Sides of the whole grid [m].
+    lengths: (f64, f64) = of.lengths().into();
+    /// Sides of a cell [m].
+    spacing: (f64, f64) = of.spacing().into();
+    /// Area of a cell [m²].
+    cell_area: f64 = of.cell_area();
 }

@@ -7,16 +7,17 @@ use std::time::Duration;
 
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
+use viscocontact as vc;
 use viscocontact::contact::Contact;
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::{Elastic, Material};
 use viscocontact::run::{self as vr, Crossing, RunContact, Stepping};
 use viscocontact::states::{ElasticStates, StatesContact as InStates};
-use viscocontact::{self as vc, ViscoelasticContact as InSpace};
 
 use crate::arrays::column;
 use crate::errors::OrRaise;
 use crate::loads::history;
+use crate::recipe::Recipe;
 
 /// Times at which steps end or states are sampled, counted from the start of a run.
 ///
@@ -65,6 +66,7 @@ pub struct Options {
     stop_at: Option<vr::Times>,
     pub sample_at: Option<vr::Times>,
     pub progress: Option<Py<PyAny>>,
+    fields_to: Option<f64>,
     autosave: Option<(PathBuf, Duration)>,
 }
 
@@ -77,6 +79,7 @@ impl Options {
         dt: Option<f64>,
         stop_at: Option<Bound<'_, PyAny>>,
         sample_at: Option<Bound<'_, PyAny>>,
+        fields_to: Option<f64>,
         progress: Option<Py<PyAny>>,
         autosave: Option<(PathBuf, f64)>,
     ) -> PyResult<Options> {
@@ -96,6 +99,7 @@ impl Options {
             stop_at: stop_at.map(|given| times("stop_at", &given)).transpose()?,
             sample_at: sample_at.map(|given| times("sample_at", &given)).transpose()?,
             progress,
+            fields_to,
             autosave: autosave.transpose()?,
         })
     }
@@ -103,45 +107,59 @@ impl Options {
     /// Refuses times that a run would refuse, which would take the contact with it.
     fn check(&self) -> vc::Result<()> {
         let small = InStates::new(&ElasticStates::sphere(1.0)?, &Material::incompressible(Elastic::new(1.0)?))?;
-        let run = small.into_follow(Arc::clone(&self.history), self.stepping, self.until);
+        self.ask(small.led(Arc::clone(&self.history), self.stepping, self.until)).map(drop)
+    }
+
+    fn ask<C: Led>(&self, run: vr::Run<'static, C>) -> vc::Result<vr::Run<'static, C>> {
         let run = run.stop_at(self.stop_at.clone().unwrap_or_default())?;
-        run.sample_at(self.sample_at.clone().unwrap_or_default()).map(drop)
+        let run = run.sample_at(self.sample_at.clone().unwrap_or_default())?;
+        match self.fields_to {
+            Some(accuracy) => C::with_fields(run, accuracy),
+            None => Ok(run),
+        }
     }
 }
 
 /// A contact that a run can lead.
 pub trait Led: RunContact + Contact + 'static {
+    const IN_SPACE: bool;
+
     fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, Self>;
-    fn state(&self) -> [f64; 4];
-    fn max_pressure_or_nan(&self) -> f64;
-}
 
-impl Led for InSpace {
-    fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, InSpace> {
-        self.into_follow(history, stepping, until)
-    }
+    fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>>;
+
+    /// The object of Python.
+    fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>>;
 
     fn state(&self) -> [f64; 4] {
         [self.time(), self.force(), self.approach(), self.contact_area()]
     }
-
-    fn max_pressure_or_nan(&self) -> f64 {
-        self.max_pressure()
-    }
 }
 
-impl Led for InStates {
-    fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, InStates> {
-        self.into_follow(history, stepping, until)
-    }
+/// How the contact in space and the one on elastic states are led, and their objects.
+macro_rules! led {
+    ($($contact:ty, $in_space:literal => $class:ty;)*) => {$(
+        impl Led for $contact {
+            const IN_SPACE: bool = $in_space;
 
-    fn state(&self) -> [f64; 4] {
-        [self.time(), self.force(), self.approach(), self.contact_area()]
-    }
+            fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, Self> {
+                self.into_follow(history, stepping, until)
+            }
 
-    fn max_pressure_or_nan(&self) -> f64 {
-        f64::NAN
-    }
+            fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>> {
+                run.fields_to(accuracy)
+            }
+
+            fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>> {
+                Ok(Py::new(py, <$class>::of(self, recipe))?.into_any())
+            }
+        }
+    )*};
+}
+
+led! {
+    vc::ViscoelasticContact, true => crate::contact::ViscoelasticContact;
+    InStates, false => crate::states_contact::StatesContact;
 }
 
 /// A contact, or the run that owns it.
@@ -198,8 +216,7 @@ impl<C: Led> Held<C> {
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let run = contact.led(Arc::clone(&options.history), options.stepping, options.until).cancelled_by(cancel);
-        let run = run.stop_at(options.stop_at.clone().unwrap_or_default()).or_raise()?;
-        let mut run = run.sample_at(options.sample_at.clone().unwrap_or_default()).or_raise()?;
+        let mut run = options.ask(run).or_raise()?;
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);
         }
@@ -207,7 +224,12 @@ impl<C: Led> Held<C> {
         Ok(number)
     }
 
-    pub fn stop_when(&mut self, number: u64, quantity: fn(&C) -> f64, crossing: Crossing) -> PyResult<()> {
+    pub fn stop_when(
+        &mut self,
+        number: u64,
+        quantity: impl Fn(&C) -> f64 + Send + Sync + 'static,
+        crossing: Crossing,
+    ) -> PyResult<()> {
         self.run(number)?;
         let Held::Run(run, _) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         *self = Held::Run(Box::new(run.stop_when(quantity, crossing).or_raise()?), number);

@@ -1,19 +1,25 @@
 //! Moduli from measured indentation curves, with their uncertainty.
 
-use std::sync::Arc;
-
-use numpy::IntoPyArray;
-use pyo3::exceptions::{PyKeyError, PyTypeError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
-use crate::arrays::{Array, mapped, to_array};
+use crate::arrays::{Array, to_array};
 use crate::curves::{Curve, Experiment, model};
 use crate::errors::OrRaise;
-use crate::materials::Material;
-use crate::recipe::Recipe;
-use crate::rheology::Rheology;
+use crate::fits::Fit;
+
+/// What is known of a property of each curve: one for all, or a list with one for each.
+fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {
+    match given.cast::<pyo3::types::PyList>() {
+        Ok(each) => {
+            let each = each.iter().map(|known| Ok(nuisance(name, &known)?.unwrap_or(id::Nuisance::Fixed(0.0))));
+            each.collect::<PyResult<Vec<_>>>().map(|each| Some(each.into()))
+        }
+        Err(_) => Ok(nuisance(name, given)?.map(Into::into)),
+    }
+}
 
 /// What is known of a property of the measurement: None (fixed at 0 by default), a number (fixed), True (fitted), or ("from", start).
 fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisance>> {
@@ -36,12 +42,14 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
 /// Parameters
 /// ----------
 /// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]) or "fractional_zener"
-/// contact_point, offset, drift, drag, stiffness : float (known), True (fitted), or ("from", start)
-///     Drive at first touch [m], force without contact [N], its growth [N/s], force over the speed of the drive [N s/m], and the stiffness
-///     of the spring [N/m] in place of that of the experiments.
+/// contact_point, offset, drift, tilt, drag, stiffness : float (known), True (fitted), or ("from", start)
+///     Drive at first touch [m], force without contact [N], its growth in time [N/s] and with the drive [N/m], force over the speed of the
+///     drive [N s/m], and the stiffness of the spring [N/m] in place of that of the experiments. A list has one for each curve.
 /// noise : "white" (default), "autoregressive", or the coefficient of an autoregressive noise
 /// known_sigma : float, optional
 ///     Standard deviation of the noise [N].
+/// robust : bool
+///     Whether outliers lose their weight.
 /// fix, start : dict
 ///     Parameters of the material that are known, and where the search for others starts.
 ///
@@ -59,33 +67,41 @@ pub struct Identification(id::Identification);
 #[pymethods]
 impl Identification {
     #[new]
-    #[pyo3(signature = (model, *, contact_point=None, offset=None, drift=None, drag=None, stiffness=None, noise=None, known_sigma=None, fix=None, start=None))]
+    #[pyo3(signature = (model, *, contact_point=None, offset=None, drift=None, tilt=None, drag=None, stiffness=None, noise=None, known_sigma=None, robust=false, fix=None, start=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         model: &Bound<'_, PyAny>,
         contact_point: Option<&Bound<'_, PyAny>>,
         offset: Option<&Bound<'_, PyAny>>,
         drift: Option<&Bound<'_, PyAny>>,
+        tilt: Option<&Bound<'_, PyAny>>,
         drag: Option<&Bound<'_, PyAny>>,
         stiffness: Option<&Bound<'_, PyAny>>,
         noise: Option<&Bound<'_, PyAny>>,
         known_sigma: Option<f64>,
+        robust: bool,
         fix: Option<&Bound<'_, PyDict>>,
         start: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Identification> {
-        type Setter = fn(id::Identification, id::Nuisance) -> id::Identification;
+        type Setter = fn(id::Identification, id::PerCurve) -> id::Identification;
         let mut identification = id::Identification::new(self::model(model)?);
         let nuisances: [(&str, Option<&Bound<'_, PyAny>>, Setter); 5] = [
             ("contact_point", contact_point, id::Identification::contact_point),
             ("offset", offset, id::Identification::offset),
             ("drift", drift, id::Identification::drift),
+            ("tilt", tilt, id::Identification::tilt),
             ("drag", drag, id::Identification::drag),
-            ("stiffness", stiffness, id::Identification::stiffness),
         ];
         for (name, given, set) in nuisances {
-            if let Some(known) = given.map(|given| nuisance(name, given)).transpose()?.flatten() {
+            if let Some(known) = given.map(|given| per_curve(name, given)).transpose()?.flatten() {
                 identification = set(identification, known);
             }
+        }
+        if let Some(known) = stiffness.map(|given| nuisance("stiffness", given)).transpose()?.flatten() {
+            identification = identification.stiffness(known);
+        }
+        if robust {
+            identification = identification.robust();
         }
         if let Some(noise) = noise {
             identification = identification.noise(match (noise.extract::<f64>(), noise.extract::<&str>()) {
@@ -109,12 +125,6 @@ impl Identification {
             identification = identification.start(name.extract()?, value.extract()?);
         }
         Ok(Identification(identification))
-    }
-
-    /// Names of the parameters of the model.
-    #[getter]
-    fn parameters(&self) -> Vec<String> {
-        self.0.model().parameters()
     }
 
     /// Fits a curve, or several of one material together.
@@ -169,6 +179,35 @@ impl Identification {
     }
 }
 
+getters! {Identification, of:
+    /// Names of the parameters of the model.
+    parameters: Vec<String> = of.model().parameters();
+}
+
+/// Fits of the same curves, best first, each with its difference of Akaike's criterion from the best and its weight among all: a list of
+/// (fit, difference, weight). Exceptions, as `Identification.fit_each` returns them, are left out.
+///
+/// Raises ValueError if fits are of different curves.
+#[pyfunction]
+pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Fit, f64, f64)>> {
+    let fits: Vec<id::Fit> =
+        fits.iter().filter_map(|fit| fit.cast::<Fit>().ok()).map(|fit| fit.get().0.clone()).collect();
+    let ranked = id::ranked(fits.into_iter().map(Ok)).or_raise()?;
+    Ok(ranked.into_iter().map(|(fit, difference, weight)| (Fit(fit), difference, weight)).collect())
+}
+
+/// Whether two relaxation times, each (time [s], standard deviation of its logarithm, contact area [m²]), agree with creep (equal times) or
+/// drainage of a pore fluid (times as the areas), at 95 %: "creep", "drainage", "undecided" or "neither".
+///
+/// >>> drainage_or_creep((0.8, 0.05, 1e-12), (3.1, 0.05, 4e-12))
+/// 'drainage'
+#[pyfunction]
+pub fn drainage_or_creep(one: (f64, f64, f64), other: (f64, f64, f64)) -> PyResult<String> {
+    let of = |(time, log_error, area): (f64, f64, f64)| id::TimeAtSize { time, log_error, area };
+    let scaling = of(one).scaling(of(other)).or_raise()?;
+    Ok(format!("{:?}", scaling.verdict).to_lowercase())
+}
+
 fn several(curves: &Bound<'_, PyAny>) -> PyResult<Vec<id::Curve>> {
     if let Ok(curve) = curves.cast::<Curve>() {
         return Ok(vec![curve.get().0.clone()]);
@@ -181,150 +220,3 @@ fn several(curves: &Bound<'_, PyAny>) -> PyResult<Vec<id::Curve>> {
 fn named(values: &Bound<'_, PyDict>) -> PyResult<Vec<(String, f64)>> {
     values.iter().map(|(name, value)| Ok((name.extract()?, value.extract()?))).collect()
 }
-
-/// One identified parameter.
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Estimate(id::Estimate);
-
-#[pymethods]
-impl Estimate {
-    /// Its name.
-    #[getter]
-    fn name(&self) -> &str {
-        &self.0.name
-    }
-
-    /// Its value, in SI units.
-    #[getter]
-    fn value(&self) -> f64 {
-        self.0.value
-    }
-
-    /// Standard deviation: relative for moduli, times and stiffness.
-    #[getter]
-    fn deviation(&self) -> f64 {
-        self.0.deviation
-    }
-
-    /// The same from the scatter of the residuals, without an assumption on the noise.
-    #[getter]
-    fn robust_deviation(&self) -> f64 {
-        self.0.robust_deviation
-    }
-
-    /// Interval of 95 %.
-    #[getter]
-    fn interval(&self) -> (f64, f64) {
-        self.0.interval.into()
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "Estimate({}={:e}, 95 %: {:e} to {:e})",
-            self.0.name, self.0.value, self.0.interval[0], self.0.interval[1]
-        )
-    }
-}
-
-/// The result of a fit: `fit["E0"]` is the estimate of a parameter.
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Fit(id::Fit);
-
-#[pymethods]
-impl Fit {
-    /// The identified parameters, of the material first.
-    #[getter]
-    fn estimates(&self) -> Vec<Estimate> {
-        self.0.estimates().iter().cloned().map(Estimate).collect()
-    }
-
-    fn __getitem__(&self, name: &str) -> PyResult<Estimate> {
-        self.0.estimate(name).cloned().map(Estimate).ok_or_else(|| {
-            let names: Vec<&str> = self.0.estimates().iter().map(|estimate| &*estimate.name).collect();
-            PyKeyError::new_err(format!("no parameter is named {name:?}: there are {}", names.join(", ")))
-        })
-    }
-
-    /// Correlation of two parameters; None without one of them.
-    fn correlation(&self, one: &str, other: &str) -> Option<f64> {
-        self.0.correlation(one, other)
-    }
-
-    /// The contact modulus E*(t) [Pa] at times after a sudden step [s].
-    fn modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.modulus(t))
-    }
-
-    /// The relative standard deviation of `modulus`.
-    fn modulus_deviation<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.modulus_band(t)[1])
-    }
-
-    /// The shear modulus [Pa] for a known Poisson's ratio, at a time [s].
-    fn shear_modulus(&self, t: f64, nu: f64) -> PyResult<f64> {
-        self.0.shear_modulus(t, nu).or_raise()
-    }
-
-    /// The incompressible body of the identified contact modulus, against a rigid tip, for contacts.
-    fn material(&self, py: Python<'_>) -> PyResult<Material> {
-        let material = self.0.material().or_raise()?;
-        let spectrum = material.contact_spectrum().or_raise()?;
-        let spectrum = spectrum.ok_or_else(|| PyTypeError::new_err("this model has no exact exponential series"))?;
-        let shear = spectrum.scaled(SHEAR_OVER_CONTACT).or_raise()?;
-        let arguments = (shear.glassy(), shear.fluidity(), shear.terms().to_vec());
-        let rheology = Py::new(py, Rheology::made(py, "generalized_kelvin", arguments, Arc::new(shear))?)?;
-        Ok(Material::by(Recipe::new(py, "", (rheology,))?, material))
-    }
-
-    /// Force of the fit at each time of a curve [N], and measured less fitted force.
-    #[pyo3(signature = (curve=0))]
-    fn force<'py>(&self, py: Python<'py>, curve: usize) -> (Bound<'py, PyAny>, Bound<'py, PyAny>) {
-        let array = |values: &[f64]| values.to_vec().into_pyarray(py).into_any();
-        (array(self.0.force(curve)), array(self.0.residuals(curve)))
-    }
-
-    /// What a user should know before the parameters are used, a line each.
-    #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.0.warnings().iter().map(ToString::to_string).collect()
-    }
-
-    /// Standard deviation of the noise [N].
-    #[getter]
-    fn sigma(&self) -> f64 {
-        self.0.sigma()
-    }
-
-    /// Akaike's criterion, corrected for the number of samples: less is better.
-    #[getter]
-    fn aicc(&self) -> f64 {
-        self.0.aicc()
-    }
-
-    /// Probability of residuals as extreme by their runs of one sign, and by their correlations, if the model is right.
-    #[getter]
-    fn probabilities(&self) -> (f64, f64) {
-        (self.0.runs().probability, self.0.correlations().probability)
-    }
-
-    /// All values of a parameter for which the best fit of the others is not significantly worse.
-    #[pyo3(signature = (name, confidence=0.95))]
-    fn profile_interval(&self, py: Python<'_>, name: &str, confidence: f64) -> PyResult<(f64, f64)> {
-        py.detach(|| self.0.profile_interval(name, confidence)).or_raise().map(Into::into)
-    }
-
-    /// The contact point of a curve [m].
-    #[pyo3(signature = (curve=0))]
-    fn contact_point(&self, curve: usize) -> f64 {
-        self.0.contact_point(curve)
-    }
-
-    fn __repr__(&self) -> String {
-        let all: Vec<String> =
-            self.0.estimates().iter().map(|of| format!("{}={:e} ± {:.1e}", of.name, of.value, of.deviation)).collect();
-        format!("Fit({})", all.join(", "))
-    }
-}
-
-/// J over C of an incompressible body.
-const SHEAR_OVER_CONTACT: f64 = 4.0;

@@ -12,7 +12,7 @@ use crate::arrays::{Array, field, to_array};
 use crate::errors::OrRaise;
 use crate::grid::Grid;
 use crate::materials::Material;
-use crate::recipe::{Recipe, Reduced};
+use crate::recipe::Recipe;
 
 /// The axis of an index, 0 or 1.
 pub fn axis(index: usize) -> PyResult<Axis> {
@@ -84,15 +84,9 @@ impl Layer {
     fn nu(&self) -> f64 {
         self.layer.poisson_ratio()
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(Layer);
 
 /// The influence operator K of a grid: the surface displacement under a pressure, over the compliance. Contacts share it.
 ///
@@ -274,15 +268,9 @@ impl InfluenceKernel {
     fn coefficient(&self, i: isize, j: isize) -> PyResult<f64> {
         self.kernel.coefficient(i, j).or_raise()
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(InfluenceKernel);
 
 /// NaN in place of a value that a function could not give, whose exception is kept.
 fn caught(raised: &Mutex<Option<PyErr>>, value: impl FnOnce() -> PyResult<f64>) -> f64 {

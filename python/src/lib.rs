@@ -1,13 +1,17 @@
 //! viscocontact for Python: arrays in, arrays out. The GIL is free while Rust computes; nothing is computed here.
 
+#[macro_use]
+mod macros;
+
 mod analytic;
 mod arrays;
 mod attraction;
-mod checkpoint;
+mod both;
 mod contact;
 mod curves;
 mod errors;
 mod fields;
+mod fits;
 mod grid;
 mod held;
 mod identify;
@@ -18,6 +22,7 @@ mod maps;
 mod materials;
 mod measured;
 mod observe;
+mod pictures;
 mod plan;
 mod recipe;
 mod reports;
@@ -29,6 +34,7 @@ mod shapes;
 mod sliding;
 mod states;
 mod states_contact;
+mod stress;
 mod temperature;
 mod writers;
 
@@ -44,7 +50,10 @@ mod _native {
     }
 
     #[pymodule_export]
-    use crate::analytic::{GrowingSphere, hertz, jkr_pull_off, persson_friction};
+    use crate::analytic::{
+        AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, GrowingSphere, Jkr, MaugisDugdale, OpeningEdge, hertz,
+        hertz_ellipse, persson_friction, rigid_punch, rolling_cylinder,
+    };
     #[pymodule_export]
     use crate::attraction::Attraction;
     #[pymodule_export]
@@ -54,11 +63,13 @@ mod _native {
     #[pymodule_export]
     use crate::errors::{Cancelled, ConvergenceError};
     #[pymodule_export]
+    use crate::fits::{Estimate, Fit, write_fits};
+    #[pymodule_export]
     use crate::grid::Grid;
     #[pymodule_export]
     use crate::held::Times;
     #[pymodule_export]
-    use crate::identify::{Estimate, Fit, Identification};
+    use crate::identify::{Identification, drainage_or_creep, ranked};
     #[pymodule_export]
     use crate::kernels::{InfluenceKernel, Layer};
     #[pymodule_export]
@@ -70,7 +81,9 @@ mod _native {
     #[pymodule_export]
     use crate::measured::{MasterCurve, Measurements};
     #[pymodule_export]
-    use crate::observe::SubsurfaceStress;
+    use crate::observe::patches;
+    #[pymodule_export]
+    use crate::pictures::{Animation, Picture};
     #[pymodule_export]
     use crate::plan::Plan;
     #[pymodule_export]
@@ -91,6 +104,8 @@ mod _native {
     use crate::states::ElasticStates;
     #[pymodule_export]
     use crate::states_contact::StatesContact;
+    #[pymodule_export]
+    use crate::stress::{EnergyBalance, StressHistory, SubsurfaceStress};
     #[pymodule_export]
     use crate::temperature::{TemperatureHistory, TimeTemperature};
     #[pymodule_export]

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use viscocontact::load::{self as ld, LoadHistory as History};
 
 use crate::arrays::column;
-use crate::errors::{OrRaise, raise};
-use crate::recipe::{Recipe, Reduced};
+use crate::errors::{OrRaise, no_violation, raise};
+use crate::recipe::Recipe;
 
 /// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
 ///
@@ -21,58 +21,74 @@ pub struct Load {
     recipe: Recipe,
 }
 
+/// A number for each axis; None where another property of the axis is given.
+pub type Tilts = Option<[Option<f64>; 2]>;
+
+/// The tilt along each axis: free about the coordinate of `at`, or the angle of `tilt`, 0 without.
+pub fn tilts(at: Tilts, tilt: Tilts) -> PyResult<[ld::Tilt; 2]> {
+    let (at, tilt) = (at.unwrap_or_default(), tilt.unwrap_or_default());
+    let along = |axis: usize| match (at[axis], tilt[axis]) {
+        (Some(_), Some(_)) => Err(PyTypeError::new_err("give at or tilt along an axis, not both: None for the other")),
+        (Some(at), None) => Ok(ld::Tilt::Free { at }),
+        (None, tilt) => Ok(ld::Tilt::Fixed(tilt.unwrap_or(0.0))),
+    };
+    Ok([along(0)?, along(1)?])
+}
+
+impl Load {
+    pub fn of(py: Python<'_>, load: ld::Load) -> PyResult<Load> {
+        let recipe = match load {
+            ld::Load::Force { normal, .. } => Recipe::new(py, "force", (normal,)),
+            ld::Load::Approach { approach, .. } => Recipe::new(py, "approach", (approach,)),
+            ld::Load::Spring { stiffness, drive, .. } => Recipe::new(py, "spring", (stiffness, drive)),
+            _ => Err(PyValueError::new_err("this kind of load has no name in Python")),
+        }?;
+        let free = load.tilt().map(|tilt| if let ld::Tilt::Free { at } = tilt { Some(at) } else { None });
+        let fixed = load.tilt().map(|tilt| if let ld::Tilt::Fixed(angle) = tilt { Some(angle) } else { None });
+        let keywords = PyDict::new(py);
+        if free != [None; 2] {
+            keywords.set_item("at", PyTuple::new(py, free)?)?;
+        }
+        if fixed.iter().flatten().any(|angle| *angle != 0.0) {
+            keywords.set_item("tilt", PyTuple::new(py, fixed)?)?;
+        }
+        Ok(Load { load, recipe: recipe.with_keywords(Some(&keywords)) })
+    }
+}
+
 #[pymethods]
 impl Load {
     /// A normal force [N] on a body that cannot tilt; with `at` [m], at this point of a body that tilts freely; with `tilt` [rad], on
-    /// a body of these tilts.
+    /// a body of these tilts. Both are pairs along x1 and x2, with None along an axis of the other kind.
+    ///
+    /// >>> Load.force(5.0, at=(1e-3, None))    # a hinge: free along x1, guided along x2
+    /// Load.force(5.0, at=(0.001, None))
     #[staticmethod]
     #[pyo3(signature = (normal, *, at=None, tilt=None))]
-    fn force(py: Python<'_>, normal: f64, at: Option<[f64; 2]>, tilt: Option<[f64; 2]>) -> PyResult<Load> {
-        let load = match (at, tilt) {
-            (None, None) => ld::Load::force(normal),
-            (Some(at), None) => ld::Load::eccentric_force(normal, at),
-            (None, Some(tilt)) => ld::Load::force_and_tilt(normal, tilt),
-            _ => return Err(PyTypeError::new_err("give at or tilt, not both")),
-        };
-        let keywords = pyo3::types::PyDict::new(py);
-        for (name, value) in [("at", at), ("tilt", tilt)] {
-            if let Some(value) = value {
-                keywords.set_item(name, value)?;
-            }
-        }
-        Ok(Load { load, recipe: Recipe::new(py, "force", (normal,))?.with_keywords(Some(&keywords)) })
+    fn force(py: Python<'_>, normal: f64, at: Tilts, tilt: Tilts) -> PyResult<Load> {
+        Load::of(py, ld::Load::Force { normal, tilt: tilts(at, tilt)? })
     }
 
-    /// An approach of the origin [m], and tilts along x1 and x2 [rad].
+    /// An approach of the origin [m], or of the point `at` [m] of a body that tilts freely, and tilts along x1 and x2 [rad].
     #[staticmethod]
-    #[pyo3(signature = (approach, tilt=[0.0; 2]))]
-    fn approach(py: Python<'_>, approach: f64, tilt: [f64; 2]) -> PyResult<Load> {
-        let recipe = if tilt == [0.0; 2] {
-            Recipe::new(py, "approach", (approach,))?
-        } else {
-            Recipe::new(py, "approach", (approach, tilt))?
-        };
-        Ok(Load { load: ld::Load::approach_and_tilt(approach, tilt), recipe })
+    #[pyo3(signature = (approach, tilt=None, *, at=None))]
+    fn approach(py: Python<'_>, approach: f64, tilt: Tilts, at: Tilts) -> PyResult<Load> {
+        Load::of(py, ld::Load::Approach { approach, tilt: tilts(at, tilt)? })
     }
 
-    /// A spring of `stiffness` [N/m] whose far end is at `drive` [m].
+    /// A spring of `stiffness` [N/m] whose far end is at `drive` [m]; `at` and `tilt` as of `force`.
     #[staticmethod]
-    fn spring(py: Python<'_>, stiffness: f64, drive: f64) -> PyResult<Load> {
-        Ok(Load { load: ld::Load::spring(stiffness, drive), recipe: Recipe::new(py, "spring", (stiffness, drive))? })
+    #[pyo3(signature = (stiffness, drive, *, at=None, tilt=None))]
+    fn spring(py: Python<'_>, stiffness: f64, drive: f64, at: Tilts, tilt: Tilts) -> PyResult<Load> {
+        Load::of(py, ld::Load::Spring { stiffness, drive, tilt: tilts(at, tilt)? })
     }
 
     fn __eq__(&self, other: &Load) -> bool {
         self.load == other.load
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(Load);
 
 /// A load for every time [s].
 ///
@@ -109,7 +125,7 @@ fn rows(table: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, ld::Load)>> {
 impl LoadHistory {
     /// Loads at ascending times, linear in between, from a sequence of (time [s], load). Two rows of the same time are a jump.
     #[staticmethod]
-    fn table(py: Python<'_>, table: Bound<'_, PyAny>) -> PyResult<LoadHistory> {
+    pub fn table(py: Python<'_>, table: Bound<'_, PyAny>) -> PyResult<LoadHistory> {
         let history = ld::PiecewiseLinear::new(&rows(&table)?).or_raise()?;
         LoadHistory::made(py, "table", (table,), Arc::new(history))
     }
@@ -147,6 +163,13 @@ impl LoadHistory {
     fn sinusoid(py: Python<'_>, low: Bound<'_, Load>, high: Bound<'_, Load>, frequency: f64) -> PyResult<LoadHistory> {
         let history = ld::Sinusoid::new(low.get().load, high.get().load, frequency).or_raise()?;
         LoadHistory::made(py, "sinusoid", (low, high, frequency), Arc::new(history))
+    }
+
+    /// Oscillation about the load `mean` with an `amplitude` of its force, approach or drive and a `frequency` [Hz], from the mean at t = 0.
+    #[staticmethod]
+    fn sinusoid_about(py: Python<'_>, mean: Bound<'_, Load>, amplitude: f64, frequency: f64) -> PyResult<LoadHistory> {
+        let history = ld::Sinusoid::about(mean.get().load, amplitude, frequency).or_raise()?;
+        LoadHistory::made(py, "sinusoid_about", (mean, amplitude, frequency), Arc::new(history))
     }
 
     /// A sequence of (time [s], load) that repeats without end.
@@ -211,33 +234,19 @@ impl LoadHistory {
         if let Some(failure) = self.history.failure() {
             return Err(raise(&failure.into()));
         }
-        let numbers = |tilt: [ld::Tilt; 2]| -> PyResult<([f64; 2], bool)> {
-            match tilt {
-                [ld::Tilt::Fixed(a), ld::Tilt::Fixed(b)] => Ok(([a, b], false)),
-                [ld::Tilt::Free { at: a }, ld::Tilt::Free { at: b }] => Ok(([a, b], true)),
-                _ => Err(PyValueError::new_err("one tilt is fixed and the other free")),
-            }
-        };
-        match load {
-            ld::Load::Force { normal, tilt } => match numbers(tilt)? {
-                ([0.0, 0.0], false) => Load::force(py, normal, None, None),
-                (tilt, false) => Load::force(py, normal, None, Some(tilt)),
-                (at, true) => Load::force(py, normal, Some(at), None),
-            },
-            ld::Load::Approach { approach, tilt } => Load::approach(py, approach, numbers(tilt)?.0),
-            ld::Load::Spring { stiffness, drive, .. } => Load::spring(py, stiffness, drive),
-            _ => Err(PyValueError::new_err("this kind of load has no name in Python")),
-        }
+        Load::of(py, load)
     }
 
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
+    /// Checks the laws of histories at times [s]: a load everywhere, breakpoints that ascend, smooth in between. Raises ValueError with the
+    /// first violation.
+    fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
+        let times = column("times", times)?;
+        let verdict = py.detach(|| ld::laws::all(&*self.history, &times));
+        self.history.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
     }
 }
+
+made_by_calls!(LoadHistory);
 
 fn of_columns(
     times: &Bound<'_, PyAny>,

@@ -168,30 +168,6 @@ impl HeightMap {
         to_array(py, self.0.heights().to_vec(), &self.0.cells())
     }
 
-    /// Number of points along x1 and x2.
-    #[getter]
-    fn shape(&self) -> (usize, usize) {
-        self.0.cells().into()
-    }
-
-    /// Sides of the rectangle of all points [m].
-    #[getter]
-    fn lengths(&self) -> (f64, f64) {
-        self.0.lengths().into()
-    }
-
-    /// Number of missing heights.
-    #[getter]
-    fn missing(&self) -> usize {
-        self.0.missing()
-    }
-
-    /// The grid whose cells have the points of the map as their centres.
-    #[getter]
-    fn grid(&self) -> Grid {
-        Grid(self.0.grid())
-    }
-
     /// The map with missing heights filled by harmonic interpolation.
     fn filled(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
         HeightMap::changed(slf, "filled", (slf.clone(),), geo::HeightMap::filled)
@@ -255,32 +231,35 @@ impl HeightMap {
     /// Mean, rms height, skewness, kurtosis, rms slope, rms slopes along x1 and x2, and rms curvature, in SI units.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let of = py.detach(|| self.0.statistics()).or_raise()?;
-        let all = PyDict::new(py);
-        let single = [
-            ("mean", of.mean),
-            ("rms_height", of.rms_height),
-            ("skewness", of.skewness),
-            ("kurtosis", of.kurtosis),
-            ("rms_slope", of.rms_slope),
-            ("rms_curvature", of.rms_curvature),
-        ];
-        for (name, value) in single {
-            all.set_item(name, value)?;
-        }
-        all.set_item("rms_slopes", PyTuple::new(py, of.rms_slopes)?)?;
-        Ok(all)
+        Ok(dict! { py;
+            "mean": of.mean,
+            "rms_height": of.rms_height,
+            "skewness": of.skewness,
+            "kurtosis": of.kurtosis,
+            "rms_slope": of.rms_slope,
+            "rms_curvature": of.rms_curvature,
+            "rms_slopes": PyTuple::new(py, of.rms_slopes)?,
+        })
+    }
+
+    /// The heights [m] in the middle of so many bins, and their density [1/m], as rows.
+    fn height_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<Array<'py>> {
+        rows(py, py.detach(|| self.0.height_distribution(bins)).or_raise()?)
     }
 
     /// Wave numbers [rad/m] and the radial mean of the power spectral density of the heights [m⁴], as rows.
     fn power_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let rows = py.detach(|| self.0.power_spectrum()).or_raise()?;
-        let n = rows.len();
-        to_array(py, rows.into_iter().flat_map(|(q, c)| [q, c]).collect(), &[n, 2])
+        rows(py, py.detach(|| self.0.power_spectrum()).or_raise()?)
     }
 
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
     fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
         mapped("x1", x1, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN))
+    }
+
+    /// The slopes along x1 and x2 at a point [m]; None where there is no height.
+    fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
+        self.0.slope_at(x1, x2)
     }
 
     /// Writes the map by the ending of the path: `.sdf` (all digits), `.gsf` (single precision) or `.npy`, in m.
@@ -300,12 +279,13 @@ impl HeightMap {
     /// A self-affine random surface of whole periods, of the lengths of `grid`: a periodic map.
     ///
     /// Waves run from `longest` to `shortest` [m] with the Hurst exponent `hurst`; longer than `roll_off` their spectrum is flat. Give
-    /// `rms_slope` or `rms_height` [m]. `anisotropy` is (ratio, direction [rad]). The same seed gives the same surface everywhere.
+    /// `rms_slope` or `rms_height` [m]. `anisotropy` is (ratio, direction [rad]). With a `period` [m], longer than the grid, the map
+    /// is one period, of which the grid holds a part. The same seed gives the same surface everywhere.
     ///
     /// >>> HeightMap.rough(Grid(64, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.1, seed=3).statistics()["rms_slope"].__round__(3)
     /// 0.1
     #[staticmethod]
-    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, seed=0))]
+    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, period=None, seed=0))]
     #[allow(clippy::too_many_arguments)]
     fn rough(
         py: Python<'_>,
@@ -317,6 +297,7 @@ impl HeightMap {
         hurst: f64,
         roll_off: Option<f64>,
         anisotropy: Option<(f64, f64)>,
+        period: Option<PerAxis<f64>>,
         seed: u64,
     ) -> PyResult<Py<HeightMap>> {
         let roughness = match (rms_slope, rms_height) {
@@ -332,16 +313,44 @@ impl HeightMap {
             spec = spec.with_anisotropy(Anisotropy::new(ratio, direction));
         }
         let on = &grid.get().0;
-        let rough = py.detach(|| geo::Rough::new(on, spec)).or_raise()?;
-        let keywords = PyDict::new(py);
-        keywords.set_item("rms_slope", rms_slope)?;
-        keywords.set_item("rms_height", rms_height)?;
-        keywords.set_item("hurst", hurst)?;
-        keywords.set_item("roll_off", roll_off)?;
-        keywords.set_item("anisotropy", anisotropy)?;
-        keywords.set_item("seed", seed)?;
+        let period = period.map(PerAxis::both);
+        let rough = py.detach(|| match period {
+            Some(period) => geo::Rough::windowed(on, spec, period),
+            None => geo::Rough::new(on, spec),
+        });
+        let rough = rough.or_raise()?;
+        let keywords = dict! { py;
+            "rms_slope": rms_slope,
+            "rms_height": rms_height,
+            "hurst": hurst,
+            "roll_off": roll_off,
+            "anisotropy": anisotropy,
+            "period": period,
+            "seed": seed,
+        };
         let map = HeightMap(Arc::new(rough.height_map().clone()));
         let shape = Shape::made(py, "rough", (grid, longest, shortest), Arc::new(rough))?.with_keywords(&keywords);
         Py::new(py, PyClassInitializer::from(shape).add_subclass(map))
     }
+}
+
+getters! {HeightMap, of:
+    /// The middle of the map [m].
+    center: (f64, f64) = of.center().into();
+    /// Whether the map repeats along both axes.
+    is_periodic: bool = of.is_periodic();
+    /// Number of points along x1 and x2.
+    shape: (usize, usize) = of.cells().into();
+    /// Sides of the rectangle of all points [m].
+    lengths: (f64, f64) = of.lengths().into();
+    /// Number of missing heights.
+    missing: usize = of.missing();
+    /// The grid whose cells have the points of the map as their centres.
+    grid: Grid = Grid(of.grid());
+}
+
+/// Pairs as the rows of an array.
+fn rows(py: Python<'_>, of: Vec<(f64, f64)>) -> PyResult<Array<'_>> {
+    let n = of.len();
+    to_array(py, of.into_iter().flat_map(|(x, y)| [x, y]).collect(), &[n, 2])
 }

@@ -9,8 +9,8 @@ use viscocontact::rheology as rh;
 
 use crate::arrays::mapped;
 use crate::errors::OrRaise;
-use crate::recipe::{Recipe, Reduced};
-use crate::rheology::Rheology;
+use crate::recipe::Recipe;
+use crate::rheology::{Rheology, Series, series};
 
 /// A rheology that was measured in tension: what it gives as J(t) is the strain of a rod under unit tension, and its moduli are Young's.
 ///
@@ -133,20 +133,32 @@ impl Material {
         mapped("t", t, |t| self.material.contact_compliance(t))
     }
 
+    /// Poisson's ratio of each body; None of an elastic or a relaxing bulk, where it changes.
+    #[getter]
+    fn nu(&self) -> Vec<Option<f64>> {
+        self.material.poisson_ratios().collect()
+    }
+
+    /// The times [s] over which all rheologies were measured or fitted; (0, inf) of formulas.
+    #[getter]
+    fn measured(&self) -> (f64, f64) {
+        self.material.measured().into()
+    }
+
+    /// The exponential series of C(t), as `Rheology.creep_spectrum`; None if there is none.
+    #[getter]
+    fn contact_spectrum(&self) -> PyResult<Option<Series>> {
+        Ok(self.material.contact_spectrum().or_raise()?.map(|spectrum| series(&spectrum)))
+    }
+
     /// The errors of series that were fitted, a line each.
     #[getter]
     fn fit_reports(&self) -> Vec<String> {
         self.material.fit_reports().map(ToString::to_string).collect()
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(Material);
 
 /// Names, descriptions and references of the published materials.
 ///

@@ -1,12 +1,13 @@
 //! Measured creep, relaxation and dynamic moduli; temperature.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscocontact::TextFormat;
+use viscocontact::input::{Delimiter, TextFormat, TextTable};
 use viscocontact::rheology::{self as rh, Experiment, Units};
 
 use crate::arrays::column;
@@ -14,6 +15,7 @@ use crate::errors::{OrRaise, choice};
 use crate::materials::Tension;
 use crate::recipe::{Recipe, Reduced};
 use crate::rheology::Rheology;
+use crate::scene::unexpected;
 use crate::temperature::TimeTemperature;
 
 const EXPERIMENTS: [(&str, Experiment); 4] = [
@@ -92,24 +94,28 @@ impl Measurements {
     /// Reads a text file of an `experiment` ("creep", "relaxation", "dynamic" or "storage").
     ///
     /// Numbers are in SI units, which headings must agree with; `units="headings"` takes the units that each heading names, and
-    /// `units=(abscissa, value)` their sizes in SI.
+    /// `units=(abscissa, value)` their sizes in SI. What is not to be found out is stated: `decimal_comma` (bool), `delimiter` ("comma",
+    /// "semicolon", "tab" or "blanks"), `skipped_lines`, `headings` (a dict from the column, counted from 0, to `"G [kPa]"`; an empty one
+    /// takes the column out of the choice), and the headings to choose from (`only`).
     ///
     /// Raises OSError if the file cannot be read, ValueError if its table is not allowed, with the line.
     #[staticmethod]
-    #[pyo3(signature = (experiment, path, *, units=None, decimal_comma=None))]
+    #[pyo3(
+        signature = (experiment, path, *, units=None, **reading),
+        text_signature = "(experiment, path, *, units=None, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
+    )]
     fn from_csv(
         py: Python<'_>,
         experiment: &str,
         path: PathBuf,
         units: Option<Bound<'_, PyAny>>,
-        decimal_comma: Option<bool>,
+        reading: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Measurements> {
-        let kind = choice("experiment", experiment, &EXPERIMENTS)?;
-        let (of_file, format) = (of_units(units.as_ref())?, text_format(decimal_comma));
-        let measurements = py.detach(|| rh::Measurements::from_csv(kind, &path, of_file, format)).or_raise()?;
-        let keywords = PyDict::new(py);
+        let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
+        let table = text_table(path.clone(), reading.as_ref())?;
+        let measurements = py.detach(|| rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
+        let keywords = reading.map_or_else(|| Ok(PyDict::new(py)), |reading| reading.copy())?;
         keywords.set_item("units", units)?;
-        keywords.set_item("decimal_comma", decimal_comma)?;
         let recipe = Recipe::new(py, "from_csv", (experiment, path))?.with_keywords(Some(&keywords));
         Ok(Measurements { measurements, recipe })
     }
@@ -157,8 +163,30 @@ fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rhe
     Rheology::by(recipe, Arc::new(if extrapolated { series.extrapolated() } else { series }))
 }
 
-pub fn text_format(decimal_comma: Option<bool>) -> TextFormat {
-    decimal_comma.map_or(TextFormat::default(), |comma| TextFormat::default().with_decimal_comma(comma))
+/// A text file, read as keywords say: `decimal_comma`, `delimiter`, `skipped_lines`, `headings` by column, and `only` some of them.
+pub fn text_table(path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<TextTable> {
+    use Delimiter::{Blanks, Comma, Semicolon, Tab};
+    let delimiters = [("comma", Comma), ("semicolon", Semicolon), ("tab", Tab), ("blanks", Blanks)];
+    let (mut format, mut headings, mut only) = (TextFormat::default(), BTreeMap::<usize, String>::new(), None);
+    for (name, value) in reading.into_iter().flatten() {
+        match name.extract::<&str>()? {
+            _ if value.is_none() => {}
+            "decimal_comma" => format = format.with_decimal_comma(value.extract()?),
+            "delimiter" => format = format.with_delimiter(choice("delimiter", value.extract()?, &delimiters)?),
+            "skipped_lines" => format = format.with_skipped_lines(value.extract()?),
+            "headings" => headings = value.extract()?,
+            "only" => only = Some(value.extract::<Vec<String>>()?),
+            name => return Err(unexpected(name)),
+        }
+    }
+    let mut table = TextTable::open(path, format).or_raise()?;
+    for (column, heading) in headings {
+        table = table.with_heading(column + 1, &heading).or_raise()?;
+    }
+    if let Some(only) = only {
+        table = table.only(&only.iter().map(String::as_str).collect::<Vec<_>>()).or_raise()?;
+    }
+    Ok(table)
 }
 
 fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
@@ -210,23 +238,24 @@ impl MasterCurve {
         curve.or_raise().map(MasterCurve)
     }
 
-    /// The isotherms of a text file with a column of the temperature in K or °C, as `Measurements.from_csv` reads them: a sequence of
-    /// (temperature [K], Measurements) is what `MasterCurve` takes. This makes the curve at once.
+    /// The curve of a text file with a column of the temperature in K or °C, read as by `Measurements.from_csv`.
     #[staticmethod]
-    #[pyo3(signature = (experiment, path, reference, *, units=None, decimal_comma=None, vertical_shifts=false))]
+    #[pyo3(
+        signature = (experiment, path, reference, *, units=None, vertical_shifts=false, **reading),
+        text_signature = "(experiment, path, reference, *, units=None, vertical_shifts=False, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
+    )]
     fn from_csv(
         py: Python<'_>,
         experiment: &str,
         path: PathBuf,
         reference: f64,
         units: Option<&Bound<'_, PyAny>>,
-        decimal_comma: Option<bool>,
         vertical_shifts: bool,
+        reading: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<MasterCurve> {
-        let experiment = choice("experiment", experiment, &EXPERIMENTS)?;
-        let (units, format) = (of_units(units)?, text_format(decimal_comma));
+        let (experiment, units) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units)?);
+        let table = text_table(path, reading)?;
         let curve = py.detach(|| {
-            let table = viscocontact::input::TextTable::open(path, format)?;
             let isotherms = rh::Isotherm::from_table(experiment, &table, units)?;
             if vertical_shifts {
                 rh::MasterCurve::with_vertical_shifts(reference, isotherms)
@@ -246,6 +275,18 @@ impl MasterCurve {
             .zip(errors)
             .map(|((temperature, factor), (_, error))| (temperature, factor, error))
             .collect()
+    }
+
+    /// Temperature [K] and vertical factor of each isotherm.
+    #[getter]
+    fn vertical_factors(&self) -> Vec<(f64, f64)> {
+        self.0.vertical_factors()
+    }
+
+    /// Temperature [K] of each isotherm, and how far it is off its neighbours where they overlap, relative.
+    #[getter]
+    fn disagreements(&self) -> Vec<(f64, f64)> {
+        self.0.disagreements()
     }
 
     /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`.

@@ -4,111 +4,86 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::contact as ct;
 
+use crate::errors::in_python;
+
 /// The outcome and the cost of one step.
 #[pyclass(frozen, module = "viscocontact")]
 pub struct StepReport(pub ct::StepReport);
 
 #[pymethods]
 impl StepReport {
-    /// Time at the end of the step [s].
-    #[getter]
-    fn time(&self) -> f64 {
-        self.0.time
-    }
-
-    /// Length of the step [s]; 0 for a jump of the load.
-    #[getter]
-    fn dt(&self) -> f64 {
-        self.0.dt
-    }
-
-    /// Normal force on all bodies together [N].
-    #[getter]
-    fn force(&self) -> f64 {
-        self.0.force
-    }
-
-    /// Approach of the first body, at the origin [m].
-    #[getter]
-    fn approach(&self) -> f64 {
-        self.0.approach
-    }
-
-    /// Tilt of the first body along x1 and x2 [rad].
-    #[getter]
-    fn tilt(&self) -> (f64, f64) {
-        self.0.tilt.into()
-    }
-
-    /// Cells in contact.
-    #[getter]
-    fn contact_cells(&self) -> usize {
-        self.0.contact_cells
-    }
-
-    /// Estimated relative error in time of the step; None where there is no estimate.
-    #[getter]
-    fn time_error(&self) -> Option<f64> {
-        self.0.time_error
-    }
-
-    /// Iterations of the solver.
-    #[getter]
-    fn iterations(&self) -> usize {
-        self.0.iterations
-    }
-
-    /// Iterations by the fall-back solver.
-    #[getter]
-    fn fallback_iterations(&self) -> usize {
-        self.0.fallback_iterations
-    }
-
-    /// The transforms of the step in units of one convolution.
-    #[getter]
-    fn convolution_equivalents(&self) -> f64 {
-        self.0.convolution_equivalents()
-    }
-
-    /// Residual reached, in the measure of the setting `tolerance`.
-    #[getter]
-    fn residual(&self) -> f64 {
-        self.0.residual
-    }
-
-    /// Reasons why the result may be less accurate than expected, a line each.
-    #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.0.messages().collect()
-    }
-
     /// The numbers by name: a row of a `pandas.DataFrame`.
     fn as_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (all, of) = (PyDict::new(py), &self.0);
-        let numbers = [
-            ("time", of.time),
-            ("dt", of.dt),
-            ("force", of.force),
-            ("approach", of.approach),
-            ("tilt1", of.tilt[0]),
-            ("tilt2", of.tilt[1]),
-            ("convolution_equivalents", of.convolution_equivalents()),
-            ("residual", of.residual),
-        ];
-        for (name, value) in numbers {
-            all.set_item(name, value)?;
-        }
-        all.set_item("contact_cells", of.contact_cells)?;
-        all.set_item("time_error", of.time_error)?;
-        all.set_item("iterations", of.iterations)?;
-        all.set_item("fallback_iterations", of.fallback_iterations)?;
-        all.set_item("warnings", of.messages().collect::<Vec<_>>())?;
-        Ok(all)
+        let of = &self.0;
+        Ok(dict! { py;
+            "time": of.time,
+            "dt": of.dt,
+            "force": of.force,
+            "approach": of.approach,
+            "tilt1": of.tilt[0],
+            "tilt2": of.tilt[1],
+            "convolution_equivalents": of.convolution_equivalents(),
+            "residual": of.residual,
+            "contact_cells": of.contact_cells,
+            "time_error": of.time_error,
+            "iterations": of.iterations,
+            "fallback_iterations": of.fallback_iterations,
+            "warnings": self.warnings(),
+        })
+    }
+
+    /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_in_wave", "periods",
+    /// "cells_in_zone", "modulus" [Pa] and "touch" [m].
+    #[getter]
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let of = &self.0.figures;
+        Ok(dict! { py;
+            "max_slope": of.max_slope,
+            "compression": of.compression,
+            "cells_in_wave": of.cells_in_wave,
+            "periods": of.periods,
+            "cells_in_zone": of.cells_in_zone,
+            "modulus": of.modulus,
+            "touch": of.touch,
+        })
     }
 
     fn __repr__(&self) -> String {
         self.0.to_string()
     }
+}
+
+getters! {StepReport, of:
+    /// Time at the end of the step [s].
+    time: f64 = of.time;
+    /// Length of the step [s]; 0 for a jump of the load.
+    dt: f64 = of.dt;
+    /// Normal force on all bodies together [N].
+    force: f64 = of.force;
+    /// Approach of the first body, at the origin [m].
+    approach: f64 = of.approach;
+    /// Tilt of the first body along x1 and x2 [rad].
+    tilt: (f64, f64) = of.tilt.into();
+    /// Cells in contact.
+    contact_cells: usize = of.contact_cells;
+    /// Estimated relative error in time of the step; None where there is no estimate.
+    time_error: Option<f64> = of.time_error;
+    /// The quantity of which this is the error: "approach", "force", or both.
+    estimated: String = of.estimated.to_string();
+    /// Iterations of the solver.
+    iterations: usize = of.iterations;
+    /// Iterations by the fall-back solver.
+    fallback_iterations: usize = of.fallback_iterations;
+    /// Convolutions with the kernel.
+    convolutions: usize = of.convolutions;
+    /// Applications of the preconditioner.
+    preconditioner_applications: usize = of.preconditioner_applications;
+    /// The transforms of the step in units of one convolution.
+    convolution_equivalents: f64 = of.convolution_equivalents();
+    /// Residual reached, in the measure of the setting `tolerance`.
+    residual: f64 = of.residual;
+    /// Reasons why the result may be less accurate than expected, a line each.
+    warnings: Vec<String> = of.messages().map(in_python).collect();
 }
 
 /// The state of one rigid body.
@@ -117,36 +92,6 @@ pub struct BodyState(pub ct::BodyState);
 
 #[pymethods]
 impl BodyState {
-    /// Approach at the origin of the grid [m].
-    #[getter]
-    fn approach(&self) -> f64 {
-        self.0.approach
-    }
-
-    /// Tilt along x1 and x2 [rad].
-    #[getter]
-    fn tilt(&self) -> (f64, f64) {
-        self.0.tilt.into()
-    }
-
-    /// Normal force [N].
-    #[getter]
-    fn force(&self) -> f64 {
-        self.0.force
-    }
-
-    /// Moments of the pressure about the origin, ∬ p x1 and ∬ p x2 [N·m].
-    #[getter]
-    fn moment(&self) -> (f64, f64) {
-        self.0.moment.into()
-    }
-
-    /// Cells in contact.
-    #[getter]
-    fn contact_cells(&self) -> usize {
-        self.0.contact_cells
-    }
-
     fn __repr__(&self) -> String {
         let of = &self.0;
         format!(
@@ -154,4 +99,17 @@ impl BodyState {
             of.force, of.approach, of.tilt, of.contact_cells
         )
     }
+}
+
+getters! {BodyState, of:
+    /// Approach at the origin of the grid [m].
+    approach: f64 = of.approach;
+    /// Tilt along x1 and x2 [rad].
+    tilt: (f64, f64) = of.tilt.into();
+    /// Normal force [N].
+    force: f64 = of.force;
+    /// Moments of the pressure about the origin, ∬ p x1 and ∬ p x2 [N·m].
+    moment: (f64, f64) = of.moment.into();
+    /// Cells in contact.
+    contact_cells: usize = of.contact_cells;
 }

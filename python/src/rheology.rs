@@ -8,9 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 
-use crate::arrays::{mapped, pairs, values};
-use crate::errors::{OrRaise, raise};
-use crate::recipe::{Recipe, Reduced};
+use crate::arrays::{column, mapped, pairs, values};
+use crate::errors::{OrRaise, no_violation, raise};
+use crate::recipe::Recipe;
 
 /// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
 ///
@@ -54,6 +54,19 @@ impl Rheology {
     #[staticmethod]
     fn elastic(py: Python<'_>, g: f64) -> PyResult<Rheology> {
         Rheology::made(py, "elastic", (g,), Arc::new(rh::Elastic::new(g).or_raise()?))
+    }
+
+    /// An elastic body of Young's modulus `e` [Pa] and Poisson's ratio `nu`; its `Material` needs the same `nu`.
+    #[staticmethod]
+    fn elastic_young(py: Python<'_>, e: f64, nu: f64) -> PyResult<Rheology> {
+        Rheology::made(py, "elastic_young", (e, nu), Arc::new(rh::Elastic::young(e, nu).or_raise()?))
+    }
+
+    /// A published Prony series in shear (`published_materials`), by Poisson's ratio where it was measured in tension.
+    #[staticmethod]
+    fn published(py: Python<'_>, name: &str, nu: f64) -> PyResult<Rheology> {
+        let body = rh::library::find(name).and_then(|found| found.rheology(nu)).or_raise()?;
+        Rheology::made(py, "published", (name, nu), Arc::new(body))
     }
 
     /// Spring `g` [Pa] and dashpot in series, of `relaxation_time` [s]: a fluid.
@@ -153,6 +166,13 @@ impl Rheology {
         Rheology::made(py, "fractional_zener", (g, g_k, time, exponent), Arc::new(body))
     }
 
+    /// The fractional standard linear solid whose modulus relaxes from `glassy` to `rubbery` [Pa], of relaxation `time` [s].
+    #[staticmethod]
+    fn fractional_relaxing(py: Python<'_>, glassy: f64, rubbery: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
+        let body = rh::FractionalZener::relaxing(glassy, rubbery, time, exponent).or_raise()?;
+        Rheology::made(py, "fractional_relaxing", (glassy, rubbery, time, exponent), Arc::new(body))
+    }
+
     /// A stretched exponential J(t) = J_g + ΔJ [1 − exp(−(t/λ)^β)].
     #[staticmethod]
     fn kww(py: Python<'_>, glassy: f64, retarded: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
@@ -196,6 +216,18 @@ impl Rheology {
         Rheology::made(py, "fitted", (slf, first, last, tolerance), Arc::new(series))
     }
 
+    /// Checks the laws of creep at ascending times [s]: not negative, not decreasing, concave, and as its series. Raises ValueError with the
+    /// first violation.
+    ///
+    /// >>> Rheology.function(lambda t: 1e-6 * (1 + t**2)).check([0.0, 1.0, 2.0, 3.0])
+    /// Traceback (most recent call last):
+    /// ValueError: ...
+    fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
+        let times = column("times", times)?;
+        let verdict = py.detach(|| rh::laws::all(&*self.body, &times));
+        self.body.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+    }
+
     /// J(t) [1/Pa] at times [s]: a float, or an array of the shape of `t`.
     fn creep_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let compliance = mapped("t", t, |t| self.body.creep_compliance(t))?;
@@ -223,10 +255,20 @@ impl Rheology {
     /// The exact exponential series of J(t): glassy compliance [1/Pa], fluidity [1/(Pa·s)], rows (compliance, retardation time); None
     /// if there is none.
     #[getter]
-    #[allow(clippy::type_complexity)]
-    fn creep_spectrum(&self) -> Option<(f64, f64, Vec<(f64, f64)>)> {
-        let spectrum = self.body.creep_spectrum()?;
-        Some((spectrum.glassy(), spectrum.fluidity(), spectrum.terms().to_vec()))
+    fn creep_spectrum(&self) -> Option<Series> {
+        self.body.creep_spectrum().map(|spectrum| series(&spectrum))
+    }
+
+    /// The times [s] over which it was measured or fitted; (0, inf) of formulas.
+    #[getter]
+    fn measured(&self) -> (f64, f64) {
+        self.body.measured().into()
+    }
+
+    /// The longest time at which it is known [s]; inf of formulas.
+    #[getter]
+    fn known_until(&self) -> f64 {
+        self.body.known_until()
     }
 
     /// The error of the series, if it was fitted, in one line.
@@ -234,14 +276,15 @@ impl Rheology {
     fn fit_report(&self) -> Option<String> {
         self.body.fit_report().map(|report| report.to_string())
     }
+}
 
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
+made_by_calls!(Rheology);
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
+/// Glassy compliance, fluidity, and compliances with their retardation times.
+pub type Series = (f64, f64, Vec<(f64, f64)>);
+
+pub fn series(of: &CreepSpectrum) -> Series {
+    (of.glassy(), of.fluidity(), of.terms().to_vec())
 }
 
 fn shares(terms: &Bound<'_, PyAny>) -> PyResult<Vec<rh::PronyTerm>> {

@@ -7,19 +7,33 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::contact::StepReport as Report;
 use viscocontact::run::{self as vr, Crossing};
-use viscocontact::states::StatesContact as InStates;
 use viscocontact::{self as vc, ViscoelasticContact as InSpace};
 
 use crate::arrays::{Array, to_array};
 use crate::contact::ViscoelasticContact;
-use crate::errors::{Cancelled, OrRaise, choice};
+use crate::errors::{Cancelled, OrRaise, choice, no_exception, raised_number};
 use crate::held::{Led, Options};
+use crate::recipe::Recipe;
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
 
-enum Of {
+/// The contact that a run leads.
+#[derive(IntoPyObjectRef)]
+pub enum Of {
     Space(Py<ViscoelasticContact>),
     States(Py<StatesContact>),
+}
+
+impl From<Py<ViscoelasticContact>> for Of {
+    fn from(contact: Py<ViscoelasticContact>) -> Of {
+        Of::Space(contact)
+    }
+}
+
+impl From<Py<StatesContact>> for Of {
+    fn from(contact: Py<StatesContact>) -> Of {
+        Of::States(contact)
+    }
 }
 
 /// A contact on its way along a load: an iterator over the reports of its steps, made by `follow`.
@@ -32,40 +46,42 @@ pub struct Run {
     options: Options,
 }
 
-/// Evaluates an expression on the run of either contact.
-macro_rules! on_run {
-    ($self:ident, $py:ident, $run:ident => $value:expr) => {
+/// Evaluates an expression with either contact of a run.
+macro_rules! with_contact {
+    ($self:ident, $py:ident, $borrow:ident, $contact:ident => $value:expr) => {
         match &$self.of {
             Of::Space(contact) => {
-                let contact = contact.bind($py).borrow();
-                let $run = contact.held.run_ref($self.number)?;
+                let $contact = contact.bind($py).$borrow();
                 $value
             }
             Of::States(contact) => {
-                let contact = contact.bind($py).borrow();
-                let $run = contact.held.run_ref($self.number)?;
+                let $contact = contact.bind($py).$borrow();
                 $value
             }
         }
     };
 }
 
-impl Run {
-    pub fn in_space(contact: Py<ViscoelasticContact>, number: u64, options: Options) -> Run {
-        Run { of: Of::Space(contact), number, options }
-    }
+/// Evaluates an expression on the run of either contact.
+macro_rules! on_run {
+    ($self:ident, $py:ident, $run:ident => $value:expr) => {
+        with_contact!($self, $py, borrow, contact => {
+            let $run = contact.held.run_ref($self.number)?;
+            $value
+        })
+    };
+}
 
-    pub fn on_states(contact: Py<StatesContact>, number: u64, options: Options) -> Run {
-        Run { of: Of::States(contact), number, options }
+impl Run {
+    pub fn of(of: Of, number: u64, options: Options) -> Run {
+        Run { of, number, options }
     }
 
     /// Signals are looked for in each step: `list(run)` runs no Python between them.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Report>> {
         py.check_signals()?;
-        let report = match &self.of {
-            Of::Space(contact) => contact.bind(py).borrow_mut().next(py, self.number)?,
-            Of::States(contact) => contact.bind(py).borrow_mut().next(py, self.number)?,
-        };
+        let report = with_contact!(self, py, borrow_mut, contact => { let mut contact = contact; contact.next(py, self.number)? });
+        no_exception()?;
         if let (Some(progress), Some(_)) = (&self.options.progress, &report) {
             let share = on_run!(self, py, run => run.progress().share_of_time());
             if progress.call1(py, (share,))?.extract::<bool>(py).is_ok_and(|goes_on| !goes_on) {
@@ -87,38 +103,49 @@ impl Run {
     }
 
     /// Makes steps end where a quantity crosses a value, upward or downward: "force" [N], "approach" [m], "contact_area" [m²] or
-    /// "max_pressure" [Pa] (in space). Call it before the first step; `events` has the crossings.
+    /// "max_pressure" [Pa] (in space), or a function of the contact that returns a float. Call it before the first step; `events` has the
+    /// crossings.
+    ///
+    /// A function is called with a copy of the contact, some times a step. An exception of it comes out after the step.
     ///
     /// >>> contact = StatesContact(ElasticStates.sphere(10e-3), Material(Rheology.zener(1e6, 1e6, 1.0)))
     /// >>> drive = LoadHistory.sinusoid(Load.approach(-20e-6), Load.approach(20e-6), 0.2)
     /// >>> run = contact.follow(drive, 20.0, tolerance=1e-4)
     /// >>> run.stop_when("force", down=0.0)
+    /// >>> run.stop_when(lambda contact: contact.force / (contact.contact_area + 1e-12), up=1e4)
     /// >>> reports = list(run)
-    /// >>> len(run.events[0]) >= 3
+    /// >>> len(run.events[0]) >= 3 and len(run.events[1]) >= 3
     /// True
     #[pyo3(signature = (quantity, *, up=None, down=None))]
-    fn stop_when(&self, py: Python<'_>, quantity: &str, up: Option<f64>, down: Option<f64>) -> PyResult<()> {
+    fn stop_when(
+        &self,
+        py: Python<'_>,
+        quantity: &Bound<'_, PyAny>,
+        up: Option<f64>,
+        down: Option<f64>,
+    ) -> PyResult<()> {
         let crossing = match (up, down) {
             (Some(value), None) if value.is_finite() => Crossing::Up(value),
             (None, Some(value)) if value.is_finite() => Crossing::Down(value),
             _ => return Err(PyTypeError::new_err("give up or down, one of them, a finite value")),
         };
-        match &self.of {
-            Of::Space(contact) => {
-                let quantity = choice("quantity", quantity, &quantities::<InSpace>())?;
-                contact.bind(py).borrow_mut().held.stop_when(self.number, quantity, crossing)
-            }
-            Of::States(contact) => {
-                let quantity = choice("quantity", quantity, &quantities::<InStates>()[..3])?;
-                contact.bind(py).borrow_mut().held.stop_when(self.number, quantity, crossing)
-            }
-        }
+        with_contact!(self, py, borrow_mut, contact => {
+            let quantity = watched(py, quantity, &contact.recipe)?;
+            let mut contact = contact;
+            contact.held.stop_when(self.number, quantity, crossing)
+        })
     }
 
     /// The times [s] of the crossings of each `stop_when` so far.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<Vec<f64>>> {
         Ok(on_run!(self, py, run => run.events().iter().map(|event| event.times().to_vec()).collect()))
+    }
+
+    /// Whether the quantity lies beyond the value, perhaps since the start of the run, for each `stop_when`.
+    #[getter]
+    fn is_beyond(&self, py: Python<'_>) -> PyResult<Vec<bool>> {
+        Ok(on_run!(self, py, run => run.events().iter().map(|event| event.is_beyond()).collect()))
     }
 
     /// Whether the last step ended at the event, for each `stop_when`.
@@ -128,29 +155,25 @@ impl Run {
     }
 
     /// The states of the last step at the times of `sample_at`, in the order of time.
-    fn samples<'py>(&self, py: Python<'py>) -> PyResult<Vec<Sample>> {
-        match &self.of {
-            Of::Space(contact) => {
-                let contact = contact.bind(py).borrow();
-                let run = contact.held.run_ref(self.number)?;
-                let taken = py.detach(|| samples(run)).or_raise()?;
-                let sample = |(report, state)| -> PyResult<Sample> {
-                    let state = Py::new(py, contact.copy_of(py, state))?;
-                    Ok(Sample { report, contact: state.into_any() })
-                };
-                taken.into_iter().map(sample).collect()
-            }
-            Of::States(contact) => {
-                let contact = contact.bind(py).borrow();
-                let run = contact.held.run_ref(self.number)?;
-                let taken = py.detach(|| samples(run)).or_raise()?;
-                let sample = |(report, state)| -> PyResult<Sample> {
-                    let state = Py::new(py, contact.copy_of(py, state))?;
-                    Ok(Sample { report, contact: state.into_any() })
-                };
-                taken.into_iter().map(sample).collect()
-            }
-        }
+    fn samples(&self, py: Python<'_>) -> PyResult<Vec<Sample>> {
+        with_contact!(self, py, borrow, contact => {
+            let run = contact.held.run_ref(self.number)?;
+            let taken = py.detach(|| asked_for(run, kept)).or_raise()?;
+            let sample = |(report, field, state): (_, _, _)| {
+                let contact = Led::into_object(state, py, contact.recipe.again(py))?;
+                Ok(Sample { report, field, contact })
+            };
+            taken.into_iter().map(sample).collect()
+        })
+    }
+
+    /// The contact at a time [s] within the last step, its ends included, as exact as the steps.
+    fn within_step(&self, py: Python<'_>, time: f64) -> PyResult<Py<PyAny>> {
+        with_contact!(self, py, borrow, contact => {
+            let run = contact.held.run_ref(self.number)?;
+            let state = py.detach(|| run.within_step(time)).or_raise()?;
+            state.into_object(py, contact.recipe.again(py))
+        })
     }
 
     /// Goes on to the end and returns what it passed: arrays "time" [s], "force" [N], "approach" [m] and "contact_area" [m²], with a
@@ -164,7 +187,12 @@ impl Run {
         let mut columns: [Vec<f64>; 4] = Default::default();
         let sampled = self.options.sample_at.is_some();
         while self.next(py)?.is_some() {
-            let passed = on_run!(self, py, run => py.detach(|| passed(run, sampled))).or_raise()?;
+            let passed = on_run!(self, py, run => py.detach(|| if sampled {
+                asked_for(run, |sample| sample.contact().state())
+            } else {
+                Ok(vec![run.contact().state()])
+            }))
+            .or_raise()?;
             passed.iter().for_each(|row| columns.iter_mut().zip(row).for_each(|(column, value)| column.push(*value)));
         }
         as_table(py, columns)
@@ -172,24 +200,21 @@ impl Run {
 
     /// The contact that the run leads.
     #[getter]
-    fn contact(&self, py: Python<'_>) -> Py<PyAny> {
-        match &self.of {
-            Of::Space(contact) => contact.clone_ref(py).into_any(),
-            Of::States(contact) => contact.clone_ref(py).into_any(),
-        }
+    fn contact(&self) -> &Of {
+        &self.of
     }
 
     /// Steps taken, time [s], end [s], share of the time and share of the decades of time that are over.
     #[getter]
     fn progress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let at = on_run!(self, py, run => run.progress());
-        let all = PyDict::new(py);
-        all.set_item("steps", at.steps)?;
-        all.set_item("time", at.time)?;
-        all.set_item("until", at.until)?;
-        all.set_item("share_of_time", at.share_of_time())?;
-        all.set_item("share_of_decades", at.share_of_decades())?;
-        Ok(all)
+        Ok(dict! { py;
+            "steps": at.steps,
+            "time": at.time,
+            "until": at.until,
+            "share_of_time": at.share_of_time(),
+            "share_of_decades": at.share_of_decades(),
+        })
     }
 
     /// Steps rejected for their error so far.
@@ -206,23 +231,23 @@ impl Run {
         };
         let contact = contact.bind(py).borrow();
         let budget = contact.held.run_ref(self.number)?.error_budget();
-        let all = PyDict::new(py);
-        all.set_item("time", budget.time)?;
-        all.set_item("pressure", budget.pressure)?;
-        all.set_item("solver", budget.solver)?;
-        all.set_item("mesh_approach", budget.mesh.as_ref().map(|mesh| mesh.approach))?;
-        all.set_item("mesh_max_pressure", budget.mesh.as_ref().and_then(|mesh| mesh.max_pressure))?;
-        all.set_item("mesh_area", budget.mesh.as_ref().map(|mesh| mesh.area))?;
-        all.set_item("text", budget.to_string())?;
-        Ok(all)
+        Ok(dict! { py;
+            "time": budget.time,
+            "pressure": budget.pressure,
+            "solver": budget.solver,
+            "mesh_approach": budget.mesh.as_ref().map(|mesh| mesh.approach),
+            "mesh_max_pressure": budget.mesh.as_ref().and_then(|mesh| mesh.max_pressure),
+            "mesh_area": budget.mesh.as_ref().map(|mesh| mesh.area),
+            "text": budget.to_string(),
+        })
     }
 
     /// Saves the run to a checkpoint now.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        match &self.of {
-            Of::Space(contact) => contact.bind(py).borrow_mut().held.run(self.number)?.0.save(path).or_raise(),
-            Of::States(contact) => contact.bind(py).borrow_mut().held.run(self.number)?.0.save(path).or_raise(),
-        }
+        with_contact!(self, py, borrow_mut, contact => {
+            let mut contact = contact;
+            contact.held.run(self.number)?.0.save(path).or_raise()
+        })
     }
 }
 
@@ -237,48 +262,47 @@ pub fn as_table(py: Python<'_>, columns: [Vec<f64>; 4]) -> PyResult<Bound<'_, Py
     Ok(all)
 }
 
-type Quantity<C> = (&'static str, fn(&C) -> f64);
+type Quantity<C> = Box<dyn Fn(&C) -> f64 + Send + Sync>;
+type Named<C> = (&'static str, fn(&C) -> f64);
 
-fn quantities<C: Led>() -> [Quantity<C>; 4] {
-    [
-        ("force", |contact| contact.state()[1]),
-        ("approach", |contact| contact.state()[2]),
-        ("contact_area", |contact| contact.state()[3]),
-        ("max_pressure", |contact| contact.max_pressure_or_nan()),
-    ]
+/// The quantity of a name, or of a function of the contact.
+fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) -> PyResult<Quantity<C>> {
+    if given.is_callable() {
+        let (function, recipe) = (given.clone().unbind(), recipe.again(py));
+        let value = move |py: Python<'_>, contact: &C| {
+            let contact = contact.clone().into_object(py, recipe.again(py))?;
+            function.call1(py, (contact,))?.extract(py)
+        };
+        return Ok(Box::new(move |contact| raised_number(Python::attach(|py| value(py, contact)), f64::NAN)));
+    }
+    let needed = "quantity: a name or a function of the contact is needed";
+    let name: String = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
+    let all: [Named<C>; 4] = [
+        ("force", |contact| contact.force()),
+        ("approach", |contact| contact.approach()),
+        ("contact_area", |contact| contact.contact_area()),
+        ("max_pressure", |contact| contact.in_space().map_or(f64::NAN, InSpace::max_pressure)),
+    ];
+    let known = if C::IN_SPACE { &all[..] } else { &all[..3] };
+    Ok(Box::new(choice("quantity", &name, known)?))
 }
 
-/// The state at the end of the last step, or the states of its samples.
-fn passed<C: Led>(run: &vr::Run<'static, C>, sampled: bool) -> vc::Result<Vec<[f64; 4]>> {
-    if !sampled {
-        return Ok(vec![run.contact().state()]);
-    }
-    let mut rows = Vec::new();
-    for sample in run.samples() {
-        let sample = sample?;
-        if sample.is_asked_for() {
-            rows.push(sample.contact().state());
-        }
-    }
-    Ok(rows)
+/// What is kept of a sample.
+fn kept<C: Led>(sample: &vr::Sample<'_, C>) -> (Report, Option<vr::FieldReport>, C) {
+    (*sample.report(), sample.field(), sample.contact().clone())
 }
 
-/// The samples that were asked for.
-fn samples<C: Led>(run: &vr::Run<'static, C>) -> vc::Result<Vec<(Report, C)>> {
-    let mut all = Vec::new();
-    for sample in run.samples() {
-        let sample = sample?;
-        if sample.is_asked_for() {
-            all.push((*sample.report(), sample.contact().clone()));
-        }
-    }
-    Ok(all)
+/// What the samples that were asked for have.
+pub fn asked_for<C: Led, T>(run: &vr::Run<'static, C>, of: impl Fn(&vr::Sample<'_, C>) -> T) -> vc::Result<Vec<T>> {
+    let samples = run.samples().filter(|sample| sample.as_ref().map_or(true, |sample| sample.is_asked_for()));
+    samples.map(|sample| sample.map(|sample| of(&sample))).collect()
 }
 
 /// A state of a run at a time of `sample_at`.
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Sample {
     report: Report,
+    field: Option<vr::FieldReport>,
     contact: Py<PyAny>,
 }
 
@@ -294,6 +318,18 @@ impl Sample {
     #[getter]
     fn report(&self) -> StepReport {
         StepReport(self.report)
+    }
+
+    /// With `fields_to` how exact the pressure is: "error" in time, relative (None without an estimate), and the "elastic_contacts" and
+    /// "convolutions" that it took.
+    #[getter]
+    fn field<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(of) = self.field else { return Ok(None) };
+        Ok(Some(dict! { py;
+            "error": of.error,
+            "elastic_contacts": of.elastic_contacts,
+            "convolutions": of.convolutions,
+        }))
     }
 
     fn __repr__(&self) -> String {

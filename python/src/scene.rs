@@ -10,6 +10,7 @@ use crate::attraction::Attraction;
 use crate::errors::choice;
 use crate::grid::Grid;
 use crate::kernels::InfluenceKernel;
+use crate::loads::history;
 use crate::materials::Material;
 use crate::shapes::geometries;
 use crate::temperature::TemperatureHistory;
@@ -53,7 +54,7 @@ pub fn settings(base: Settings, given: &Bound<'_, PyDict>) -> PyResult<Settings>
     })
 }
 
-fn unexpected(name: &str) -> PyErr {
+pub fn unexpected(name: &str) -> PyErr {
     PyTypeError::new_err(format!("got an unexpected keyword argument '{name}'"))
 }
 
@@ -89,8 +90,11 @@ pub fn builder(
             "attraction" => builder.attraction(value.cast::<Attraction>()?.get().law.clone()),
             "temperature" => builder.temperature(value.cast::<TemperatureHistory>()?.get().history.clone()),
             "times" => {
-                let (first, last): (f64, f64) = value.extract()?;
-                builder.times(first..=last)
+                let (first, last): (Bound<'_, PyAny>, f64) = value.extract()?;
+                match first.extract::<f64>() {
+                    Ok(first) => builder.times(first..=last),
+                    Err(_) => builder.times_of(&*history(&first)?, last),
+                }
             }
             _ => return Err(unexpected(&name)),
         };
@@ -116,19 +120,14 @@ pub fn memory<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     use crate::errors::OrRaise;
     let memory: vc::contact::Memory = builder(grid, geometry, material, options)?.memory().or_raise()?;
-    let all = PyDict::new(py);
-    all.set_item("computed_cells", memory.computed_cells)?;
-    let parts = [
-        ("grid", memory.grid),
-        ("state", memory.state),
-        ("history", memory.history),
-        ("solver", memory.solver),
-        ("kernel", memory.kernel),
-        ("each_step", memory.each_step),
-        ("total", memory.total()),
-    ];
-    for (name, bytes) in parts {
-        all.set_item(name, bytes)?;
-    }
-    Ok(all)
+    Ok(dict! { py;
+        "computed_cells": memory.computed_cells,
+        "grid": memory.grid,
+        "state": memory.state,
+        "history": memory.history,
+        "solver": memory.solver,
+        "kernel": memory.kernel,
+        "each_step": memory.each_step,
+        "total": memory.total(),
+    })
 }

@@ -12,10 +12,10 @@ use crate::errors::OrRaise;
 pub struct Scratch(pub PathBuf);
 
 impl Scratch {
-    fn new() -> Scratch {
+    fn new(ending: &str) -> Scratch {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        Scratch(std::env::temp_dir().join(format!("viscocontact-{}-{number}.checkpoint", std::process::id())))
+        Scratch(std::env::temp_dir().join(format!("viscocontact-{}-{number}.{ending}", std::process::id())))
     }
 }
 
@@ -27,15 +27,16 @@ impl Drop for Scratch {
 
 pub fn bytes_of<'py>(
     py: Python<'py>,
+    ending: &str,
     save: impl FnOnce(&PathBuf) -> viscocontact::Result<()> + Send,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let file = Scratch::new();
+    let file = Scratch::new(ending);
     py.detach(|| save(&file.0)).or_raise()?;
     Ok(PyBytes::new(py, &std::fs::read(&file.0)?))
 }
 
 pub fn file_of(bytes: &Bound<'_, PyBytes>) -> PyResult<Scratch> {
-    let file = Scratch::new();
+    let file = Scratch::new("checkpoint");
     std::fs::write(&file.0, bytes.as_bytes())?;
     Ok(file)
 }

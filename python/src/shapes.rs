@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use vc::geometry::{self as geo, Geometry};
 use viscocontact as vc;
 
-use crate::arrays::{Array, plane, to_array};
-use crate::errors::OrRaise;
+use crate::arrays::{Array, cell_values, to_array};
+use crate::errors::{OrRaise, no_violation, raise};
 use crate::grid::Grid;
-use crate::recipe::{Recipe, Reduced};
+use crate::recipe::Recipe;
 
 /// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
 ///
@@ -164,24 +164,25 @@ impl Shape {
         Shape::made(slf.py(), "__add__", (slf, other), Arc::new(sum))
     }
 
+    /// Checks the laws of shapes on a grid: a gap that is no NaN, something to touch, the same by points and by fields. Raises ValueError with
+    /// the first violation.
+    fn check(&self, py: Python<'_>, grid: &Grid) -> PyResult<()> {
+        let verdict = py.detach(|| geo::laws::all(&*self.geometry, &grid.0));
+        self.geometry.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+    }
+
     /// The gap at the centres of the cells of a grid [m].
     fn gap<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<Array<'py>> {
         let mut gap = vec![0.0; grid.0.len()];
         py.detach(|| self.geometry.fill_gap(&grid.0, &mut gap));
         if let Some(failure) = self.geometry.failure() {
-            return Err(crate::errors::raise(&failure.into()));
+            return Err(raise(&failure.into()));
         }
         to_array(py, gap, &grid.0.cells())
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(Shape);
 
 /// The shapes of the rigid bodies of a contact: a shape, an array of the gap on the grid, or a sequence of shapes.
 pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Geometry>>> {
@@ -189,13 +190,7 @@ pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc
         return Ok(vec![Arc::clone(&shape.get().geometry)]);
     }
     if given.hasattr("dtype")? {
-        let (gap, shape) = plane("geometry", given)?;
-        if shape != grid.cells() {
-            let cells = grid.cells();
-            return Err(PyValueError::new_err(format!(
-                "geometry: the shape {cells:?} of the grid is needed, the array has {shape:?}"
-            )));
-        }
+        let gap = cell_values("geometry", given, grid.cells())?;
         return Ok(vec![Arc::new(GapOnCells { grid: grid.clone(), gap })]);
     }
     let needed = "geometry: a Shape, an array of gaps on the grid, or a sequence of shapes is needed";

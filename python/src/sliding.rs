@@ -7,14 +7,16 @@ use numpy::{Complex64, IntoPyArray};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscocontact::sliding as sl;
+use viscocontact::{self as vc, sliding as sl};
 
-use crate::arrays::{Array, to_array};
-use crate::errors::{OrRaise, raised_number};
+use crate::contact::ViscoelasticContact;
+use crate::errors::{OrRaise, choice, raised_number};
 use crate::grid::Grid;
 use crate::interrupt::Listener;
 use crate::loads::{Load, loads};
 use crate::materials::Material;
+use crate::pictures::{Picture, quantity};
+use crate::recipe::Recipe;
 use crate::scene::builder;
 use crate::temperature::TimeTemperature;
 
@@ -30,72 +32,6 @@ pub struct SlidingReport(sl::SlidingReport);
 
 #[pymethods]
 impl SlidingReport {
-    /// Velocity of the indenter over the bodies [m/s].
-    #[getter]
-    fn velocity(&self) -> (f64, f64) {
-        self.0.velocity.into()
-    }
-
-    /// Normal force [N].
-    #[getter]
-    fn force(&self) -> f64 {
-        self.0.force
-    }
-
-    /// Approach [m].
-    #[getter]
-    fn approach(&self) -> f64 {
-        self.0.approach
-    }
-
-    /// Force that keeps the indenter moving, along x1 and x2 [N].
-    #[getter]
-    fn lateral_force(&self) -> (f64, f64) {
-        self.0.lateral_force.into()
-    }
-
-    /// The coefficient of friction: lateral force against the motion over normal force.
-    #[getter]
-    fn friction(&self) -> f64 {
-        self.0.friction()
-    }
-
-    /// Power that the bodies dissipate [W].
-    #[getter]
-    fn dissipation(&self) -> f64 {
-        self.0.dissipation()
-    }
-
-    /// Cells in contact.
-    #[getter]
-    fn contact_cells(&self) -> usize {
-        self.0.contact_cells
-    }
-
-    /// Contact area [m²].
-    #[getter]
-    fn contact_area(&self) -> f64 {
-        self.0.contact_area
-    }
-
-    /// Mean gap over the grid [m].
-    #[getter]
-    fn mean_gap(&self) -> f64 {
-        self.0.mean_gap
-    }
-
-    /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
-    #[getter]
-    fn residual(&self) -> f64 {
-        self.0.residual
-    }
-
-    /// Sets of cells that were tried, and pairs of transforms.
-    #[getter]
-    fn cost(&self) -> (usize, usize) {
-        (self.0.sets, self.0.transforms)
-    }
-
     fn __repr__(&self) -> String {
         let of = &self.0;
         format!(
@@ -106,6 +42,31 @@ impl SlidingReport {
             of.contact_area
         )
     }
+}
+
+getters! {SlidingReport, of:
+    /// Velocity of the indenter over the bodies [m/s].
+    velocity: (f64, f64) = of.velocity.into();
+    /// Normal force [N].
+    force: f64 = of.force;
+    /// Approach [m].
+    approach: f64 = of.approach;
+    /// Force that keeps the indenter moving, along x1 and x2 [N].
+    lateral_force: (f64, f64) = of.lateral_force.into();
+    /// The coefficient of friction: lateral force against the motion over normal force.
+    friction: f64 = of.friction();
+    /// Power that the bodies dissipate [W].
+    dissipation: f64 = of.dissipation();
+    /// Cells in contact.
+    contact_cells: usize = of.contact_cells;
+    /// Contact area [m²].
+    contact_area: f64 = of.contact_area;
+    /// Mean gap over the grid [m].
+    mean_gap: f64 = of.mean_gap;
+    /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
+    residual: f64 = of.residual;
+    /// Sets of cells that were tried, and pairs of transforms.
+    cost: (usize, usize) = (of.sets, of.transforms);
 }
 
 /// A contact that moves steadily over creeping bodies: the friction of rubber on a road, at any velocity, by one contact problem each.
@@ -126,7 +87,18 @@ impl SlidingReport {
 /// >>> sliding.at((0.5, 0.0), Load.force(0.02)).friction > 0
 /// True
 #[pyclass(module = "viscocontact")]
-pub struct SteadySliding(sl::SteadySliding);
+pub struct SteadySliding {
+    sliding: sl::SteadySliding,
+    /// A contact at rest of the same parts.
+    recipe: Recipe,
+}
+
+impl SteadySliding {
+    /// The contact of the state found last.
+    pub fn get(&self) -> PyResult<&vc::ViscoelasticContact> {
+        Ok(self.sliding.contact())
+    }
+}
 
 #[pymethods]
 impl SteadySliding {
@@ -137,27 +109,29 @@ impl SteadySliding {
     )]
     fn new(
         py: Python<'_>,
-        grid: &Grid,
-        geometry: &Bound<'_, PyAny>,
-        material: &Material,
+        grid: Bound<'_, Grid>,
+        geometry: Bound<'_, PyAny>,
+        material: Bound<'_, Material>,
         base: Option<&Material>,
         modulus: Option<Py<PyAny>>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SteadySliding> {
-        let builder = builder(grid, geometry, material, options)?;
+        let builder = builder(grid.get(), &geometry, material.get(), options)?;
         let sliding = match (base, modulus) {
             (None, None) => py.detach(|| builder.build_sliding()),
             (Some(base), None) => py.detach(|| builder.build_sliding_on(base.material.clone())),
             (None, Some(modulus)) => py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega))),
             _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
         };
-        sliding.or_raise().map(SteadySliding)
+        let sliding = sliding.or_raise()?;
+        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options);
+        Ok(SteadySliding { sliding, recipe })
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` along x1 and x2 [m/s].
     fn at(&mut self, py: Python<'_>, velocity: [f64; 2], load: &Load) -> PyResult<SlidingReport> {
         let load = load.load;
-        py.detach(|| self.0.at(velocity, load)).or_raise().map(SlidingReport)
+        py.detach(|| self.sliding.at(velocity, load)).or_raise().map(SlidingReport)
     }
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
@@ -188,38 +162,53 @@ impl SteadySliding {
         }
         let mut listener = Listener::new(progress);
         let table =
-            py.detach(|| self.0.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
+            py.detach(|| self.sliding.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
         listener.result(table).map(SlidingTable)
     }
 
-    /// Pressure of the state found last [Pa], of the shape of the grid.
+    /// The state found last as a contact to look at, by all that a `ViscoelasticContact` shows: patches, profiles, distributions, stress.
     #[getter]
-    fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = self.0.contact();
-        to_array(py, contact.pressure().to_vec(), &contact.grid().cells())
+    fn contact(&self, py: Python<'_>) -> ViscoelasticContact {
+        ViscoelasticContact::of(self.sliding.contact().clone(), self.recipe.again(py))
     }
 
-    /// Displacement of the state found last [m], of the shape of the grid.
-    #[getter]
-    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = self.0.contact();
-        to_array(py, contact.displacement().to_vec(), &contact.grid().cells())
-    }
-
-    /// Gap of the state found last [m], of the shape of the grid.
-    #[getter]
-    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = self.0.contact();
-        let mut gap = vec![0.0; contact.grid().len()];
-        py.detach(|| contact.gap_into(&mut gap)).or_raise()?;
-        to_array(py, gap, &contact.grid().cells())
+    /// Bytes that a contact in steady motion takes at most, before it is built. Takes the arguments of `ViscoelasticContact`.
+    #[staticmethod]
+    #[pyo3(signature = (grid, geometry, material, **options))]
+    fn memory(
+        grid: &Grid,
+        geometry: &Bound<'_, PyAny>,
+        material: &Material,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<u64> {
+        builder(grid, geometry, material, options)?.sliding_memory().or_raise()
     }
 
     fn __repr__(&self) -> String {
-        let [n1, n2] = self.0.contact().grid().cells();
+        let [n1, n2] = self.sliding.contact().grid().cells();
         format!("SteadySliding({n1} × {n2} cells)")
     }
 }
+
+/// A column of a table, by name.
+type Column = (&'static str, fn(&sl::SweptState) -> f64);
+
+/// A column in a picture: name, unit and value.
+type Shown = (&'static str, &'static str, fn(&sl::SlidingReport) -> f64);
+
+const COLUMNS: [Column; 11] = [
+    ("velocity1", |state| state.report.velocity[0]),
+    ("velocity2", |state| state.report.velocity[1]),
+    ("temperature", |state| state.temperature.unwrap_or(f64::NAN)),
+    ("force", |state| state.report.force),
+    ("approach", |state| state.report.approach),
+    ("friction", |state| state.report.friction()),
+    ("lateral_force1", |state| state.report.lateral_force[0]),
+    ("lateral_force2", |state| state.report.lateral_force[1]),
+    ("contact_area", |state| state.report.contact_area),
+    ("mean_gap", |state| state.report.mean_gap),
+    ("dissipation", |state| state.report.dissipation()),
+];
 
 /// The states of a sweep.
 #[pyclass(frozen, module = "viscocontact")]
@@ -230,25 +219,25 @@ impl SlidingTable {
     /// Arrays with a value for each state: "velocity1", "velocity2" [m/s], "temperature" [K] (NaN without), "force" [N], "approach" [m],
     /// "friction", "lateral_force1", "lateral_force2" [N], "contact_area" [m²], "mean_gap" [m] and "dissipation" [W].
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        type Column = (&'static str, fn(&sl::SweptState) -> f64);
-        const COLUMNS: [Column; 11] = [
-            ("velocity1", |state| state.report.velocity[0]),
-            ("velocity2", |state| state.report.velocity[1]),
-            ("temperature", |state| state.temperature.unwrap_or(f64::NAN)),
-            ("force", |state| state.report.force),
-            ("approach", |state| state.report.approach),
-            ("friction", |state| state.report.friction()),
-            ("lateral_force1", |state| state.report.lateral_force[0]),
-            ("lateral_force2", |state| state.report.lateral_force[1]),
-            ("contact_area", |state| state.report.contact_area),
-            ("mean_gap", |state| state.report.mean_gap),
-            ("dissipation", |state| state.report.dissipation()),
-        ];
         let all = PyDict::new(py);
         for (name, of) in COLUMNS {
             all.set_item(name, self.0.states().iter().map(of).collect::<Vec<_>>().into_pyarray(py))?;
         }
         Ok(all)
+    }
+
+    /// A picture of a column over the speed, a curve for each temperature and load.
+    #[pyo3(signature = (column="friction"))]
+    fn picture(&self, py: Python<'_>, column: &str) -> PyResult<Picture> {
+        let charts: [(&str, Shown); 5] = [
+            ("friction", ("coefficient of friction", "", sl::SlidingReport::friction)),
+            ("approach", ("approach", "m", |report| report.approach)),
+            ("contact_area", ("contact area", "m²", |report| report.contact_area)),
+            ("mean_gap", ("mean gap", "m", |report| report.mean_gap)),
+            ("dissipation", ("dissipation", "W", sl::SlidingReport::dissipation)),
+        ];
+        let (name, unit, value) = choice("column", column, &charts)?;
+        py.detach(|| self.0.chart(quantity(name, unit), value).draw()).or_raise().map(Picture)
     }
 
     /// Writes the table as a CSV file.

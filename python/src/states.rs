@@ -19,12 +19,14 @@ use crate::grid::Grid;
 use crate::held::Led;
 use crate::interrupt::Listener;
 use crate::kernels::InfluenceKernel;
-use crate::loads::history;
+use crate::loads::{Tilts, history, tilts};
 use crate::materials::Material;
 use crate::recipe::{Recipe, Reduced};
+use crate::run::asked_for;
 use crate::scene::settings;
 use crate::scratch::{bytes_of, file_of};
 use crate::shapes::geometries;
+use crate::temperature::TemperatureHistory;
 
 /// The elastic states of a surface, found once: any material, history and temperature on it is then a matter of microseconds a step.
 ///
@@ -65,6 +67,13 @@ impl ElasticStates {
         ElasticStates::made(py, "cone", (tan_beta,), st::ElasticStates::cone(tan_beta))
     }
 
+    /// A true sphere of `radius` [m], up to a contact radius of 0.97 of it (Sneddon); `sphere` is its paraboloid.
+    #[staticmethod]
+    fn true_sphere(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
+        let states = viscocontact_identify::tips::sphere(radius).or_raise()?;
+        ElasticStates::made(py, "true_sphere", (radius,), Ok(states))
+    }
+
     /// A flat circular punch of `radius` [m].
     #[staticmethod]
     fn punch(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
@@ -95,6 +104,10 @@ impl ElasticStates {
     /// keep_pressures : bool
     ///     Whether `StatesContact.pressure` is possible.
     /// max_states : int, default 4000
+    /// at, tilt : pairs
+    ///     The tilts of the loads, as of `Load.force`.
+    /// temperature : TemperatureHistory, optional
+    ///     That of the `material` along the `load`.
     /// progress : function, optional
     ///     Called with the number of states so far; the sweep ends with these where it returns False. Ctrl-C ends it, too.
     /// settings
@@ -106,8 +119,8 @@ impl ElasticStates {
     /// True
     #[staticmethod]
     #[pyo3(
-        signature = (grid, geometry, *, level=None, approach=None, material=None, load=None, until=None, kernel=None, accuracy=1e-4, keep_pressures=false, max_states=None, progress=None, **settings),
-        text_signature = "(grid, geometry, *, level=None, approach=None, material=None, load=None, until=None, kernel=None, accuracy=1e-4, keep_pressures=False, max_states=None, progress=None, **settings)"
+        signature = (grid, geometry, *, level=None, approach=None, material=None, load=None, until=None, kernel=None, accuracy=1e-4, keep_pressures=false, max_states=None, at=None, tilt=None, temperature=None, progress=None, **settings),
+        text_signature = "(grid, geometry, *, level=None, approach=None, material=None, load=None, until=None, kernel=None, accuracy=1e-4, keep_pressures=False, max_states=None, at=None, tilt=None, temperature=None, progress=None, **settings)"
     )]
     #[allow(clippy::too_many_arguments)]
     fn sweep(
@@ -123,6 +136,9 @@ impl ElasticStates {
         accuracy: f64,
         keep_pressures: bool,
         max_states: Option<usize>,
+        at: Tilts,
+        tilt: Tilts,
+        temperature: Option<Bound<'_, TemperatureHistory>>,
         progress: Option<Py<PyAny>>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<ElasticStates> {
@@ -130,14 +146,19 @@ impl ElasticStates {
             (Some(level), None, None, None, None) => st::Reach::Level(level),
             (None, Some(approach), None, None, None) => st::Reach::Approach(approach),
             (None, None, Some(material), Some(load), Some(until)) => {
-                st::Reach::of(&material.get().material, &*history(load)?, until).or_raise()?
+                let (material, history) = (&material.get().material, history(load)?);
+                match &temperature {
+                    Some(at) => st::Reach::at_temperature(material, &at.get().history, &*history, until),
+                    None => st::Reach::of(material, &*history, until),
+                }
+                .or_raise()?
             }
             _ => return Err(PyTypeError::new_err("give level, or approach, or material, load and until")),
         };
         let [shape] = &geometries(&grid.get().0, &geometry)?[..] else {
             return Err(PyTypeError::new_err("geometry: a sweep is of one shape"));
         };
-        let mut sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy);
+        let mut sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy).tilt(tilts(at, tilt)?);
         if let Some(kernel) = &kernel {
             sweep = sweep.kernel(Arc::clone(&kernel.get().kernel));
         }
@@ -191,15 +212,40 @@ impl ElasticStates {
 
     /// The states as arrays: "level" [m²], "approach" [m], "stiffness" [m], "area" [m²], "cells", "patches".
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        let column = |of: fn(&st::ElasticState) -> f64| self.states.states().iter().map(of).collect::<Vec<f64>>();
-        all.set_item("level", column(|state| state.level).into_pyarray(py))?;
-        all.set_item("approach", column(|state| state.approach).into_pyarray(py))?;
-        all.set_item("stiffness", column(|state| state.stiffness).into_pyarray(py))?;
-        all.set_item("area", column(|state| state.area).into_pyarray(py))?;
-        all.set_item("cells", column(|state| state.cells as f64).into_pyarray(py))?;
-        all.set_item("patches", column(|state| state.patches as f64).into_pyarray(py))?;
-        Ok(all)
+        let column = |of: fn(&st::ElasticState) -> f64| {
+            self.states.states().iter().map(of).collect::<Vec<f64>>().into_pyarray(py)
+        };
+        Ok(dict! { py;
+            "level": column(|state| state.level),
+            "approach": column(|state| state.approach),
+            "stiffness": column(|state| state.stiffness),
+            "area": column(|state| state.area),
+            "cells": column(|state| state.cells as f64),
+            "patches": column(|state| state.patches as f64),
+        })
+    }
+
+    /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
+    fn conductance<'py>(&self, level: &Bound<'py, PyAny>, resistivities: [f64; 2]) -> PyResult<Bound<'py, PyAny>> {
+        mapped("level", level, |level| self.states.conductance(level, resistivities))
+    }
+
+    /// The grid of the sweep; None if there was none.
+    #[getter]
+    fn grid(&self) -> Option<Grid> {
+        self.states.grid().cloned().map(Grid)
+    }
+
+    /// The level from which contact only grows with the load [m²]: contacts of lower levels are refused.
+    #[getter]
+    fn first_level(&self) -> f64 {
+        self.states.first_level()
+    }
+
+    /// Poisson's ratio of the layer that was swept, which materials need to have; None of other bodies.
+    #[getter]
+    fn nu(&self) -> Option<f64> {
+        self.states.poisson_ratio()
     }
 
     /// Greatest error of the depth between two states, relative.
@@ -242,12 +288,7 @@ impl ElasticStates {
                 let run = contact.led(Arc::clone(&history), Stepping::adaptive(tolerance), until);
                 let (mut run, mut rows) = (run.sample_at(&times)?, Vec::with_capacity(times.len()));
                 while run.next_step()?.is_some() {
-                    for sample in run.samples() {
-                        let sample = sample?;
-                        if sample.is_asked_for() {
-                            rows.push(sample.contact().state());
-                        }
-                    }
+                    rows.extend(asked_for(&run, |sample| sample.contact().state())?);
                 }
                 Ok(rows)
             });
@@ -288,7 +329,7 @@ impl ElasticStates {
             return recipe.reduce(class);
         }
         let states = &slf.get().states;
-        let bytes = bytes_of(py, |file| write_states(file, states, &Metadata::new("")))?;
+        let bytes = bytes_of(py, "npz", |file| write_states(file, states, &Metadata::new("")))?;
         Recipe::new(py, "_of_bytes", (bytes,))?.reduce(class)
     }
 }

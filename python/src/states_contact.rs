@@ -1,6 +1,5 @@
 //! A contact of one material on elastic states.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -11,12 +10,11 @@ use viscocontact::states as st;
 
 use crate::arrays::{Array, to_array};
 use crate::errors::OrRaise;
-use crate::held::{Held, Options};
+use crate::held::Held;
 use crate::loads::Load;
 use crate::materials::Material;
 use crate::recipe::Recipe;
 use crate::reports::StepReport;
-use crate::run::Run;
 use crate::states::ElasticStates;
 use crate::temperature::TemperatureHistory;
 
@@ -43,7 +41,7 @@ use crate::temperature::TemperatureHistory;
 pub struct StatesContact {
     pub held: Held<st::StatesContact>,
     pub recipe: Recipe,
-    cancel: Arc<AtomicBool>,
+    pub cancel: Arc<AtomicBool>,
 }
 
 impl StatesContact {
@@ -51,8 +49,8 @@ impl StatesContact {
         self.held.contact()
     }
 
-    pub fn copy_of(&self, py: Python<'_>, contact: st::StatesContact) -> StatesContact {
-        StatesContact { held: Held::Free(contact), recipe: self.recipe.again(py), cancel: Arc::default() }
+    pub fn of(contact: st::StatesContact, recipe: Recipe) -> StatesContact {
+        StatesContact { held: Held::Free(contact), recipe, cancel: Arc::default() }
     }
 
     pub fn next(&mut self, py: Python<'_>, run: u64) -> PyResult<Option<ct::StepReport>> {
@@ -87,88 +85,20 @@ impl StatesContact {
         if exact_states {
             contact = contact.with_exact_states().or_raise()?;
         }
-        let keywords = PyDict::new(py);
-        keywords.set_item("temperature", temperature)?;
-        keywords.set_item("linear_steps", linear_steps)?;
-        keywords.set_item("merge_error", merge_error)?;
-        keywords.set_item("exact_states", exact_states)?;
+        let keywords = dict! { py;
+            "temperature": temperature,
+            "linear_steps": linear_steps,
+            "merge_error": merge_error,
+            "exact_states": exact_states,
+        };
         let recipe = Recipe::new(py, "", (states, material))?.with_keywords(Some(&keywords));
-        Ok(StatesContact { held: Held::Free(contact), recipe, cancel: Arc::default() })
+        Ok(StatesContact::of(contact, recipe))
     }
 
     /// Advances by `dt` [s] to a load; `dt` = 0 is a jump.
     fn step(&mut self, py: Python<'_>, dt: f64, load: &Load) -> PyResult<StepReport> {
         let (contact, load) = (self.held.free()?, load.load);
         py.detach(|| contact.step(dt, load)).or_raise().map(StepReport)
-    }
-
-    /// Follows a load, as `ViscoelasticContact.follow`.
-    #[pyo3(signature = (load, until, *, tolerance=None, dt=None, stop_at=None, sample_at=None, progress=None, autosave=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn follow(
-        slf: Bound<'_, Self>,
-        load: &Bound<'_, PyAny>,
-        until: f64,
-        tolerance: Option<f64>,
-        dt: Option<f64>,
-        stop_at: Option<Bound<'_, PyAny>>,
-        sample_at: Option<Bound<'_, PyAny>>,
-        progress: Option<Py<PyAny>>,
-        autosave: Option<(PathBuf, f64)>,
-    ) -> PyResult<Run> {
-        let options = Options::new(load, until, tolerance, dt, stop_at, sample_at, progress, autosave)?;
-        let mut contact = slf.borrow_mut();
-        let cancel = Arc::clone(&contact.cancel);
-        let run = contact.held.follow(&options, cancel)?;
-        Ok(Run::on_states(slf.clone().unbind(), run, options))
-    }
-
-    /// Time [s].
-    #[getter]
-    fn time(&self) -> PyResult<f64> {
-        Ok(self.get()?.time())
-    }
-
-    /// Normal force [N].
-    #[getter]
-    fn force(&self) -> PyResult<f64> {
-        Ok(self.get()?.force())
-    }
-
-    /// Approach of the origin [m].
-    #[getter]
-    fn approach(&self) -> PyResult<f64> {
-        Ok(self.get()?.approach())
-    }
-
-    /// Tilt along x1 and x2 [rad].
-    #[getter]
-    fn tilt(&self) -> PyResult<(f64, f64)> {
-        Ok(self.get()?.tilt().into())
-    }
-
-    /// Level: the elastic contact at this level has the same area [m²].
-    #[getter]
-    fn level(&self) -> PyResult<f64> {
-        Ok(self.get()?.level())
-    }
-
-    /// Contact area [m²].
-    #[getter]
-    fn contact_area(&self) -> PyResult<f64> {
-        Ok(self.get()?.contact_area())
-    }
-
-    /// Stiffness over the contact modulus [m].
-    #[getter]
-    fn stiffness_over_modulus(&self) -> PyResult<f64> {
-        Ok(self.get()?.stiffness_over_modulus())
-    }
-
-    /// Whether the bodies are apart.
-    #[getter]
-    fn is_separated(&self) -> PyResult<bool> {
-        Ok(self.get()?.is_separated())
     }
 
     /// The pressure [Pa] of the shape of the grid, from the states of a sweep with `keep_pressures`.
@@ -184,20 +114,40 @@ impl StatesContact {
     fn fields<'py>(&self, py: Python<'py>, accuracy: f64) -> PyResult<Bound<'py, PyDict>> {
         let contact = self.get()?;
         let fields = py.detach(|| contact.fields(accuracy)).or_raise()?;
-        let (all, cells) = (PyDict::new(py), self.cells()?);
-        for (name, field) in [("pressure", fields.pressure), ("displacement", fields.displacement), ("gap", fields.gap)]
-        {
-            all.set_item(name, to_array(py, field, &cells)?)?;
-        }
-        Ok(all)
+        let cells = self.cells()?;
+        let array = |field| to_array(py, field, &cells);
+        Ok(dict! { py;
+            "pressure": array(fields.pressure)?,
+            "displacement": array(fields.displacement)?,
+            "gap": array(fields.gap)?,
+        })
     }
 
-    fn __copy__(&self, py: Python<'_>) -> PyResult<StatesContact> {
-        Ok(self.copy_of(py, self.get()?.clone()))
+    /// The state as it is, to come back to by `restore`: a copy of the contact.
+    fn snapshot(&self, py: Python<'_>) -> PyResult<StatesContact> {
+        Ok(StatesContact::of(self.get()?.clone(), self.recipe.again(py)))
     }
 
-    fn __deepcopy__(&self, py: Python<'_>, _memo: Bound<'_, PyAny>) -> PyResult<StatesContact> {
-        self.__copy__(py)
+    /// Goes back to a state of this contact, or of a copy of it. Raises ValueError if the snapshot is of another contact.
+    fn restore(&mut self, snapshot: &StatesContact) -> PyResult<()> {
+        self.held.free()?.restore(snapshot.get()?).or_raise()
+    }
+
+    /// The pressure as a sum of elastic ones, p = Σ w_i (p_e(l_i) − p_e(l_i−1)): rows (level l_i [m²], traction w_i [Pa]), where p_e(l) is
+    /// the pressure of the elastic contact of unit compliance.
+    ///
+    /// >>> import numpy as np
+    /// >>> tip = ElasticStates.sphere(10e-3)
+    /// >>> contact = StatesContact(tip, Material(Rheology.maxwell(1e6, 1.0)))
+    /// >>> for _ in range(3):
+    /// ...     report = contact.step(0.5, Load.force(1.0))
+    /// >>> level, traction = contact.tractions().T
+    /// >>> bool(np.isclose((traction * np.diff(level, prepend=0.0)).sum(), contact.force))    # the force of p_e(l) is l
+    /// True
+    fn tractions<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let rows: Vec<f64> = self.get()?.tractions().flat_map(|(level, traction)| [level, traction]).collect();
+        let n = rows.len() / 2;
+        to_array(py, rows, &[n, 2])
     }
 
     fn __repr__(&self) -> PyResult<String> {
@@ -205,6 +155,27 @@ impl StatesContact {
         let (time, force, approach) = (of.time(), of.force(), of.approach());
         Ok(format!("StatesContact(time={time} s, force={force:e} N, approach={approach:e} m)"))
     }
+}
+
+getters! {try StatesContact, of:
+    /// Time [s].
+    time: f64 = of.time();
+    /// Normal force [N].
+    force: f64 = of.force();
+    /// Approach of the origin [m].
+    approach: f64 = of.approach();
+    /// Tilt along x1 and x2 [rad].
+    tilt: (f64, f64) = of.tilt().into();
+    /// Level: the elastic contact at this level has the same area [m²].
+    level: f64 = of.level();
+    /// Number of groups of levels, each with its own past.
+    groups: usize = of.groups();
+    /// Contact area [m²].
+    contact_area: f64 = of.contact_area();
+    /// Stiffness over the contact modulus [m].
+    stiffness_over_modulus: f64 = of.stiffness_over_modulus();
+    /// Whether the bodies are apart.
+    is_separated: bool = of.is_separated();
 }
 
 impl StatesContact {

@@ -7,7 +7,7 @@ use viscocontact::rheology as rh;
 
 use crate::arrays::{mapped, pairs};
 use crate::errors::{OrRaise, raised_number};
-use crate::recipe::{Recipe, Reduced};
+use crate::recipe::Recipe;
 use crate::rheology::Rheology;
 
 /// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K].
@@ -50,6 +50,26 @@ impl TimeTemperature {
         self.law.reference()
     }
 
+    /// The law of a published material (`published_materials`), None without one.
+    #[staticmethod]
+    fn published(py: Python<'_>, name: &str) -> PyResult<Option<TimeTemperature>> {
+        let Some(law) = rh::library::find(name).or_raise()?.time_temperature() else { return Ok(None) };
+        Ok(Some(TimeTemperature { law, recipe: Recipe::new(py, "published", (name,))? }))
+    }
+
+    /// The same beyond a table, by the Arrhenius law through its two last rows.
+    fn extrapolated(slf: Bound<'_, Self>) -> PyResult<TimeTemperature> {
+        let law = slf.get().law.clone().extrapolated();
+        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "extrapolated", (slf,))? })
+    }
+
+    /// The same above a `temperature` [K], and below it an Arrhenius law of activation `energy` [J/mol], without a jump.
+    fn with_arrhenius_below(slf: Bound<'_, Self>, temperature: f64, energy: f64) -> PyResult<TimeTemperature> {
+        let law = slf.get().law.clone().with_arrhenius_below(temperature, energy).or_raise()?;
+        let recipe = Recipe::new(slf.py(), "with_arrhenius_below", (slf, temperature, energy))?;
+        Ok(TimeTemperature { law, recipe })
+    }
+
     /// a_T at a temperature [K].
     fn shift_factor(&self, temperature: f64) -> PyResult<f64> {
         self.law.shift_factor(temperature).or_raise()
@@ -61,15 +81,9 @@ impl TimeTemperature {
         let recipe = Recipe::of::<TimeTemperature>(slf.py(), "at", (slf, rheology, temperature))?;
         Ok(Rheology::by(recipe, Arc::new(body)))
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(TimeTemperature);
 
 /// A temperature that changes in time; the material creeps in reduced time.
 ///
@@ -110,6 +124,12 @@ impl TemperatureHistory {
         })
     }
 
+    /// The same with physical ageing: times grow as (age/`reference`)^`rate`, the age being `start` [s] at time 0.
+    fn ageing(slf: Bound<'_, Self>, rate: f64, reference: f64, start: f64) -> PyResult<TemperatureHistory> {
+        let history = slf.get().history.clone().ageing(rate, reference, start).or_raise()?;
+        Ok(TemperatureHistory { history, recipe: Recipe::new(slf.py(), "ageing", (slf, rate, reference, start))? })
+    }
+
     /// The temperature [K] at times [s].
     fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         mapped("t", t, |t| self.history.at(t))
@@ -119,12 +139,6 @@ impl TemperatureHistory {
     fn reduced_time(&self, start: f64, end: f64) -> PyResult<f64> {
         self.history.reduced_time(start, end).or_raise()
     }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        slf.get().recipe.repr(&slf.get_type())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(TemperatureHistory);

@@ -12,7 +12,7 @@ use crate::errors::{OrRaise, choice};
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
 
-fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
+pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
         Ok(metadata.note(key.str()?.to_string(), value.str()?.to_string()))
     })
@@ -95,7 +95,9 @@ fn create(
     .map(CsvHistory)
 }
 
-const FIELDS: [(&str, Field); 4] = [
+pub const FORMATS: [(&str, Format); 2] = [("npz", Format::Npz), ("vtk", Format::Vtk)];
+
+pub const FIELDS: [(&str, Field); 4] = [
     ("pressure", Field::Pressure),
     ("displacement", Field::Displacement),
     ("gap", Field::Gap),
@@ -127,7 +129,7 @@ impl FrameSeries {
         notes: Option<&Bound<'_, PyDict>>,
         earlier: &str,
     ) -> PyResult<FrameSeries> {
-        let format = choice("format", format, &[("npz", Format::Npz), ("vtk", Format::Vtk)])?;
+        let format = choice("format", format, &FORMATS)?;
         let (metadata, contact) = (metadata(title, notes)?, contact.get()?);
         let fields = match fields {
             Some(names) => names.iter().map(|name| choice("field", name, &FIELDS)).collect::<PyResult<Vec<_>>>()?,
@@ -147,12 +149,11 @@ impl FrameSeries {
         let contact = contact.get()?;
         py.detach(|| self.0.record(contact)).or_raise()
     }
+}
 
+getters! {FrameSeries, of:
     /// Number of frames written.
-    #[getter]
-    fn frames(&self) -> usize {
-        self.0.frames()
-    }
+    frames: usize = of.frames();
 }
 
 #[pymethods]

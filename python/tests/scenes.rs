@@ -100,7 +100,29 @@ fn scene(seed: u64) -> viscocontact::Result<ViscoelasticContact> {
 }
 
 /// A line for each scene: its state, bit by bit, or its error.
+/// Time of a step of a ball on `n`² cells, the least of rounds of so many steps [s]: `tests/figures.py` measures the same in Python.
+fn time_of_a_step(n: usize, steps: u32, rounds: u32) -> viscocontact::Result<f64> {
+    let builder = ViscoelasticContact::builder(Grid::square(n, 4e-3)?).geometry(&Sphere::new(10e-3)?);
+    let mut contact = builder.material(Material::incompressible(Maxwell::with_time(1e6, 1.0)?)).build()?;
+    contact.step(0.0, Load::force(1.0))?;
+    let mut least = f64::INFINITY;
+    for _ in 0..rounds {
+        let start = std::time::Instant::now();
+        for _ in 0..steps {
+            contact.step(1e-5, Load::force(1.0))?;
+        }
+        least = least.min(start.elapsed().as_secs_f64() / f64::from(steps));
+    }
+    Ok(least)
+}
+
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("steps") {
+        for (n, steps, rounds) in [(16, 100, 400), (64, 10, 400), (256, 2, 200)] {
+            println!("{n}² cells: {:?} µs a step", time_of_a_step(n, steps, rounds).map(|time| 1e6 * time));
+        }
+        return;
+    }
     let count = std::env::args().nth(1).and_then(|count| count.parse().ok()).unwrap_or(300);
     for seed in 0..count {
         match scene(seed) {

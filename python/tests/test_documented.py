@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import os
 import pathlib
 import re
 
@@ -48,16 +49,26 @@ def test_a_repr_is_one_line(item):
     assert "\n" not in repr(item)
 
 
-def test_the_version_is_that_of_the_crate():
-    manifest = pathlib.Path(__file__).parents[2] / "Cargo.toml"
-    if not manifest.exists():
+@pytest.fixture
+def repository():
+    path = pathlib.Path(os.environ.get("VISCOCONTACT_REPOSITORY", pathlib.Path(__file__).parents[2]))
+    if not (path / "docs" / "guide" / "results.md").exists():
         pytest.skip("the crate is not beside")
-    version = re.search(r'^version = "(.*)"', manifest.read_text(), re.MULTILINE)
+    return path
+
+
+def test_the_version_is_that_of_the_crate(repository):
+    version = re.search(r'^version = "(.*)"', (repository / "Cargo.toml").read_text(), re.MULTILINE)
     assert viscocontact.__version__ == version.group(1)
 
 
-def test_the_licence_is_that_of_the_crate():
-    here = pathlib.Path(__file__).parents[1]
-    if not (here.parent / "LICENSE").exists():
-        pytest.skip("the crate is not beside")
-    assert (here / "LICENSE").read_text() == (here.parent / "LICENSE").read_text()
+def test_the_licence_is_that_of_the_crate(repository):
+    assert (repository / "python" / "LICENSE").read_text() == (repository / "LICENSE").read_text()
+
+
+@pytest.mark.parametrize("page, fence", [("README.md", "python"), ("../docs/guide/results.md", "py")])
+def test_programs_of_the_pages(repository, page, fence, capsys):
+    programs = re.findall(rf"```{fence}\n(.*?)```", (repository / "python" / page).read_text(encoding="utf-8"), re.DOTALL)
+    assert programs
+    for program in programs:
+        exec(program, {})

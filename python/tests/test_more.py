@@ -63,7 +63,7 @@ def test_attraction():
         contact.step(0.0, vc.Load.approach(0.0))
         states.append((contact.force, contact.traction.min()))
     assert states[0][0] < 0 and states[1] == pytest.approx(states[0], rel=1e-9)
-    assert vc.jkr_pull_off(1e-3, 4e6, 0.05) == pytest.approx(-1.5 * np.pi * 0.05 * 1e-3)
+    assert vc.Jkr(1e-3, 4e6, 0.05).pull_off_force == pytest.approx(-1.5 * np.pi * 0.05 * 1e-3)
 
 
 def test_motion():

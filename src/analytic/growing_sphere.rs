@@ -164,11 +164,7 @@ impl GrowingSphere {
             edges.push((to - age, false));
             age *= 2.0;
         }
-        let mut corner = self.load.next_breakpoint(start);
-        while let Some(time) = corner.filter(|&time| time < to) {
-            edges.push((time, true));
-            corner = self.load.next_breakpoint(time).filter(|&next| next > time);
-        }
+        edges.extend(self.load.breakpoints(start).take_while(|&time| time < to).map(|time| (time, true)));
         edges.sort_by(|a, b| a.0.total_cmp(&b.0));
         let panels = edges.windows(2).map(|pair| {
             let ((low, rooted), (high, _)) = (pair[0], pair[1]);

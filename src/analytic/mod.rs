@@ -9,6 +9,7 @@
 //! | [`AdhesivePunch`], [`AdhesiveCylinder`], [`AdhesiveWave`] | other shapes that stick, by an attraction of short range; elastic |
 //! | [`OpeningEdge`] | edge of a contact that opens at a speed, sphere that is pulled off; viscoelastic |
 //! | [`RollingCylinder`] | cylinder in steady motion; one retardation time |
+//! | [`SlidingLimits`] | ball, ellipsoid, cylinder in slow or fast steady motion; any creep |
 //! | [`PerssonFriction`] | rough surface in steady motion, an estimate; any creep |
 //!
 //! Sphere, cone, punch and other axisymmetric bodies under any load history, loading and unloading, are contacts on
@@ -23,6 +24,7 @@ mod hertz_ellipse;
 mod persson;
 mod rigid_punch;
 mod rolling;
+mod sliding_limits;
 
 pub use adhesion::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Jkr, MaugisDugdale, OpeningEdge, PullOff};
 pub use growing_sphere::GrowingSphere;
@@ -31,3 +33,4 @@ pub use hertz_ellipse::HertzEllipse;
 pub use persson::PerssonFriction;
 pub use rigid_punch::RigidPunch;
 pub use rolling::RollingCylinder;
+pub use sliding_limits::SlidingLimits;

@@ -19,7 +19,7 @@ impl Computation {
         Computation { trial: Trial::new(state.region.len(), scene.bodies), window, state }
     }
 
-    /// A copy on another region, for a step under `indenter`; the state is not changed.
+    /// A copy on another region, for a step under `indenter`. This state keeps its values and loses the start of its last step.
     ///
     /// # Errors
     /// If there is no memory for both.

@@ -5,7 +5,7 @@ use crate::rounded::{TIME, rounded};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AdhesionError {
-    /// An attraction that is none: it grows with the gap, repels, or its energy is not its integral.
+    /// The law is no attraction: it grows with the gap, repels, or its energy is not its integral.
     #[error("the attraction breaks a law: {0}; adhesion::laws::all tests it")]
     Law(Violation),
 
@@ -48,12 +48,25 @@ pub enum AdhesionError {
     /// assert!(contact.is_separated());
     /// # Ok::<(), Error>(())
     /// ```
-    #[error("at t = {} s the force of {force} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME))]
+    #[error("at t = {} s the force of {} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME), rounded(*.force, 5))]
     PulledOff {
         /// End of the step \[s\].
         time: f64,
         /// The force of the load \[N\].
         force: f64,
+    },
+
+    /// The attraction beyond the edge of the grid, which is not computed, would add more than 5 % of the force. Enlarge the grid, or choose
+    /// [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends there. From 1e-3 on steps warn
+    /// ([`Warnings::BEYOND_EDGE`](crate::contact::Warnings::BEYOND_EDGE)).
+    #[error("at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, where 5 % are allowed: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", rounded(*.time, TIME), rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * share)]
+    BeyondEdge {
+        /// End of the step \[s\].
+        time: f64,
+        /// The part of the force that is left out.
+        share: f64,
+        /// Lengths of the grid \[m\].
+        lengths: [f64; 2],
     },
 
     /// The passes of a step have not found its state.

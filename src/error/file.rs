@@ -14,7 +14,7 @@ pub enum FileError {
     },
 
     /// Something other than a regular file exists at the path. It is left unchanged: only regular files are replaced.
-    #[error("{path} cannot be written: it is {kind}, not a regular file")]
+    #[error("{path} cannot be written: it is {kind}, not a regular file; give the path of a file")]
     NotAFile {
         /// The path.
         path: String,

@@ -5,7 +5,7 @@ use crate::rounded::rounded;
 #[non_exhaustive]
 pub enum KernelError {
     /// The [`InfluenceKernel`](crate::InfluenceKernel) was made for another grid than the contact's.
-    #[error("the kernel was made for {} × {} cells of {:e} m × {:e} m, the contact has {} × {} of {:e} m × {:e} m: make it for the grid of the contact",
+    #[error("the kernel was made for {} × {} cells of {} m × {} m, the contact has {} × {} of {} m × {} m: make it for the grid of the contact",
         .kernel.0[0], .kernel.0[1], rounded(.kernel.1[0], 5), rounded(.kernel.1[1], 5),
         .contact.0[0], .contact.0[1], rounded(.contact.1[0], 5), rounded(.contact.1[1], 5))]
     WrongGrid {
@@ -63,7 +63,8 @@ pub enum KernelError {
     /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable.
     /// Check the sign of the coefficients, and that near cells influence each other more than distant ones.
     #[error(
-        "the influence coefficients are not positive definite: the least eigenvalue found is {least:e} m, the greatest {most:e} m"
+        "the influence coefficients are not positive definite: the least eigenvalue found is {} m, the greatest {} m; check their signs, and that near cells influence each other more than distant ones",
+        rounded(*.least, 3), rounded(*.most, 3)
     )]
     NotPositiveDefinite {
         /// Estimate of the least eigenvalue \[m\].
@@ -85,5 +86,5 @@ pub enum KernelError {
 }
 
 fn metres(datum: Option<f64>) -> String {
-    datum.map_or_else(|| "absent".to_owned(), |datum| format!("{datum:e} m"))
+    datum.map_or_else(|| "absent".to_owned(), |datum| format!("{} m", rounded(datum, 5)))
 }

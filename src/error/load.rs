@@ -30,7 +30,9 @@ pub enum LoadError {
 
     /// A load history returned a breakpoint that is not later than the requested time
     /// ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
-    #[error("the load history returned {breakpoint} s as the first breakpoint after t = {after} s: it must be later")]
+    #[error(
+        "the load history returned {breakpoint} s as the first breakpoint after t = {after} s: it must be later; compare times with the breakpoints themselves (guide::own_models)"
+    )]
     InvalidBreakpoint {
         /// The time asked for \[s\].
         after: f64,

@@ -17,12 +17,12 @@ pub enum MapError {
     },
 
     /// No height is known: nothing was measured, or the grid does not overlap the map.
-    #[error("no height is known: nothing was measured there")]
+    #[error("no height is known: nothing was measured there; take a part of the map with heights")]
     NothingKnown,
 
     /// The shortest wavelength of a rough surface is below two cells of its grid.
     #[error(
-        "shortest wavelength = {:e} m is not allowed: it must be at least two cells of the grid, which are {:e} m along {axis}: take a longer wavelength, or {cells} cells along {axis}", rounded(*.shortest, 4), rounded(*.least, 4)
+        "shortest wavelength = {} m is not allowed: it must be at least two cells of the grid, which are {} m along {axis}: take a longer wavelength, or {cells} cells along {axis}", rounded(*.shortest, 4), rounded(*.least, 4)
     )]
     TooFine {
         /// The shortest wavelength \[m\].
@@ -46,7 +46,7 @@ pub enum MapError {
     /// The interpolation of the missing heights did not converge to rounding: the known heights differ too much, or are
     /// too few.
     #[error(
-        "the interpolation of the missing heights did not converge in {iterations} iterations: the residual is {residual:e} m"
+        "the interpolation of the missing heights did not converge in {iterations} iterations: the residual is {residual:.1e} m; crop the part without heights"
     )]
     NotFilled {
         /// Iterations done.
@@ -145,7 +145,7 @@ pub enum MapError {
     },
 
     /// A point is not on the regular grid of the other points.
-    #[error("line {line}: {axis} = {value:e} m is {:.2} spacings of {spacing:e} m off the regular grid of the points; {:.3} are allowed", .off, .allowed)]
+    #[error("line {line}: {axis} = {} m is {:.2} spacings of {} m off the regular grid of the points; {:.3} are allowed: interpolate the points on a regular grid", rounded(*.value, 5), .off, rounded(*.spacing, 4), .allowed)]
     OffGrid {
         /// The line, from 1.
         line: u64,
@@ -162,7 +162,7 @@ pub enum MapError {
     },
 
     /// Two points of a file are at the same point of the grid: average them, or keep one.
-    #[error("lines {earlier} and {line} give two heights for the point ({:e}, {:e}) m: give their mean", .at[0], .at[1])]
+    #[error("lines {earlier} and {line} give two heights for the point ({}, {}) m: give their mean", rounded(.at[0], 5), rounded(.at[1], 5))]
     Duplicate {
         /// The line, from 1.
         line: u64,
@@ -173,7 +173,7 @@ pub enum MapError {
     },
 
     /// The points of a file cover too little of the regular grid that their spacing suggests: they are scattered.
-    #[error("{points} points are too few for the regular grid of {} x {} that their distances suggest: they are scattered, not a map", .cells[0], .cells[1])]
+    #[error("{points} points are too few for the regular grid of {} x {} that their distances suggest: interpolate scattered points on a regular grid", .cells[0], .cells[1])]
     Sparse {
         /// Number of points.
         points: usize,
@@ -202,7 +202,9 @@ pub enum MapError {
     },
 
     /// A heading names another unit than the one given.
-    #[error("column {column}: the heading {heading:?} names another unit than {given}, which was given")]
+    #[error(
+        "column {column}: the heading {heading:?} names another unit than {given}, which was given: give that of the heading"
+    )]
     OtherUnit {
         /// The column, from 1.
         column: usize,

@@ -1,4 +1,4 @@
-use crate::rounded::rounded;
+use crate::rounded::{TIME, rounded};
 
 /// What is wrong with a rheology or a material.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -22,7 +22,7 @@ pub enum MaterialError {
     /// A creep compliance returned a value that no body can have: negative, not finite, or less than at an earlier
     /// time; or, where a series is fitted, 0 after t = 0.
     #[error(
-        "creep compliance J({:?} s) = {:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {:?} before)", rounded(*.time, 5), rounded(*.value, 5), rounded(*.previous, 5)
+        "creep compliance J({} s) = {} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {} before)", rounded(*.time, 5), rounded(*.value, 5), rounded(*.previous, 5)
     )]
     InvalidCompliance {
         /// Time at which it was evaluated \[s\].
@@ -36,7 +36,8 @@ pub enum MaterialError {
     /// No exponential series with positive coefficients approximates the material function within the tolerance. Allow
     /// a greater error, or use [`TimeRule::Backward`](crate::contact::TimeRule::Backward), which needs no series.
     #[error(
-        "no exponential series was found within {tolerance:e}: the error of the best is {misfit:e}, at {at:e} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series"
+        "no exponential series was found within {tolerance:e}: the error of the best is {misfit:.1e}, at {} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series",
+        rounded(*.at, 3)
     )]
     PoorFit {
         /// Greatest relative error of the best series found.
@@ -51,7 +52,8 @@ pub enum MaterialError {
     /// digits: it jumps or bends at many times that are not named as corners, or is noisy. Name the corners, or give a
     /// [table](crate::rheology::TemperatureHistory::table), whose corners are known.
     #[error(
-        "the temperature between {from} s and {to} s is too rough for its reduced time, which is known to {accuracy:.0e}: name its corners, or give it as a table (TemperatureHistory::table)"
+        "the temperature between {} s and {} s is too rough for its reduced time, which is known to {accuracy:.0e}: name its corners, or give it as a table (TemperatureHistory::table)",
+        rounded(*.from, TIME), rounded(*.to, TIME)
     )]
     RoughTemperature {
         /// Start of the piece between corners \[s\].

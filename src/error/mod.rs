@@ -148,7 +148,7 @@ pub enum Error {
     Load(#[from] LoadError),
 
     /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
-    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is no body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
+    #[error("the initial gap at cell [{}, {}], x = ({}, {}) m, is {value}: it must be finite, or +inf where there is no body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
     InvalidGap {
         /// Indices of the cell.
         cell: [usize; 2],
@@ -181,7 +181,7 @@ pub enum Error {
     #[error(transparent)]
     Kernel(#[from] KernelError),
 
-    /// A steady motion is not covered, or was not found.
+    /// A steady motion was not found, or there is none.
     #[error(transparent)]
     Sliding(#[from] SlidingError),
 
@@ -219,7 +219,7 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] OutputError),
 
-    /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
+    /// A rank of a contact that [ranks](crate::parallel) share out has left or failed, or ranks do not agree.
     #[error(transparent)]
     Ranks(#[from] RanksError),
     /// A contact of surfaces that attract each other is not covered, not resolved, or comes off.

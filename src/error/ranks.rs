@@ -3,7 +3,7 @@
 #[non_exhaustive]
 pub enum RanksError {
     /// A rank has left: its program ended, failed or panicked. The contact cannot go on.
-    #[error("rank {rank} has left the others")]
+    #[error("rank {rank} has ended or failed while the others compute: look at its own error")]
     Left {
         /// The first that left.
         rank: usize,

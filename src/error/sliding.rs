@@ -5,7 +5,7 @@ use crate::rounded::rounded;
 #[non_exhaustive]
 pub enum SlidingError {
     /// At a frequency that the motion meets, the bodies do not resist: their complex compliance has no positive real part.
-    #[error("at {:e} rad/s the complex compliance is {:e} + {:e} i 1/Pa: its real part must be positive", rounded(*.omega, 5),
+    #[error("at {} rad/s the complex compliance is {} + {} i 1/Pa: its real part must be positive; check signs, units and frequencies of the moduli", rounded(*.omega, 5),
         rounded(.compliance[0], 5), rounded(.compliance[1], 5))]
     NotPassive {
         /// Frequency \[rad/s\].
@@ -15,7 +15,7 @@ pub enum SlidingError {
     },
 
     /// The contact at a velocity was not found.
-    #[error("at a velocity of ({:e}, {:e}) m/s {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
+    #[error("at a velocity of ({}, {}) m/s {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
         rounded(.velocity[0], 5), rounded(.velocity[1], 5))]
     NotConverged {
         /// Velocity \[m/s\].

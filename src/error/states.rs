@@ -62,7 +62,7 @@ pub enum StatesError {
     NoScene,
 
     /// A group of levels left 0 ≤ W ≤ 1, or pulls: the levels are not in order, and the superposition is not proved.
-    #[error("at t = {} s a group of levels has W = {displacement}, outside [0, 1]: take a shorter step, or ViscoelasticContact", rounded(*.time, TIME))]
+    #[error("at t = {} s the elastic states do not superpose: a share that must be in [0, 1] is {}; take a shorter step, or step the scene with ViscoelasticContact", rounded(*.time, TIME), rounded(*.displacement, 5))]
     OutOfOrder {
         /// End of the step \[s\].
         time: f64,

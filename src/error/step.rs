@@ -7,7 +7,7 @@ use crate::rounded::{TIME, rounded};
 #[non_exhaustive]
 pub enum StepError {
     /// A load tilts a body along an axis along which the bodies are periodic.
-    #[error("at t = {time} s the load tilts the body along {axis}, along which the bodies are periodic: a tilted body is not", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load tilts the body along {axis}, along which the bodies are periodic: prescribe no tilt there, or take a body that is not periodic", time = rounded(*.time, TIME))]
     TiltOfPeriodic {
         /// End of the step \[s\].
         time: f64,
@@ -45,7 +45,7 @@ pub enum StepError {
     /// An approach exceeds the approach of full contact on a surface whose mean displacement is fixed
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
-        "at t = {time} s the approach {:e} m is not below {:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", rounded(*.approach, 5), rounded(*.greatest, 5), time = rounded(*.time, TIME))]
+        "at t = {time} s the approach {} m is not below {} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", rounded(*.approach, 5), rounded(*.greatest, 5), time = rounded(*.time, TIME))]
     BeyondFullContact {
         /// End of the step \[s\].
         time: f64,
@@ -58,7 +58,7 @@ pub enum StepError {
     /// The bodies are pressed into a layer on a rigid base by its whole thickness or more: the base would be touched, and strains are far
     /// from small. Press less, or check that lengths are in m, and that the thickness of the [`Layer`](crate::Layer) comes before Poisson's ratio.
     #[error(
-        "at t = {time} s the bodies are pressed {:e} m deep into a layer {:e} m thick, through its base: press less (a fifth of the thickness is warned of), or check the thickness, which is in m", rounded(*.depth, 4), rounded(*.thickness, 5), time = rounded(*.time, TIME))]
+        "at t = {time} s the bodies are pressed {} m deep into a layer {} m thick, through its base: press less (a fifth of the thickness is warned of), or check the thickness, which is in m", rounded(*.depth, 4), rounded(*.thickness, 5), time = rounded(*.time, TIME))]
     ThroughLayer {
         /// End of the step \[s\].
         time: f64,
@@ -142,7 +142,7 @@ pub enum StepError {
     },
 
     /// A quantity overflowed in a step: the scales of lengths, moduli, loads and times are too far apart for `f64`.
-    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64; check their units", time = rounded(*.time, TIME))]
     Overflow {
         /// End of the step \[s\].
         time: f64,
@@ -158,7 +158,7 @@ pub enum StepError {
     },
 
     /// The motion did not become steady. A greater tolerance would not bring the steady state nearer.
-    #[error("no steady state within {tolerance:e} after {:e} m: {reason}", rounded(*.distance, 4))]
+    #[error("no steady state within {tolerance:e} after {} m: {reason}", rounded(*.distance, 4))]
     NotSteady {
         /// Distance travelled \[m\].
         distance: f64,
@@ -173,7 +173,7 @@ pub enum StepError {
 fn widths(lengths: [f64; 2], needed: Option<[f64; 2]>) -> String {
     let area = |lengths: [f64; 2], digits: usize| {
         let [a, b] = lengths.map(|length| rounded(length, digits));
-        format!("{a:e} m × {b:e} m")
+        format!("{a} m × {b} m")
     };
     let grid = format!("the grid is {}", area(lengths, 3));
     needed.map_or(grid.clone(), |needed| format!("{grid}, the load needs about {}", area(needed, 1)))

@@ -64,7 +64,7 @@ pub enum TableError {
     /// than the scatter of the data explains. No passive body responds so. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table}, {place}: {column} = {:?} deviates by {:.2} % from the nearest monotone curve, where the scatter of the data explains {:.2} %: compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter states more scatter",
+        "{table}, {place}: {column} = {} deviates by {:.2} % from the nearest monotone curve, where the scatter of the data explains {:.2} %: compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter states more scatter",
         rounded(*.value, 5), 100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
@@ -84,7 +84,7 @@ pub enum TableError {
 
     /// No series with positive coefficients fits the data: they do not describe a body of springs and dashpots
     /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for their steepness.
-    #[error("the {table} is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}; Measurements::with_scatter states more scatter", 100.0 * .rms, 100.0 * .worst)]
+    #[error("the {table} is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {}; Measurements::with_scatter states more scatter", 100.0 * .rms, 100.0 * .worst, rounded(*.x, 3))]
     Inconsistent {
         /// Which table.
         table: &'static str,
@@ -100,7 +100,7 @@ pub enum TableError {
     /// correct the heading or the units.
     #[error(
         "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}{}",
-        .size.map(|size| format!("; of {unit} it is {size:e}")).unwrap_or_default()
+        .size.map(|size| format!("; of {unit} it is {}", rounded(size, 5))).unwrap_or_default()
     )]
     Unit {
         /// The line of the headings.
@@ -145,7 +145,7 @@ pub enum TableError {
     },
 
     /// Isotherms of a master curve measure different quantities.
-    #[error("a {first} and a {second} cannot be joined to one master curve")]
+    #[error("a {first} and a {second} cannot be joined to one master curve: give isotherms of one experiment")]
     MixedIsotherms {
         /// The quantity of the first, or the one requested.
         first: &'static str,

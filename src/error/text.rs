@@ -95,7 +95,7 @@ pub enum TextError {
     },
 
     /// A column that was asked for is not in the table.
-    #[error("there is no column {column} (headings: {found})")]
+    #[error("there is no column {column} (headings: {found}); give one of these, or its number from 1 on")]
     NoColumn {
         /// Its name, or its number.
         column: String,

@@ -15,7 +15,7 @@ pub enum Unsteady {
 
     /// A slow term of creep is far from its limit.
     #[error(
-        "creep of the retardation time {time} s has still to change approach or lateral force by {remaining:.1e} of its value: travel about {:e} m farther (SteadyMotion::with_max_distance)", rounded(*.farther, 2), time = rounded(*.time, TIME)
+        "creep of the retardation time {time} s has still to change approach or lateral force by {remaining:.1e} of its value: travel about {} m farther (SteadyMotion::with_max_distance)", rounded(*.farther, 2), time = rounded(*.time, TIME)
     )]
     SlowTerm {
         /// The retardation time \[s\].
@@ -28,7 +28,7 @@ pub enum Unsteady {
 
     /// What has left the grid behind the contact still acts on it: the bodies recover over a longer distance.
     #[error(
-        "the grid ends {:e} m behind the contact; what lies beyond would change approach or lateral force by up to {missing:.1e} of its value: let the grid reach {:e} m behind the contact", rounded(*.behind, 3), rounded(*.needed, 2)
+        "the grid ends {} m behind the contact; what lies beyond would change approach or lateral force by up to {missing:.1e} of its value: let the grid reach {} m behind the contact", rounded(*.behind, 3), rounded(*.needed, 2)
     )]
     LeftGrid {
         /// Bound of the change of approach or lateral force, relative to its value.

@@ -30,7 +30,7 @@ impl std::fmt::Display for Violation {
             return write!(f, "{law}: {quantity} {at} is another one");
         }
         let bound = if found == expected { "more than " } else { "" };
-        write!(f, "{law}: {quantity} {at} is {found:e}, expected {bound}{expected:e}")
+        write!(f, "{law}: {quantity} {at} is {found:?}, expected {bound}{expected:?}")
     }
 }
 
@@ -57,8 +57,8 @@ pub enum Location {
 impl std::fmt::Display for Location {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Location::Time(time) => write!(f, "at t = {time:e} s"),
-            Location::Gap(gap) => write!(f, "at a gap of {gap:e} m"),
+            Location::Time(time) => write!(f, "at t = {time:?} s"),
+            Location::Gap(gap) => write!(f, "at a gap of {gap:?} m"),
             Location::Cell { cell, position } => write!(f, "on cell {cell:?} at {position:?} m"),
         }
     }

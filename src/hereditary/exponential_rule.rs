@@ -106,8 +106,7 @@ const LONGEST_CONTINUED: f64 = 4.0;
 const LONGEST_CONTINUED_OF_DASHPOT: f64 = 2.41;
 /// Steps whose lengths are farther apart than this factor are not used to extrapolate each other: its square must be a number.
 const FARTHEST_APART: f64 = 1e150;
-/// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
-/// told about it.
+/// A step shorter than this fraction of the step before was cut by an event: it does not correct the step before.
 const MIN_CORRECTING: f64 = 0.5;
 
 impl ExponentialRule {

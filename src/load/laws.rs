@@ -57,16 +57,7 @@ pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
 fn moments(history: &dyn LoadHistory, times: &[f64]) -> Vec<f64> {
     let mut moments = times.to_vec();
     if let (Some(&first), Some(&last)) = (times.first(), times.last()) {
-        let mut after = first;
-        for _ in 0..MOST_BREAKPOINTS {
-            match history.next_breakpoint(after) {
-                Some(next) if next > after && next < last => {
-                    moments.push(next);
-                    after = next;
-                }
-                _ => break,
-            }
-        }
+        moments.extend(history.breakpoints(first).take(MOST_BREAKPOINTS).take_while(|&next| next < last));
     }
     moments.sort_by(f64::total_cmp);
     moments.dedup();

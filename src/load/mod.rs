@@ -351,6 +351,11 @@ pub trait LoadHistory: Debug + Send + Sync {
 }
 
 impl dyn LoadHistory + '_ {
+    /// The breakpoints after a time, as long as they ascend.
+    pub(crate) fn breakpoints(&self, after: f64) -> impl Iterator<Item = f64> {
+        std::iter::successors(Some(after), |&time| self.next_breakpoint(time).filter(|&next| next > time)).skip(1)
+    }
+
     /// [`LoadHistory::at`], if it is a load that may act, or pull where surfaces attract each other.
     pub(crate) fn checked_at(&self, t: f64, attracts: bool) -> Result<Load> {
         self.checked(self.at(t), t, attracts)

@@ -8,3 +8,6 @@ pub use hermite::{hermite, hermite_slope};
 pub use least::{golden_section, least};
 pub use non_negative::non_negative_least_squares;
 pub(crate) use non_negative::solve;
+
+/// Euler's constant γ.
+pub(crate) const EULER: f64 = 0.577_215_664_901_532_9;

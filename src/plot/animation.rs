@@ -11,7 +11,7 @@ use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
 use crate::plot::picture::check_extension;
-use crate::plot::{Map, Picture, color_scale};
+use crate::plot::{ColorScale, Map, Picture, color_scale};
 
 /// A run as an animated GIF that repeats endlessly.
 ///
@@ -78,7 +78,7 @@ impl Animation {
             field,
             range,
             delay,
-            palette: Palette::new(),
+            palette: Palette::new(ColorScale::of(field)),
             encoder: None,
             size: [0; 2],
             last: Vec::new(),

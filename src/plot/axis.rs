@@ -33,7 +33,7 @@ pub(super) struct Room {
 impl Room {
     /// The distance in pixels that ticks with these texts need.
     fn needed<'a>(self, texts: impl Iterator<Item = &'a str>) -> f64 {
-        if self.horizontal { texts.map(|text| font::width(text, TICK_SIZE)).fold(0.0, f64::max) + 28.0 } else { 52.0 }
+        if self.horizontal { texts.map(|text| font::width(text, TICK_SIZE)).fold(0.0, f64::max) + 28.0 } else { 44.0 }
     }
 }
 
@@ -62,13 +62,24 @@ impl Axis {
         Axis { label, ticks, minor: Vec::new(), factor, ends: [low, high], logarithmic: false }
     }
 
-    /// A logarithmic axis between two values in SI, which have no prefix since their powers of ten are written out.
+    /// A logarithmic axis between two values in SI. Numbers from 0.001 to 10 000 are written out, in a unit with a prefix if
+    /// they are not so short without; others are powers of ten without a prefix.
     pub(super) fn logarithmic(quantity: &Quantity, ends: [f64; 2], room: Room) -> Axis {
-        let (label, factor) = quantity.shown(0.0);
-        let [low, high] = ends.map(|end| (end * factor).log10());
+        let powers = |factor: f64| ends.map(|end| (end * factor).log10());
+        let is_plain = |factor: f64| powers(factor)[0].ceil() >= -3.0 && powers(factor)[1].floor() <= 4.0;
+        let without = quantity.shown(0.0);
+        let shown = [without.clone(), quantity.shown((ends[0] * ends[1]).sqrt())];
+        let plain = shown.into_iter().find(|(_, factor)| is_plain(*factor));
+        let is_short = plain.is_some();
+        let (label, factor) = plain.unwrap_or(without);
+        let [low, high] = powers(factor);
         let fraction = |exponent: f64| (exponent - low) / (high - low);
         let (first, last) = (low.ceil() as i32, high.floor() as i32);
-        let decade = |k: i32| (fraction(f64::from(k)), scientific(10_f64.powi(k), 0));
+        let number = |multiple: i32, k: i32| {
+            let value = f64::from(multiple) * 10_f64.powi(k);
+            if is_short { format!("{value:.*}", -k.min(0) as usize) } else { scientific(value) }
+        };
+        let decade = |k: i32| (fraction(f64::from(k)), number(1, k));
         let multiples = |of: &[i32]| -> Vec<(f64, i32, i32)> {
             let all = (first - 1..=last).flat_map(|k| of.iter().map(move |&m| (k, m)));
             let placed = all.map(|(k, m)| (fraction(f64::from(k) + f64::from(m).log10()), m, k));
@@ -78,9 +89,7 @@ impl Axis {
         let mut minor: Vec<f64> = multiples(&[2, 3, 4, 5, 6, 7, 8, 9]).iter().map(|tick| tick.0).collect();
         if ticks.len() <= 2 {
             // numbers at whole decades alone would be few
-            ticks.extend(
-                multiples(&[2, 5]).iter().map(|&(at, m, k)| (at, scientific(f64::from(m) * 10_f64.powi(k), 0))),
-            );
+            ticks.extend(multiples(&[2, 5]).iter().map(|&(at, m, k)| (at, number(m, k))));
         }
         let per_decade = room.length / (high - low);
         let every = (room.needed(ticks.iter().map(|tick| tick.1.as_str())) / per_decade).ceil().max(1.0) as i32;
@@ -130,12 +139,12 @@ fn round_step(least: f64) -> f64 {
     if exponent < 0.0 { multiple / 10_f64.powf(-exponent) } else { multiple * power }
 }
 
-/// A number as digits and a power of ten, for labels: `4.5×10⁻²` with one decimal, `10⁻²` for 1e-2 with none.
-fn scientific(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$e}");
-    let Some((digits, exponent)) = text.split_once('e') else { return text };
+/// A number as a digit and a power of ten, for labels: `5×10⁻²`, `10⁻²`.
+fn scientific(value: f64) -> String {
+    let text = format!("{value:.0e}");
+    let Some((digit, exponent)) = text.split_once('e') else { return text };
     let power = format!("10{}", superscript(exponent.parse().unwrap_or(0)));
-    if digits == "1" { power } else { format!("{}×{power}", digits.replace('-', "−")) }
+    if digit == "1" { power } else { format!("{digit}×{power}") }
 }
 
 /// An exponent: −3 as ⁻³.
@@ -188,9 +197,16 @@ mod tests {
 
     #[test]
     fn logarithmic_axes_have_powers_of_ten() {
-        assert_eq!(logarithmic([0.5e-3, 20.0], UP), "10⁻³ 10⁻² 10⁻¹ 10⁰ 10¹");
-        assert_eq!(logarithmic([0.5, 15.0], UP), "10⁰ 10¹ 5×10⁻¹ 2×10⁰ 5×10⁰");
-        assert_eq!(logarithmic([1.5, 40.0], UP), "10¹ 2×10⁰ 5×10⁰ 2×10¹");
+        assert_eq!(logarithmic([0.5e-3, 20.0], UP), "0.001 0.01 0.1 1 10");
+        assert_eq!(logarithmic([0.5, 15.0], UP), "1 10 0.5 2 5");
+        assert_eq!(logarithmic([1.5, 40.0], UP), "10 2 5 20");
+        assert_eq!(logarithmic([0.5e-4, 20.0], UP), "10⁻⁴ 10⁻³ 10⁻² 10⁻¹ 10⁰ 10¹");
+        assert_eq!(logarithmic([0.5e-5, 15e-5], UP), "10⁻⁵ 10⁻⁴ 5×10⁻⁶ 2×10⁻⁵ 5×10⁻⁵");
+        // a prefix where the numbers are short with it alone
+        let label = |unit, ends| Axis::logarithmic(&Quantity::new("q", unit), ends, UP).label;
+        assert_eq!(label("m/s", [0.7e-8, 1.4e-3]), "q [µm/s]");
+        assert_eq!(label("s", [0.7e-3, 14.0]), "q [s]");
+        assert_eq!(label("s", [0.7e-3, 1.0e6]), "q [s]");
         // only as many as there is room for
         assert_eq!(logarithmic([1e-20, 1e20], ACROSS), "10⁻²⁰ 10⁻¹⁶ 10⁻¹² 10⁻⁸ 10⁻⁴ 10⁰ 10⁴ 10⁸ 10¹² 10¹⁶ 10²⁰");
         let axis = Axis::logarithmic(&"q".into(), [0.1, 1e3], UP);

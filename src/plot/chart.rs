@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::plot::color_bar::{self, BAR_WIDTH};
 use crate::plot::curve::Curve;
 use crate::plot::frame::width_beside;
 use crate::plot::legend::{self, points_along};
@@ -17,7 +18,7 @@ const RIGHT: f64 = 40.0;
 const LEAST_LEFT: f64 = 115.0;
 const TOP: f64 = 56.0;
 
-/// Which axes of a chart are logarithmic. Their numbers are powers of ten, in units without a prefix.
+/// Which axes of a chart are logarithmic. Numbers far from 1 are powers of ten there, in units without a prefix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[expect(clippy::exhaustive_enums, reason = "there are two axes")]
 pub enum Scale {
@@ -69,19 +70,60 @@ pub struct Chart {
     /// Preferred position of the legend.
     pub legend: Legend,
     curves: Vec<Curve>,
+    bar: Option<Bar>,
 }
+
+/// The colour bar of a family of curves.
+#[derive(Debug, Clone, PartialEq)]
+struct Bar {
+    quantity: Quantity,
+    range: [f64; 2],
+    logarithmic: bool,
+}
+
+/// The greatest fraction of the colour scale that curves have: its light end would vanish on white.
+const LIGHTEST: f64 = 0.9;
+/// The colour bar is logarithmic if the values differ by more than this factor.
+const LOGARITHMIC_FROM: f64 = 30.0;
 
 impl Chart {
     /// A chart without curves.
     pub fn new(title: impl Into<String>, x: impl Into<Quantity>, y: impl Into<Quantity>, legend: Legend) -> Chart {
         let (title, x, y) = (title.into(), x.into(), y.into());
-        Chart { title, x, y, scale: Scale::Linear, legend, curves: Vec::new() }
+        Chart { title, x, y, scale: Scale::Linear, legend, curves: Vec::new(), bar: None }
     }
 
     /// Adds a curve through `points`, in the units of the quantities of the axes. With an empty label it is not in the
     /// legend.
     pub fn add(&mut self, label: impl Into<String>, color: Color, style: Style, points: Vec<(f64, f64)>) {
         self.curves.push(Curve { label: label.into(), points, color, style });
+    }
+
+    /// Adds curves that a parameter orders, such as a speed, each with its value in the unit of the quantity. Their colours
+    /// show the value, with a colour bar beside the chart in place of a legend. The bar is logarithmic if the values are
+    /// positive and differ by more than a factor of 30. A chart has the bar of its last family.
+    ///
+    /// ```
+    /// use viscocontact::plot::{Chart, Legend, Quantity, Style};
+    ///
+    /// let mut chart = Chart::new("Creep", Quantity::new("time", "s"), "approach / 1 µm", Legend::LowerRight);
+    /// let curve = |tau: f64| (tau, (0..50).map(|k| f64::from(k)).map(|t| (t, 1.0 - (-t / tau).exp())).collect());
+    /// chart.add_family(Quantity::new("relaxation time", "s"), Style::Line, [1.0, 3.0, 10.0, 30.0].map(curve).to_vec());
+    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-family-{}.png", std::process::id()));
+    /// chart.save(&path)?;
+    /// # std::fs::remove_file(&path).unwrap();
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn add_family(&mut self, parameter: impl Into<Quantity>, style: Style, curves: Vec<(f64, Vec<(f64, f64)>)>) {
+        let range @ [low, high] = extremes(curves.iter().map(|curve| &curve.0));
+        let logarithmic = low > 0.0 && high > LOGARITHMIC_FROM * low;
+        let place = |value: f64| if logarithmic { value.ln() } else { value };
+        for (value, points) in curves {
+            let share = (place(value) - place(low)) / (place(high) - place(low));
+            self.add("", Color::on_scale(LIGHTEST * share), style, points);
+        }
+        // a single value needs no scale
+        self.bar = (low < high).then(|| Bar { quantity: parameter.into(), range, logarithmic });
     }
 
     /// Draws the chart and writes it to a file as [`Picture::save`].
@@ -116,13 +158,25 @@ impl Chart {
             curve.style.draw(&mut canvas, &pieces, &pieces.concat(), curve.color);
         }
         legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
+        if let Some(bar) = &self.bar {
+            let color = |at: f64| Color::on_scale(LIGHTEST * at);
+            color_bar::draw(
+                &mut canvas,
+                frame.right,
+                [TOP, frame.bottom],
+                &bar.axis(frame.bottom - TOP)?,
+                color,
+                [false; 2],
+            );
+        }
         Ok(Picture::new(canvas))
     }
 
     /// The axes around all points, the vertical one longer by the share `above` of the height of the points.
     fn frame(&self, above: f64) -> Result<Frame> {
         let [width, height] = SIZE.map(f64::from);
-        let [right, bottom] = [width - RIGHT, height - BELOW];
+        let bar = self.bar.as_ref().map_or(0.0, |_| f64::from(BAR_WIDTH));
+        let [right, bottom] = [width - RIGHT.max(bar), height - BELOW];
         let horizontal = |left: f64| self.axis(0, Room { length: right - left, horizontal: true }, 0.0);
         horizontal(LEAST_LEFT)?; // names a wrong x before a wrong y
         let y = self.axis(1, Room { length: bottom - TOP, horizontal: false }, above)?;
@@ -181,5 +235,20 @@ impl Chart {
         let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
         let (low, high) = (if low == 0.0 { 0.0 } else { low - margin }, high + margin);
         Ok(Axis::linear(quantity, greatest, [low, high + above * (high - low)], room))
+    }
+}
+
+impl Bar {
+    /// The numbers of a bar of this height in pixels.
+    fn axis(&self, length: f64) -> Result<Axis> {
+        let [low, high] = self.range;
+        let check = if self.logarithmic { drawable_as_power } else { drawable };
+        [low, high].into_iter().try_for_each(|end| check("parameter of a family of curves", end).map(drop))?;
+        let room = Room { length, horizontal: false };
+        Ok(if self.logarithmic {
+            Axis::logarithmic(&self.quantity, self.range, room)
+        } else {
+            Axis::linear(&self.quantity, low.abs().max(high.abs()), self.range, room)
+        })
     }
 }

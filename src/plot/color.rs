@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::output::Field;
+
 /// A colour: red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[expect(clippy::exhaustive_structs, reason = "users construct colours")]
@@ -27,28 +29,57 @@ impl Color {
     /// For text and frames.
     pub const BLACK: Color = Color(0, 0, 0);
 
-    /// The colour at the fraction `value` of a scale from 0 to 1; values outside have the colour of the nearer end. The
-    /// scale is viridis (van der Walt & Smith, 2015): from dark to light, perceptually uniform and legible without
-    /// colour vision.
+    /// The colour of viridis at the fraction `value` from 0 to 1; values outside have the colour of the nearer end.
     pub(super) fn on_scale(value: f64) -> Color {
-        let at = value.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-        let [lower, upper] = [at.floor(), at.ceil()].map(|k| VIRIDIS[k as usize]);
+        Color::between(&VIRIDIS, value)
+    }
+
+    /// The colour at the fraction `value` of `colors` at equal distances.
+    fn between(colors: &[u32], value: f64) -> Color {
+        let at = value.clamp(0.0, 1.0) * (colors.len() - 1) as f64;
+        let [lower, upper] = [at.floor(), at.ceil()].map(|k| colors[k as usize].to_be_bytes());
         let share = at.ceil() - at;
-        let mix = |low: u8, high: u8| ((1.0 - share) * f64::from(high) + share * f64::from(low)).round() as u8;
-        Color(mix(lower.0, upper.0), mix(lower.1, upper.1), mix(lower.2, upper.2))
+        let mix = |k: usize| ((1.0 - share) * f64::from(upper[k]) + share * f64::from(lower[k])).round() as u8;
+        Color(mix(1), mix(2), mix(3))
+    }
+}
+
+/// The colours of a [`Map`](crate::plot::Map). Both scales are legible without colour vision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ColorScale {
+    /// From dark to light (viridis, van der Walt & Smith, 2015).
+    #[default]
+    Sequential,
+    /// White at zero, blue below and red above, equally strong at equal distances from zero (ColorBrewer, Harrower &
+    /// Brewer, 2003): for fields with a sign.
+    Diverging,
+}
+
+impl ColorScale {
+    /// The scale of a field: tractions have a sign.
+    pub(super) fn of(field: Field) -> ColorScale {
+        if field == Field::Traction { ColorScale::Diverging } else { ColorScale::Sequential }
+    }
+
+    /// The colour of a value on a scale from `low` to `high`; values outside have the colour of the nearer end.
+    pub(super) fn color(self, value: f64, [low, high]: [f64; 2]) -> Color {
+        match self {
+            ColorScale::Sequential => Color::on_scale((value - low) / (high - low)),
+            ColorScale::Diverging => {
+                Color::between(&BLUE_TO_RED, 0.5 + 0.5 * value.clamp(low, high) / low.abs().max(high.abs()))
+            }
+        }
     }
 }
 
 /// Eight colours of viridis at equal distances; the colours between are interpolated.
-const VIRIDIS: [Color; 8] = [
-    Color(68, 1, 84),
-    Color(70, 50, 127),
-    Color(54, 92, 141),
-    Color(39, 127, 143),
-    Color(31, 162, 136),
-    Color(74, 194, 110),
-    Color(160, 219, 57),
-    Color(254, 232, 37),
+const VIRIDIS: [u32; 8] = [0x44_0154, 0x46_327f, 0x36_5c8d, 0x27_7f8f, 0x1f_a288, 0x4a_c26e, 0xa0_db39, 0xfe_e825];
+
+/// Eleven colours of ColorBrewer's `RdBu` from blue to red, white in the middle.
+const BLUE_TO_RED: [u32; 11] = [
+    0x05_3061, 0x21_66ac, 0x43_93c3, 0x92_c5de, 0xd1_e5f0, 0xf7_f7f7, 0xfd_dbc7, 0xf4_a582, 0xd6_604d, 0xb2_182b,
+    0x67_001f,
 ];
 
 /// The colour in hexadecimal digits, as in HTML.

@@ -1,7 +1,7 @@
-//! The colour bar beside a map.
+//! The colour bar beside a map or a chart.
 
 use crate::plot::frame::LABEL_SIZE;
-use crate::plot::{Anchor, Axis, Canvas, Color, Quantity, Room, TICK_SIZE};
+use crate::plot::{Anchor, Axis, Canvas, Color, TICK_SIZE};
 
 /// Width of a colour bar with its numbers and label in pixels.
 pub(super) const BAR_WIDTH: u32 = 155;
@@ -11,28 +11,26 @@ const TRIANGLE: f64 = 26.0;
 /// Length of ticks in pixels.
 const TICK: f64 = 7.0;
 
-/// Draws the bar to the right of `left` from `top` to `bottom`, with triangles at its lower and upper end where values
-/// lie `beyond` it.
+/// Draws the bar of `axis` to the right of `left` from `top` to `bottom`, with triangles at its lower and upper end where
+/// values lie `beyond` it; `color` is the colour at a fraction of the axis.
 pub(super) fn draw(
     canvas: &mut Canvas,
     left: f64,
     [top, bottom]: [f64; 2],
-    quantity: &Quantity,
-    range: [f64; 2],
+    axis: &Axis,
+    color: impl Fn(f64) -> Color,
     beyond: [bool; 2],
 ) {
     let (left, right) = (left + 10.0, left + 10.0 + WIDTH);
-    let greatest = range[0].abs().max(range[1].abs());
-    let axis = Axis::linear(quantity, greatest, range, Room { length: bottom - top, horizontal: false });
-    let colors: Vec<Color> = (0..256).rev().map(|k| Color::on_scale(f64::from(k) / 255.0)).collect();
+    let colors: Vec<Color> = (0..256).rev().map(|k| color(f64::from(k) / 255.0)).collect();
     canvas.cells([left, top, right, bottom], 1, &colors);
     let middle = 0.5 * (left + right);
     let mut outline = vec![vec![[left, top], [left, bottom]], vec![[right, top], [right, bottom]]];
-    for (is_beyond, end, tip, color) in
+    for (is_beyond, end, tip, fraction) in
         [(beyond[0], bottom, bottom + TRIANGLE, 0.0), (beyond[1], top, top - TRIANGLE, 1.0)]
     {
         if is_beyond {
-            canvas.polygon(&[[left, end], [right, end], [middle, tip]], Color::on_scale(color));
+            canvas.polygon(&[[left, end], [right, end], [middle, tip]], color(fraction));
             outline.push(vec![[left, end], [middle, tip], [right, end]]);
         } else {
             outline.push(vec![[left, end], [right, end]]);

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::output::Field;
 use crate::plot::quantity::measure;
-use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
+use crate::plot::{COLORS, Chart, Color, ColorScale, Legend, Map, Quantity, Style};
 use crate::{Axis, ViscoelasticContact};
 
 impl Map {
@@ -32,8 +32,8 @@ impl Map {
         Map::field(contact, Field::Displacement)?.outline_contact(contact)
     }
 
-    /// The net traction between the bodies, grey where there is nothing to touch, with the contact outlined: pressure less [attraction](crate::adhesion), < 0 where the bodies
-    /// pull at each other. [`Map::pressure`] is the pressure of the wall alone.
+    /// The net traction between the bodies, with the contact outlined: pressure (red) less [attraction](crate::adhesion)
+    /// (blue), white at zero, grey where there is nothing to touch. [`Map::pressure`] is the pressure of the wall alone.
     ///
     /// # Errors
     /// If a traction exceeds 1e100 Pa in magnitude.
@@ -64,6 +64,7 @@ impl Map {
             values.iter_mut().zip(gap).filter(|(_, h)| !h.is_finite()).for_each(|(value, _)| *value = f64::NAN);
         }
         let mut map = Map::new(contact.grid(), values, Quantity::new(field.name(), field.unit()))?;
+        map.colors = ColorScale::of(field);
         if matches!(field, Field::Pressure | Field::Gap) && map.range[1] > 0.0 {
             map.range[0] = 0.0;
         }

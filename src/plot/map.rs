@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::Grid;
 use crate::error::{Result, exact_length, least_length};
 use crate::plot::color_bar::{self, BAR_WIDTH};
-use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Picture, Quantity, Room, color_scale, drawable};
+use crate::plot::{Axis, BELOW, Canvas, Color, ColorScale, Frame, Picture, Quantity, Room, color_scale, drawable};
 
 /// Width of the space to the left and to the right of a map and height of that above it in pixels.
 const LEFT: u32 = 115;
@@ -21,7 +21,7 @@ const MARK_WIDTH: f64 = 9.0;
 /// Least height of a colour bar in pixels.
 const MIN_BAR: u32 = 200;
 
-/// A field on a grid as colours, dark for small values and light for large ones.
+/// A field on a grid as colours, by default dark for small values and light for large ones ([`ColorScale`]).
 ///
 /// [`Map::pressure`], [`Map::gap`], [`Map::displacement`] and [`Map::traction`] are the maps of a contact.
 ///
@@ -48,6 +48,8 @@ pub struct Map {
     /// Ends of the colour scale, in the unit of the values (default: the least and the greatest finite value). Values
     /// outside have the colour of the nearer end, and the colour bar has a triangle at that end.
     pub range: [f64; 2],
+    /// The colours of the scale (default: sequential; [`Map::traction`] has one that diverges about zero).
+    pub colors: ColorScale,
     /// The colour of cells without a value (default: white).
     pub blank: Color,
     cells: [usize; 2],
@@ -63,8 +65,8 @@ pub struct Map {
 
 debug_by! {
     self: Map =>
-    title: self.title, quantity: self.quantity, axes: self.axes, range: self.range, blank: self.blank,
-    cells: self.cells, lengths: self.lengths, middle: self.middle, lines: Counted(&self.lines),
+    title: self.title, quantity: self.quantity, axes: self.axes, range: self.range, colors: self.colors,
+    blank: self.blank, cells: self.cells, lengths: self.lengths, middle: self.middle, lines: Counted(&self.lines),
     values: Counted(&self.values), inside_outline: Counted(&self.inside_outline)
 }
 
@@ -90,6 +92,7 @@ impl Map {
             quantity: quantity.into(),
             axes: [Quantity::new("x1", "m"), Quantity::new("x2", "m")],
             range,
+            colors: ColorScale::default(),
             blank: Color::WHITE,
             cells: grid.cells(),
             lengths: grid.lengths(),
@@ -148,7 +151,8 @@ impl Map {
         least_length("maps of a row", maps.len(), 1)?;
         maps.iter().try_for_each(|map| color_scale(map.range))?;
         let last = &maps[maps.len() - 1];
-        let shared = maps.iter().all(|map| map.range == last.range && map.quantity == last.quantity);
+        let scale = |map: &Map| (map.range, map.quantity.clone(), map.colors);
+        let shared = maps.iter().all(|map| scale(map) == scale(last));
         // several maps are drawn smaller
         let longest = if maps.len() == 1 { 730.0 } else { 460.0 };
         let size_of = |map: &Map| {
@@ -167,7 +171,11 @@ impl Map {
                 let [low, high] = extremes(of.iter().flat_map(|map| &map.values));
                 let beyond = [low < map.range[0], high > map.range[1]];
                 let bottom = TOP + f64::from(if shared { tallest } else { height }.max(MIN_BAR));
-                color_bar::draw(&mut canvas, f64::from(side), [TOP, bottom], &map.quantity, map.range, beyond);
+                let greatest = map.range[0].abs().max(map.range[1].abs());
+                let room = Room { length: bottom - TOP, horizontal: false };
+                let axis = Axis::linear(&map.quantity, greatest, map.range, room);
+                let color = |at: f64| map.colors.color(map.range[0] + at * (map.range[1] - map.range[0]), map.range);
+                color_bar::draw(&mut canvas, f64::from(side), [TOP, bottom], &axis, color, beyond);
             }
             Ok(Picture::new(canvas))
         };
@@ -200,10 +208,10 @@ impl Map {
 
     /// The colours of the cells, top row first.
     fn colors(&self) -> Vec<Color> {
-        let ([least, most], [n1, n2]) = (self.range, self.cells);
+        let [n1, n2] = self.cells;
         let color = |value: f64| {
             let known = value.is_finite();
-            if known { Color::on_scale((value - least) / (most - least)) } else { self.blank }
+            if known { self.colors.color(value, self.range) } else { self.blank }
         };
         let rows = (0..n2).rev().flat_map(|j| (0..n1).map(move |i| i * n2 + j));
         rows.map(|cell| color(self.values[cell])).collect()

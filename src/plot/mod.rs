@@ -2,7 +2,7 @@
 //!
 //! | picture | call |
 //! |---|---|
-//! | pressure, gap or displacement as a map | [`Map::pressure`], [`Map::gap`], [`Map::displacement`] |
+//! | pressure, gap, displacement or traction as a map | [`Map::pressure`], [`Map::gap`], [`Map::displacement`], [`Map::traction`] |
 //! | any field as a map | [`Map::new`] |
 //! | the stress below the surface, on a section | [`Map::section`] |
 //! | an outline of the contact on any map | [`Map::outline_contact`] |
@@ -10,7 +10,7 @@
 //! | a profile along a line | [`Chart::profile`] |
 //! | quantities of a contact over time | [`History`] |
 //! | any quantity over time | [`Chart::history`] |
-//! | any curves | [`Chart`] |
+//! | any curves, a family coloured by its parameter | [`Chart`], [`Chart::add_family`] |
 //! | an animation of a run | [`Animation`] |
 //!
 //! ```
@@ -38,7 +38,7 @@
 //! ```
 //!
 //! Files are PNG or SVG, by their extension. Values are given in SI; axes and colour bars choose the prefix that keeps
-//! numbers short ([`Quantity`]). The colours can be distinguished without colour vision. The font is compiled in: no
+//! numbers short ([`Quantity`]; [`measure`] for titles and legends). The colours can be distinguished without colour vision. The font is compiled in: no
 //! system font is needed.
 
 mod animation;
@@ -62,12 +62,12 @@ mod sliding;
 
 pub use animation::Animation;
 pub use chart::{Chart, Scale};
-pub use color::{COLORS, Color};
+pub use color::{COLORS, Color, ColorScale};
 pub use curve::{Legend, Style};
 pub use history::{History, HistoryColumn};
 pub use map::Map;
 pub use picture::Picture;
-pub use quantity::Quantity;
+pub use quantity::{Quantity, measure};
 
 use axis::{Axis, Room, TICK_SIZE};
 use canvas::{Anchor, Canvas};

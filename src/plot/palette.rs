@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::plot::{COLORS, Color};
+use crate::plot::{COLORS, Color, ColorScale};
 
 /// One set of colours for all frames, so that none flickers: the colour scale of maps, greys, and the colours of curves
 /// with their antialiased edges towards white.
@@ -14,8 +14,8 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    pub(super) fn new() -> Palette {
-        let scale = (0..160).map(|k| Color::on_scale(f64::from(k) / 159.0));
+    pub(super) fn new(scale: ColorScale) -> Palette {
+        let scale = (0..160).map(|k| scale.color(f64::from(2 * k) / 159.0 - 1.0, [-1.0, 1.0]));
         let greys = (0..54).map(|k| (f64::from(k) * 255.0 / 53.0).round() as u8).map(|grey| Color(grey, grey, grey));
         let towards_white = |color: Color, sevenths: u32| {
             let mix = |channel: u8| (255 - (255 - u32::from(channel)) * sevenths / 7) as u8;
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn colours_of_the_palette_are_kept() {
-        let mut palette = Palette::new();
+        let mut palette = Palette::new(ColorScale::Sequential);
         assert_eq!(palette.colors.len(), 256);
         for color in COLORS.into_iter().chain([Color::WHITE, Color::BLACK, Color::on_scale(0.0), Color::on_scale(1.0)])
         {

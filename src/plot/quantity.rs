@@ -5,7 +5,7 @@ use crate::error::{Result, within};
 /// The quantity of an axis or a colour bar.
 ///
 /// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and
-/// 1000: `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units
+/// 1000 (areas from 0.1, volumes from 0.01 on): `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units
 /// that have a prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not changed. A plain text is a quantity
 /// without a unit. Values that still have many digits get a shared power of ten: `J [10⁻⁶ 1/Pa]`.
 ///
@@ -72,7 +72,8 @@ fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
         _ => 1,
     };
     // 999.99999 counts as 1000, which it would be rounded to
-    let tens = (greatest.log10() + 1e-9).floor() as i32;
+    // 0.4 mm² rather than 400 000 µm²
+    let tens = (greatest.log10() + 1e-9).floor() as i32 + power - 1;
     let steps = tens.div_euclid(3 * power).min(if above { i32::MAX } else { 0 });
     let prefix = PREFIXES.get(usize::try_from(steps + STEPS_BELOW_UNIT).ok()?)?;
     Some((prefix, 10f64.powi(-3 * steps * power)))
@@ -99,8 +100,13 @@ pub(super) fn drawable_as_power(field: &'static str, value: f64) -> Result<f64> 
     within(field, value, inside, "in [1e-100, 1e100] on a logarithmic axis")
 }
 
-/// Formats a value in SI with its unit to four digits, and all digits before the point: "412.4 µs".
-pub(super) fn measure(value: f64, unit: &str) -> String {
+/// A value in SI with its unit and a suitable prefix, to four digits and all digits before the point: for titles and
+/// legends.
+///
+/// ```
+/// assert_eq!(viscocontact::plot::measure(4.1237e-4, "s"), "412.4 µs");
+/// ```
+pub fn measure(value: f64, unit: &str) -> String {
     let (prefix, factor) = prefix(unit, value.abs()).unwrap_or(("", 1.0));
     let number = value * factor;
     let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
@@ -125,7 +131,8 @@ mod tests {
             ("m", 5.0e3, "q [m]", 1.0),
             ("Pa", 1.0e6, "q [MPa]", 1e-6),
             ("Pa", 999.0e3, "q [kPa]", 1e-3),
-            ("m²", 0.4e-6, "q [µm²]", 1e12),
+            ("m²", 0.4e-6, "q [mm²]", 1e6),
+            ("m²", 0.4e-7, "q [µm²]", 1e12),
             ("m³", 2.0e-9, "q [mm³]", 1e9),
             ("m/s", 0.02, "q [mm/s]", 1e3),
             ("N m", -2.0e-5, "q [µN m]", 1e6),

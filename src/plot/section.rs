@@ -58,7 +58,7 @@ impl Map {
         let surface = 0.5 * step - depths[0];
         map.middle = [0.5 * (positions[0] + positions[positions.len() - 1]), surface - 0.5 * grid.lengths()[1]];
         let label = if section.along == Axis::X1 { "x1" } else { "x2" };
-        map.axes = [Quantity::new(label, "m"), Quantity::new("−x3", "m")];
+        map.axes = [Quantity::new(label, "m"), Quantity::new("−depth", "m")];
         map.title = time_title(contact);
         let profile = contact.profile(section.along, section.at)?;
         let pressed = runs(positions.len(), |k| profile.pressure[k] > 0.0).into_iter();

@@ -128,8 +128,8 @@ impl Progress {
     }
 }
 
-/// How far a run has come, from [`Run::progress`](crate::run::Run::progress). No share of the run is a share of its steps, which
-/// nobody knows before: take the one along which the steps are spread.
+/// How far a run has come, from [`Run::progress`](crate::run::Run::progress). The number of steps to come is not known: take
+/// the share, of time or of its decades, along which the steps are spread.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -189,6 +189,7 @@ impl RunProgress {
 impl fmt::Display for RunProgress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let RunProgress { steps, time, until, .. } = *self;
-        write!(f, "{steps} steps, t = {} s of {} s", rounded(time, 4), rounded(until, 4))
+        let s = if steps == 1 { "" } else { "s" };
+        write!(f, "{steps} step{s}, t = {} s of {} s", rounded(time, 4), rounded(until, 4))
     }
 }

@@ -71,11 +71,7 @@ impl RunScale {
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
-        let mut corner = now;
-        let corners = std::iter::from_fn(|| {
-            corner = history.next_breakpoint(corner).filter(|&next| next > corner && next <= until)?;
-            Some(corner)
-        });
+        let corners = history.breakpoints(now).take_while(|&next| next <= until);
         let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
         times.sort_by(f64::total_cmp);
         scale.rises = rises(scene, history, touch, &times)?;

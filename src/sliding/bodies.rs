@@ -13,11 +13,10 @@ use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
 use crate::error::{Error, Result, SlidingError, Special};
 use crate::kernel::InfluenceKernel;
+use crate::numeric::EULER;
 
 /// A free dashpot acts as a term with a reach of so many lengths of the grid.
 const ENDLESS: f64 = 1e12;
-/// Euler's constant.
-const EULER: f64 = 0.577_215_664_901_532_9;
 
 /// Bodies, and what is known of them whatever the velocity.
 pub(super) struct Bodies {

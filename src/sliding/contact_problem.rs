@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::gmres::gmres;
+use super::gmres::{dot, gmres, norm};
 use super::operator::MovingBodies;
+use super::watch::Watch;
 use crate::Grid;
 use crate::solver::{Freedom, RigidMotion};
 
@@ -28,7 +29,7 @@ const ROUNDING: f64 = 1e-9;
 const FLAT: f64 = 1e-4;
 
 /// Gap and load.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     pub(super) grid: &'a Grid,
     /// The gap before the bodies deform \[m\], less the prescribed motion; +∞ where there is no surface.
@@ -37,6 +38,7 @@ pub(super) struct Problem<'a> {
     pub(super) free: Freedom,
     /// Residual allowed, over the range of the gap that the contact closes.
     pub(super) tolerance: f64,
+    pub(super) watch: &'a Watch,
 }
 
 /// The state of a contact problem.
@@ -143,7 +145,7 @@ impl Problem<'_> {
         }
         let mut found = Found { pressure: guess.to_vec(), displacement: vec![0.0; cells], ..Found::default() };
         let (mut tried, mut stands) = (HashSet::new(), false);
-        while found.sets < MOST_SETS {
+        while found.sets < MOST_SETS && !self.watch.has_ended() {
             found.sets += 1;
             if !pressed.contains(&true) {
                 if !self.free.translation {
@@ -163,6 +165,7 @@ impl Problem<'_> {
             let open = |k: usize| found.displacement[k] + gap[k];
             found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
             found.residual = tolerance * left / allowed;
+            self.watch.tried(found.residual);
             let height = |k: usize| open(k) - found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let deep = -(SLACK * allowed).max(CERTAIN * left) / (set.len() as f64).sqrt();
@@ -234,10 +237,13 @@ impl Problem<'_> {
             if cycle == 1 {
                 goal = allowed.max(part * left);
             }
-            if left <= goal || cycle == CYCLES {
+            if left <= goal || cycle == CYCLES || self.watch.has_ended() {
                 return residual;
             }
             gmres(pressure, &residual, goal, |direction| {
+                if !self.watch.goes_on() {
+                    return None;
+                }
                 scatter(direction, set, &mut full);
                 bodies.inverse.apply(&full, &mut image);
                 let mut better: Vec<f64> = set.iter().map(|&k| image[k]).collect();
@@ -246,7 +252,7 @@ impl Problem<'_> {
                 bodies.response.apply(&full, &mut image);
                 let mut own: Vec<f64> = set.iter().map(|&k| image[k]).collect();
                 balance.project(&mut own);
-                [better, own]
+                Some([better, own])
             });
         }
     }
@@ -272,14 +278,6 @@ impl Problem<'_> {
         };
         self.gap.iter().map(|&h| h <= level).collect()
     }
-}
-
-fn norm(field: &[f64]) -> f64 {
-    dot(field, field).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn scatter(values: &[f64], set: &[usize], field: &mut [f64]) {

@@ -6,9 +6,13 @@ pub(super) const MOST: usize = 60;
 const LEAST: f64 = 1e-14;
 
 /// Adds to `x` what brings the residual of a linear equation from `residual` down to `goal`; returns the residual left. `apply` maps a direction to the
-/// preconditioned direction and its image.
-pub(super) fn gmres(x: &mut [f64], residual: &[f64], goal: f64, mut apply: impl FnMut(&[f64]) -> [Vec<f64>; 2]) -> f64 {
-    let norm = |field: &[f64]| field.iter().map(|v| v * v).sum::<f64>().sqrt();
+/// preconditioned direction and its image, or ends the iteration.
+pub(super) fn gmres(
+    x: &mut [f64],
+    residual: &[f64],
+    goal: f64,
+    mut apply: impl FnMut(&[f64]) -> Option<[Vec<f64>; 2]>,
+) -> f64 {
     let first = norm(residual);
     if first <= goal || first == 0.0 {
         return first;
@@ -18,13 +22,13 @@ pub(super) fn gmres(x: &mut [f64], residual: &[f64], goal: f64, mut apply: impl 
     // columns of the triangle to which rotations bring the Hessenberg matrix, and the turned right side
     let (mut triangle, mut rotations, mut right) = (Vec::<Vec<f64>>::new(), Vec::<[f64; 2]>::new(), vec![first]);
     for k in 0..MOST {
-        let [direction, mut image] = apply(&basis[k]);
+        let Some([direction, mut image]) = apply(&basis[k]) else { break };
         directions.push(direction);
         let mut column = vec![0.0; k + 2];
         // twice: rounding of the first round is left in the second
         for _ in 0..2 {
             for (own, along) in column.iter_mut().zip(&basis) {
-                let part: f64 = image.iter().zip(along).map(|(a, b)| a * b).sum();
+                let part = dot(&image, along);
                 *own += part;
                 image.iter_mut().zip(along).for_each(|(a, b)| *a -= part * b);
             }
@@ -64,4 +68,12 @@ pub(super) fn gmres(x: &mut [f64], residual: &[f64], goal: f64, mut apply: impl 
         x.iter_mut().zip(direction).for_each(|(x, d)| *x += part * d);
     }
     right[count].abs()
+}
+
+pub(super) fn norm(field: &[f64]) -> f64 {
+    dot(field, field).sqrt()
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -16,9 +16,11 @@ mod layer_on_base;
 mod operator;
 mod search;
 mod sweep;
+mod watch;
 
 pub use crate::error::SlidingError;
 pub use sweep::{SlidingSweep, SlidingTable, SweptState};
+pub use watch::SlidingProgress;
 
 use std::fmt;
 use std::sync::Arc;
@@ -38,6 +40,8 @@ use contact_problem::{Found, Problem};
 use creep::Creep;
 use layer_on_base::{LayerOnBase, THINNEST};
 use operator::MovingBodies;
+use search::Mesh;
+use watch::{Watch, Watcher};
 
 /// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
 ///
@@ -65,7 +69,9 @@ use operator::MovingBodies;
 pub struct SteadySliding {
     /// Shows the state; it has no past, and takes no steps.
     contact: ViscoelasticContact,
-    bodies: Bodies,
+    bodies: Arc<Bodies>,
+    meshes: Vec<Mesh>,
+    watcher: Watcher,
 }
 
 /// The state of a steady motion, in numbers.
@@ -108,18 +114,19 @@ impl SlidingReport {
     }
 }
 
-/// "1e0 m/s: friction 0.0193, 2 N, approach …".
+/// "0.1 m/s: 2 N, friction 0.0193, 812 cells in contact".
 impl fmt::Display for SlidingReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let speed = self.velocity[0].hypot(self.velocity[1]);
         let [speed, force, friction] = [speed, self.force, self.friction()].map(|value| rounded(value, 4));
-        write!(f, "{speed:e} m/s: {force:e} N, friction {friction:e}, {} cells in contact", self.contact_cells)
+        write!(f, "{speed} m/s: {force} N, friction {friction}, {} cells in contact", self.contact_cells)
     }
 }
 
-/// A refusal.
-fn not_covered<T>(what: &'static str, cure: &'static str) -> Result<T> {
-    Err(Error::not_covered(Special::SteadyMotion, what, cure))
+/// Fails by the first of these that is the case, with what is not covered, and the cure.
+fn refuse<const N: usize>(cases: [(bool, &'static str, &'static str); N]) -> Result<()> {
+    let refuse = |(_, what, cure)| Err(Error::not_covered(Special::SteadyMotion, what, cure));
+    cases.into_iter().find(|(is, ..)| *is).map_or(Ok(()), refuse)
 }
 
 /// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
@@ -145,8 +152,8 @@ const JUMP: f64 = 4.0;
 fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
     let [n1, n2] = cells.map(|n| n as u64);
     let padded = [0, 1].map(|axis| if periodic[axis] || cells[axis] == 1 { 1 } else { 2 } * cells[axis] as u64);
-    // factors, coefficients and losses of the response, with its symmetric part; of the inverses
-    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 64 * n1 * (n2 / 2 + 1));
+    // factors, coefficients and losses of the response, with its symmetric part; of the inverses, and of both on coarser meshes
+    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 86 * n1 * (n2 / 2 + 1));
     // influences at about four nodes a cell, and the panels of these; tables of coefficients
     let nodes = if periodic == [true; 2] { 0 } else { 150 * n1 * n2 };
     // two fields for each direction, and a dozen others
@@ -208,79 +215,62 @@ impl Builder {
     }
 
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
-        if self.attraction.is_some() {
-            return not_covered("a contact of surfaces that attract each other", "build it without attraction");
-        }
-        if self.temperature.is_some() {
-            return not_covered(
-                "a history of the temperature",
-                "multiply the velocity by the shift factor of the temperature",
-            );
-        }
-        if self.ranks.is_some() {
-            return not_covered("a contact that ranks share out", "compute it in one process");
-        }
+        let shift = "multiply the velocity by the shift factor of the temperature";
+        refuse([
+            (self.attraction.is_some(), "a contact of surfaces that attract each other", "build it without attraction"),
+            (self.temperature.is_some(), "a history of the temperature", shift),
+            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
+        ])?;
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         self.steady = true;
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
         let contact = self.build()?;
-        let kernel = contact.kernel();
-        let is_periodic = kernel.periodic_axes() == [true; 2];
-        if !is_periodic && (0..2).all(|axis| kernel.rows_along(axis, Some(0.0)).is_none()) {
-            return not_covered("a body of coefficients", "take InfluenceKernel::from_spectrum or a layer");
-        }
-        if contact.bodies() > 1 {
-            return not_covered("a contact of several rigid bodies", "take one");
-        }
-        if jumps(&contact.initial_gap().above, contact.grid().cells(), kernel.periodic_axes()) {
-            return not_covered(
-                "a shape that jumps at the period of its body",
-                "take one that repeats, or taper its ends",
-            );
-        }
-        if modulus.is_some() && !is_periodic {
-            return not_covered(
-                "a modulus over frequency, of a body that is not periodic along both axes,",
-                "fit a series to it",
-            );
-        }
+        let (kernel, grid) = (contact.kernel(), contact.grid());
+        let periodic = kernel.periodic_axes();
+        let ends = || (0..2).filter(|&axis| !periodic[axis]);
+        let has_rows = periodic == [true; 2] || ends().any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
+        let jumps = jumps(&contact.initial_gap().above, grid.cells(), periodic);
+        let by_modulus = modulus.is_some() && periodic != [true; 2];
+        let measured = "a modulus over frequency, of a body that is not periodic along both axes,";
+        refuse([
+            (!has_rows, "a body of coefficients", "take InfluenceKernel::from_spectrum or a layer"),
+            (contact.bodies() > 1, "a contact of several rigid bodies", "take one"),
+            (jumps, "a shape that jumps at the period of its body", "take one that repeats, or taper its ends"),
+            (by_modulus, measured, "fit a series to it"),
+        ])?;
         let series = |material: &Material| {
             Ok::<_, Error>(Creep::Series(material.contact_spectrum()?.ok_or_else(|| material.no_series("a motion"))?))
         };
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
-        let flows = creep.fluidity() > 0.0;
-        if flows && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid) {
-            return not_covered(
-                "a body that flows",
-                "take a half-space, or an equilibrium modulus: one approach or slope grows for ever",
-            );
-        }
+        let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
+        let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
+        refuse([(flows, "a body that flows", rest)])?;
         let on_base = |base: Material| {
-            let (thin, cure) = ("a layer so thin on a base of its own", "take fewer cells, or a periodic body");
-            let Some(layer) = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid()) else {
-                return not_covered(
-                    "a base below another body than a layer",
-                    "make the layer by Layer::bonded_to_material",
-                );
-            };
+            let cure = "make the layer by Layer::bonded_to_material";
+            let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
+            let layer = layer.ok_or(Error::not_covered(
+                Special::SteadyMotion,
+                "a base below another body than a layer",
+                cure,
+            ))?;
             let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
-            if (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson() {
-                return not_covered(
-                    "a base of another ratio than the layer's",
-                    "make the layer by Layer::bonded_to_material",
-                );
-            }
-            let ends = (0..2).filter(|&axis| !kernel.periodic_axes()[axis]);
-            let longest = ends.map(|axis| contact.grid().lengths()[axis]).fold(0.0, f64::max);
-            if longest > THINNEST * layer.thickness() {
-                return not_covered(thin, cure);
-            }
-            Ok(LayerOnBase { layer, base: series(&base)?, base_poisson: layer.base_poisson().unwrap_or(0.5) })
+            let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
+            let thin = ends().any(|axis| grid.lengths()[axis] > THINNEST * layer.thickness());
+            refuse([
+                (other, "a base of another ratio than the layer's", cure),
+                (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
+            ])?;
+            Ok::<_, Error>(LayerOnBase {
+                layer,
+                base: series(&base)?,
+                base_poisson: layer.base_poisson().unwrap_or(0.5),
+            })
         };
         let layer = base.map(on_base).transpose()?;
-        let bodies = Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() };
-        Ok(SteadySliding { contact, bodies })
+        let bodies = Arc::new(Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() });
+        let meshes = Mesh::coarser(grid, periodic)?;
+        Ok(SteadySliding { contact, bodies, meshes, watcher: Watcher::default() })
     }
 }
 
@@ -303,13 +293,12 @@ impl SteadySliding {
     /// # Errors
     /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a spring, cannot be balanced, tilts a periodic body, or is an approach
     /// beyond full contact, or one in line contact whose datum is too near; if contact reaches the edge of the grid, or the state is not found
-    /// ([`SlidingError::NotConverged`]). The state found last is then kept.
+    /// ([`SlidingError::NotConverged`]), or its watcher ends the search. The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
-        if let Load::Spring { .. } = load {
-            return not_covered("a body on a spring", "give the force or the approach");
-        }
+        let on_spring = matches!(load, Load::Spring { .. });
+        refuse([(on_spring, "a body on a spring", "give the force or the approach")])?;
         let (free, given) = (self.contact.free_motion(load)?, prescribed(load));
         let mut bodies = self.moving(velocity, load)?;
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
@@ -324,13 +313,17 @@ impl SteadySliding {
             let (approach, greatest) = (given.approach, given.approach + mean);
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
         }
-        let problem = Problem { grid: &grid, gap: &heights, free, tolerance };
+        let watch = Watch::new(&self.watcher);
+        let problem = Problem { grid: &grid, gap: &heights, free, tolerance, watch: &watch };
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
         } else {
-            problem.search(&mut bodies, self.contact.pressure())
+            problem.search(&mut bodies, &mut self.meshes, self.contact.pressure())
         };
         let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
+        if watch.has_ended() {
+            return Err(Error::Cancelled { what: "a steady motion" });
+        }
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }
@@ -360,17 +353,16 @@ impl SteadySliding {
     /// The bodies under a pressure with this velocity, where a load has a steady state.
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
         let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
-        if creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]) {
-            return not_covered("a body that flows, under an approach or at rest,", "give a force and a velocity");
-        }
+        let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
+        refuse([(drifts, "a body that flows, under an approach or at rest,", "give a force and a velocity")])?;
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
         let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
         let farthest = reaches.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
-        if !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest) {
-            let what = "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
-            return not_covered(what, "give the force, or a datum farther away");
-        }
+        let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
+        let what =
+            "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
+        refuse([(near, what, "give the force, or a datum farther away")])?;
         Ok(bodies)
     }
 

@@ -98,9 +98,17 @@ impl MovingBodies {
 
     /// Bodies of one factor for each wave, which the inverse divides by.
     pub(super) fn of_waves(cells: [usize; 2], factors: Vec<Complex64>, loss: [Vec<f64>; 2]) -> MovingBodies {
-        let inverse = factors.iter().map(|&of| if of == Complex64::ZERO { of } else { of.inv() }).collect();
-        let of = |factors| Multiplier::new(cells, cells, factors);
-        MovingBodies { response: of(factors), inverse: of(inverse), loss }
+        let none = Multiplier::new(cells, cells, Vec::new());
+        let mut bodies = MovingBodies { response: none.clone(), inverse: none, loss };
+        bodies.set_waves(factors);
+        bodies
+    }
+
+    /// Takes other factors; no transform has been counted of them.
+    pub(super) fn set_waves(&mut self, factors: Vec<Complex64>) {
+        let inverse = |&of: &Complex64| if of == Complex64::ZERO { of } else { of.inv() };
+        (self.inverse.factors, self.inverse.pairs) = (factors.iter().map(inverse).collect(), 0);
+        (self.response.factors, self.response.pairs) = (factors, 0);
     }
 
     /// Bodies of influence coefficients that move along an axis, `backward` or not.

@@ -1,10 +1,13 @@
 //! Steady motions at many velocities, loads and temperatures.
 
 use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use super::search::Mesh;
 use super::{SlidingReport, SteadySliding};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::Load;
+use crate::parallel::{cut, fork};
 use crate::rheology::TimeTemperature;
 
 /// Velocities, loads and temperatures of steady motions, for [`SteadySliding::sweep`].
@@ -44,7 +47,7 @@ pub struct SweptState {
 pub struct SlidingTable(Vec<SweptState>);
 
 impl SteadySliding {
-    /// The states of a sweep, each found from the one before.
+    /// The states of a sweep, each found from the one before: [`SteadySliding::sweep_with`].
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -75,32 +78,59 @@ impl SteadySliding {
     /// [`SteadySliding::sweep`], calling `progress` after each state with it and the part of the sweep that is done; it may end the sweep early, with the states
     /// found by then.
     ///
+    /// The velocities under one load at one temperature are found one from another, from the state before the sweep on. Several such chains run beside each
+    /// other on as many threads as the pool has (feature `rayon`), each with a contact of its own: states do not depend on the number of threads.
+    ///
     /// # Errors
     /// As [`SteadySliding::sweep`].
     pub fn sweep_with(
         &mut self,
         sweep: &SlidingSweep,
-        mut progress: impl FnMut(&SweptState, f64) -> ControlFlow<()>,
+        progress: impl FnMut(&SweptState, f64) -> ControlFlow<()> + Send,
     ) -> Result<SlidingTable> {
         let shift = |law: &TimeTemperature, kelvin: f64| Ok((Some(kelvin), law.shift_factor(kelvin)?));
         let shifts: Vec<_> = match &sweep.law {
             Some((law, kelvins)) => kelvins.iter().map(|&kelvin| shift(law, kelvin)).collect::<Result<_>>()?,
             None => vec![(None, 1.0)],
         };
-        let count = (shifts.len() * sweep.loads.len() * sweep.velocities.len()) as f64;
-        let mut table = SlidingTable::default();
-        for (temperature, shift) in shifts {
-            for &load in &sweep.loads {
-                for &velocity in &sweep.velocities {
-                    let report = SlidingReport { velocity, ..self.at(velocity.map(|v| v * shift), load)? };
-                    table.0.push(SweptState { temperature, load, report });
-                    if progress(&table.0[table.0.len() - 1], table.0.len() as f64 / count).is_break() {
-                        return Ok(table);
-                    }
+        let chains: Vec<_> =
+            shifts.iter().flat_map(|&shift| sweep.loads.iter().map(move |&load| (shift, load))).collect();
+        let count = (chains.len() * sweep.velocities.len()) as f64;
+        let told = Mutex::new((progress, 0, false));
+        let chain = |k: usize| {
+            let ((temperature, shift), load) = chains[k];
+            let (mut own, mut states) = (self.another()?, Vec::new());
+            for &velocity in &sweep.velocities {
+                let report = SlidingReport { velocity, ..own.at(velocity.map(|v| v * shift), load)? };
+                let state = SweptState { temperature, load, report };
+                let (progress, done, ended) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
+                if *ended {
+                    break;
                 }
+                states.push(state);
+                *done += 1;
+                *ended = progress(&state, f64::from(*done) / count).is_break();
             }
+            Ok::<_, Error>((own.contact, states))
+        };
+        let mut found: Vec<_> = chains.iter().map(|_| None).collect();
+        fork(0..chains.len(), true, [&mut found[..]], &cut, &|k, [own]| {
+            own.iter_mut().for_each(|own| *own = Some(chain(k)));
+        });
+        let mut table = SlidingTable::default();
+        for found in found.into_iter().flatten() {
+            let (contact, states) = found?;
+            self.contact = contact;
+            table.0.extend(states);
         }
         Ok(table)
+    }
+
+    /// The same motion on its own, over the same bodies.
+    fn another(&self) -> Result<SteadySliding> {
+        let (contact, bodies, watcher) = (self.contact.clone(), Arc::clone(&self.bodies), self.watcher.clone());
+        let meshes = Mesh::coarser(contact.grid(), contact.kernel().periodic_axes())?;
+        Ok(SteadySliding { contact, bodies, meshes, watcher })
     }
 }
 

@@ -17,8 +17,8 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
 /// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each group of one. Every
-/// step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]), so that N stays below about 2/√error. A step allocates
-/// nothing unless there are more groups than ever before.
+/// step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]), so that N stays below about
+/// 2.5/√error. A step allocates nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
     pub(super) scene: Arc<Scene>,

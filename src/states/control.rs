@@ -22,7 +22,7 @@ const MIN_GROWTH: f64 = 0.1;
 /// the depth back.
 const AIM: f64 = 0.15;
 const AIM_OF_FORCE: f64 = 0.1;
-/// Nothing brings the level of a body without elastic response back either: this part of it.
+/// Further part of the aim for bodies without elastic response: nothing brings their level back.
 const AIM_OF_RATES: f64 = 0.25;
 /// A step may have so many times the error that it aims at.
 const ALLOWED: f64 = 3.0;

@@ -106,12 +106,7 @@ impl Course<'_> {
             let time = until * f64::from(k) / f64::from(parts);
             all.push(history.checked_at(time, false)?);
         }
-        let mut corner = 0.0;
-        for _ in 0..MAX_CORNERS {
-            match history.next_breakpoint(corner) {
-                Some(next) if next > corner && next <= until => corner = next,
-                _ => break,
-            }
+        for corner in history.breakpoints(0.0).take(MAX_CORNERS).take_while(|&next| next <= until) {
             all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
         }
         Ok(all)
@@ -167,6 +162,6 @@ pub(crate) fn as_elastic(load: Load, compliance: f64) -> Load {
     match load {
         Load::Force { normal, tilt } => Load::Force { normal: normal * compliance, tilt },
         Load::Spring { stiffness, drive, tilt } => Load::Spring { stiffness: stiffness * compliance, drive, tilt },
-        approach => approach,
+        approach @ Load::Approach { .. } => approach,
     }
 }

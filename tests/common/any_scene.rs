@@ -220,21 +220,8 @@ impl AnyScene {
         let (size, on_own_rows) = (1 + draws.below(7), draws.chance(0.5));
         let name = format!("seed {seed}: {:?} cells, {kernel}, {material:?}, {stepping:?}, {size} ranks", grid.cells());
         let (kernel, steps) = (Arc::new(kernel), Steps::Along(history, stepping, 1.0));
-        let rough = None;
-        AnyScene {
-            name,
-            grid,
-            kernel,
-            shape,
-            rough,
-            material,
-            temperature,
-            settings,
-            steps,
-            size,
-            on_own_rows,
-            probed: true,
-        }
+        let plain = AnyScene::plain(&name, grid, shape, steps);
+        AnyScene { kernel, material, temperature, settings, size, on_own_rows, probed: true, ..plain }
     }
 
     /// A shape on a Zener half-space, all cells of which are computed.

@@ -3,6 +3,7 @@
 use super::spheres::builder_of;
 use std::sync::Arc;
 
+use viscocontact::adhesion::{Attraction, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::contact::Builder;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -19,13 +20,20 @@ pub struct Features {
     pub returns: bool,
     /// Whether a spring drives the body, which taps in some scenes; else a force or a given approach.
     pub by_spring: bool,
+    /// Whether the surfaces attract each other.
+    pub attracts: bool,
 }
 
 impl Features {
-    pub const ANY: Features = Features { returns: false, by_spring: false };
-    pub const SPRING: Features = Features { returns: false, by_spring: true };
-    pub const RETURNING: Features = Features { returns: true, by_spring: false };
-    pub const RETURNING_BY_SPRING: Features = Features { returns: true, by_spring: true };
+    pub const ANY: Features = Features { returns: false, by_spring: false, attracts: false };
+    pub const SPRING: Features = Features { returns: false, by_spring: true, attracts: false };
+    pub const RETURNING: Features = Features { returns: true, by_spring: false, attracts: false };
+    pub const RETURNING_BY_SPRING: Features = Features { returns: true, by_spring: true, attracts: false };
+
+    /// The same of surfaces that attract each other.
+    pub const fn attracted(self) -> Features {
+        Features { attracts: true, ..self }
+    }
 }
 
 pub struct Scene {
@@ -38,6 +46,7 @@ pub struct Scene {
     geometry: Box<dyn Geometry>,
     grid: Grid,
     kernel: Arc<InfluenceKernel>,
+    law: Option<Arc<dyn Attraction>>,
 }
 
 const LENGTH: f64 = 4.0e-3;
@@ -83,10 +92,22 @@ fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Bo
     ("rough sphere", Box::new(Sum::new(Sphere::new(RADIUS).unwrap(), rough)), depth)
 }
 
+/// A law whose range is about the depth, and that acts over a zone of so many cells in the end.
+fn random_law(draws: &mut Draws, scene: &Scene, depth: f64) -> Arc<dyn Attraction> {
+    let [side, other] = scene.grid.spacing();
+    let (range, zone) = (depth * draws.scale(0.3, 1.5), side.max(other) * draws.scale(4.5, 20.0));
+    let work = range * range / zone / scene.body.material.contact_compliance(scene.body.until);
+    match draws.below(3) {
+        0 => Arc::new(ExponentialAttraction::new(work, range).unwrap()),
+        1 => Arc::new(VanDerWaals::new(work, range).unwrap()),
+        _ => Arc::new(LinearSoftening::new(work, range).unwrap()),
+    }
+}
+
 impl Scene {
     /// The scene of this number in the series of this seed.
     pub fn draw(seed: u64, number: u64, features: Features) -> Scene {
-        let Features { returns, by_spring } = features;
+        let Features { returns, by_spring, attracts } = features;
         let series = seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(if returns { 1 << 40 } else { 0 });
         let draws = &mut Draws::new(series);
         let is_wide = by_spring && !returns && draws.chance(0.15);
@@ -133,6 +154,9 @@ impl Scene {
         };
         scene.stops = (0..count).map(|k| part(k) * until).collect();
         scene.stops.push(until);
+        if attracts {
+            scene.law = Some(random_law(draws, &scene, depth));
+        }
         scene.called(seed, number, &format!("{shape}{on}"))
     }
 
@@ -150,6 +174,7 @@ impl Scene {
             geometry,
             grid,
             kernel: Arc::new(kernel),
+            law: None,
         }
     }
 
@@ -167,8 +192,9 @@ impl Scene {
             Control::Spring { over, .. } => &format!("spring of {over:.2}"),
         };
         let (body, history) = (&self.body, &self.history);
+        let law = self.law.as_ref().map_or(String::new(), |law| format!(", {law:?}"));
         self.name = format!(
-            "{seed}:{number} {} (creep {:.1e}, {:.0e} s of {:.0e} s), {shape} {:?}, {by}, {}",
+            "{seed}:{number} {} (creep {:.1e}, {:.0e} s of {:.0e} s), {shape} {:?}, {by}, {}{law}",
             body.name,
             body.creep_ratio(),
             body.until,
@@ -195,9 +221,13 @@ impl Scene {
 
     /// The scene before it is built, with contact allowed at the edge.
     pub fn builder(&self, settings: Settings) -> Builder {
-        builder_of(&*self.geometry, self.grid.clone(), self.body.material.clone())
+        let builder = builder_of(&*self.geometry, self.grid.clone(), self.body.material.clone())
             .kernel(self.kernel.clone())
-            .settings(settings.with_edge(Edge::Allow))
+            .settings(settings.with_edge(Edge::Allow));
+        match &self.law {
+            Some(law) => builder.attraction(Arc::clone(law)),
+            None => builder,
+        }
     }
 
     /// The grid of the scene.

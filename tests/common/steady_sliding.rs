@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use super::gauss::points;
 use super::rolling::eliminate;
+use viscocontact::num_complex::Complex64;
 use viscocontact::rheology::CreepSpectrum;
 
 /// What lies below, on cells along the motion and across it.
@@ -165,57 +166,50 @@ impl SteadySliding {
         let relaxation = CreepSpectrum::new(self.glassy, 0.0, &self.terms).unwrap().relaxation();
         // the indenter comes from the side of small indices: what is behind it was under it before
         let creep = |q: f64| match time {
-            Time::Exact => self.terms.iter().fold(Complex([self.glassy, 0.0]), |sum, &(c, l)| {
-                sum.plus(c, Complex([1.0, 0.0]).over(Complex([1.0, -q * l])))
-            }),
-            Time::Steps => decaying.iter().fold(Complex([at_once, 0.0]), |sum, &(next, y)| {
+            Time::Exact => {
+                self.glassy + self.terms.iter().map(|&(c, l)| c / Complex64::new(1.0, -q * l)).sum::<Complex64>()
+            }
+            Time::Steps => {
                 // 1/(x − ρ), x the shift by a cell back
-                let Complex([cos, sin]) = Complex::from_angle(-q * self.spacing[0]);
-                sum.plus(next, Complex([1.0, 0.0]).over(Complex([cos - 1.0 + y, sin])))
-            }),
+                let back = Complex64::cis(-q * self.spacing[0]) - 1.0;
+                at_once + decaying.iter().map(|&(next, y)| next / (back + y)).sum::<Complex64>()
+            }
             // v = E∞ u + Σ E_i [w_i (1 − ζ) + a_i k_i (1 − ζ)²]/(1 − a_i ζ) u, ζ the shift by a cell ahead
             Time::Corrected => {
-                let ahead = Complex::from_angle(q * self.spacing[0]);
-                let one = Complex([1.0, 0.0]);
-                let change = one.plus(-1.0, ahead);
-                let stiffness = |sum: Complex, &(e, l): &(f64, f64)| {
+                let ahead = Complex64::cis(q * self.spacing[0]);
+                let change = 1.0 - ahead;
+                let stiffness = |&(e, l): &(f64, f64)| {
                     let z = self.spacing[0] / l;
                     let (a, w) = ((-z).exp(), -(-z).exp_m1() / z);
                     // ∫ e^(−σ/τ) (Δ − 2 σ) dσ/2Δ², in series where it cancels
                     let series = z / 12.0 - z * z / 24.0 + z.powi(3) / 80.0;
                     let k = if z < 1e-2 { series } else { 0.5 * w - (1.0 - a * (1.0 + z)) / (z * z) };
-                    let Complex([real, imaginary]) = change;
-                    let bend = Complex([real * real - imaginary * imaginary, 2.0 * real * imaginary]);
-                    let both = Complex([0.0; 2]).plus(w, change).plus(a * k, bend);
-                    sum.plus(e, both.over(one.plus(-a, ahead)))
+                    e * (w * change + a * k * change * change) / (1.0 - a * ahead)
                 };
-                one.over(relaxation.terms().iter().fold(Complex([relaxation.equilibrium(), 0.0]), stiffness))
+                (relaxation.equilibrium() + relaxation.terms().iter().map(stiffness).sum::<Complex64>()).inv()
             }
         };
-        let symbols: Vec<Vec<[f64; 2]>> = (0..m)
+        let symbols: Vec<Vec<Complex64>> = (0..m)
             .map(|k| {
                 let q1 = wave(k, m, 0);
-                let Complex([real, imaginary]) = creep(q1);
+                let own = creep(q1);
                 // the shortest wave along the motion is its own mirror image
-                let imaginary = if 2 * k == m { 0.0 } else { imaginary };
+                let own = if 2 * k == m { Complex64::from(own.re) } else { own };
                 let each = |j: usize| {
                     let q = q1.hypot(wave(j, n, 1));
-                    if q > 0.0 { [2.0 / q * real, 2.0 / q * imaginary] } else { [0.0; 2] }
+                    if q > 0.0 { 2.0 / q * own } else { Complex64::ZERO }
                 };
                 (0..n).map(each).collect()
             })
             .collect();
         let coefficient = |i: isize, j: usize| {
-            let mut sum = 0.0;
-            for (k, row) in symbols.iter().enumerate() {
+            let of = |(k, row): (usize, &Vec<Complex64>)| {
                 let phase = TAU * ((k as isize * i).rem_euclid(m as isize)) as f64 / m as f64;
-                let [real, imaginary] = row.iter().enumerate().fold([0.0; 2], |[a, b], (l, s)| {
-                    let across = (TAU * (l * j % n) as f64 / n as f64).cos();
-                    [a + across * s[0], b + across * s[1]]
-                });
-                sum += real * phase.cos() - imaginary * phase.sin();
-            }
-            sum / (m * n) as f64
+                let across = |l: usize| (TAU * (l * j % n) as f64 / n as f64).cos();
+                let sum: Complex64 = row.iter().enumerate().map(|(l, own)| across(l) * own).sum();
+                (sum * Complex64::cis(phase)).re
+            };
+            symbols.iter().enumerate().map(of).sum::<f64>() / (m * n) as f64
         };
         let m = m as isize;
         (0..n).map(|j| (1 - m..m).map(|i| coefficient(i, j)).collect()).collect()
@@ -240,54 +234,51 @@ impl SteadySliding {
         let ([m, _], [d, _]) = (self.cells, self.spacing);
         let last = m as isize - 1;
         let far = (last + 1) as f64 * d;
-        {
-            let at = |i: isize| kernel(i as f64 * d);
-            // ∫ e^(−s/l) K(far + s) ds from `start`
-            let tail = |l: f64, start: f64| {
-                let (mut sum, mut from, mut width) = (0.0, start, (0.5 * far).min(l));
-                while from < 45.0 * l {
-                    sum +=
-                        points(from, from + width, 1).map(|(s, w)| w * (-s / l).exp() * kernel(far + s)).sum::<f64>();
-                    (from, width) = (from + width, (2.0 * width).min(2.0 * l));
-                }
-                sum
-            };
-            let mut row = vec![0.0; (2 * last + 1) as usize];
-            let mut add = |weight: f64, mut sum: f64, decay: f64, own: &dyn Fn(isize) -> f64| {
-                for i in (-last..=last).rev() {
-                    sum = own(i) + decay * sum;
-                    row[(last + i) as usize] += weight * sum;
-                }
-            };
-            match time {
-                Time::Exact => {
-                    add(self.glassy, 0.0, 0.0, &at);
-                    for &(c, l) in &self.terms {
-                        // the kernel has its kinks at the sides of its cell, half way
-                        let own = |i: isize| {
-                            let weighted = |s: f64| (-s / l).exp() / l * kernel(i as f64 * d + s);
-                            points(0.0, d, 4).map(|(s, w)| w * weighted(s)).sum::<f64>()
-                        };
-                        add(c, tail(l, 0.0) / l, (-d / l).exp(), &own);
-                    }
-                }
-                Time::Corrected => panic!("of periodic bodies only"),
-                Time::Steps => {
-                    let (at_once, decaying) = self.steps();
-                    add(at_once, 0.0, 0.0, &at);
-                    for (next, y) in decaying {
-                        // Σ ρ^(k − 1) K(far + k d) from k = 1, by the integral from 1/2 on
-                        let l = -d / (-y).ln_1p();
-                        add(next, tail(l, 0.5 * d) / d / (1.0 - y), 1.0 - y, &|i| at(i + 1));
-                    }
+        let at = |i: isize| kernel(i as f64 * d);
+        // ∫ e^(−s/l) K(far + s) ds from `start`
+        let tail = |l: f64, start: f64| {
+            let (mut sum, mut from, mut width) = (0.0, start, (0.5 * far).min(l));
+            while from < 45.0 * l {
+                sum += points(from, from + width, 1).map(|(s, w)| w * (-s / l).exp() * kernel(far + s)).sum::<f64>();
+                (from, width) = (from + width, (2.0 * width).min(2.0 * l));
+            }
+            sum
+        };
+        let mut row = vec![0.0; (2 * last + 1) as usize];
+        let mut add = |weight: f64, mut sum: f64, decay: f64, own: &dyn Fn(isize) -> f64| {
+            for i in (-last..=last).rev() {
+                sum = own(i) + decay * sum;
+                row[(last + i) as usize] += weight * sum;
+            }
+        };
+        match time {
+            Time::Exact => {
+                add(self.glassy, 0.0, 0.0, &at);
+                for &(c, l) in &self.terms {
+                    // the kernel has its kinks at the sides of its cell, half way
+                    let own = |i: isize| {
+                        let weighted = |s: f64| (-s / l).exp() / l * kernel(i as f64 * d + s);
+                        points(0.0, d, 4).map(|(s, w)| w * weighted(s)).sum::<f64>()
+                    };
+                    add(c, tail(l, 0.0) / l, (-d / l).exp(), &own);
                 }
             }
-            row
+            Time::Corrected => panic!("of periodic bodies only"),
+            Time::Steps => {
+                let (at_once, decaying) = self.steps();
+                add(at_once, 0.0, 0.0, &at);
+                for (next, y) in decaying {
+                    // Σ ρ^(k − 1) K(far + k d) from k = 1, by the integral from 1/2 on
+                    let l = -d / (-y).ln_1p();
+                    add(next, tail(l, 0.5 * d) / d / (1.0 - y), 1.0 - y, &|i| at(i + 1));
+                }
+            }
         }
+        row
     }
 
     /// K at x along the motion from a cell, j cells across it: Love's integral, or of ln(D/|x|) over a side.
-    fn influence(&self, x: f64, j: usize) -> f64 {
+    pub fn influence(&self, x: f64, j: usize) -> f64 {
         let [a, b] = self.spacing.map(|side| 0.5 * side);
         if let Below::Line(datum) = self.below {
             let primitive = |x: f64| if x == 0.0 { 0.0 } else { x * ((x.abs() / datum).ln() - 1.0) };
@@ -301,54 +292,4 @@ impl SteadySliding {
         }
         (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b)) / PI
     }
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Complex([f64; 2]);
-
-impl Complex {
-    fn from_angle(angle: f64) -> Complex {
-        Complex([angle.cos(), angle.sin()])
-    }
-
-    /// This and a multiple of another.
-    fn plus(self, factor: f64, other: Complex) -> Complex {
-        Complex([self.0[0] + factor * other.0[0], self.0[1] + factor * other.0[1]])
-    }
-
-    fn over(self, Complex([a, b]): Complex) -> Complex {
-        let (Complex([x, y]), square) = (self, a * a + b * b);
-        Complex([(x * a + y * b) / square, (y * a - x * b) / square])
-    }
-}
-
-/// Lateral over normal force of a cylinder that rolls over C(t) = C0 + C1 (1 − e^(−t/λ)) with v λ = `reach` under a force per length
-/// (S. C. Hunter, J. Appl. Mech. 28, 1961). Where C∞ p − l C0 p′ = q, q is Hertz's problem with a tilt, in [c − w, c + w].
-pub fn hunter(radius: f64, force: f64, [c0, c1]: [f64; 2], reach: f64) -> f64 {
-    let relaxed = c0 + c1;
-    // e^(∓z) times the modified Bessel functions of orders 0 and 1, by their integrals
-    let of_first_kind = |z: f64| {
-        let integrand = |t: f64| (z * (t.cos() - 1.0)).exp();
-        let sum = |n: f64| points(0.0, PI, 200).map(|(t, w)| w * integrand(t) * (n * t).cos()).sum::<f64>();
-        sum(1.0) / sum(0.0)
-    };
-    let of_second_kind = |z: f64| {
-        let integrand = |t: f64| (z * (1.0 - t.cosh())).exp();
-        let most = (1.0 + 700.0 / z).acosh();
-        let sum = |n: f64| points(0.0, most, 200).map(|(t, w)| w * integrand(t) * (n * t).cosh()).sum::<f64>();
-        sum(1.0) / sum(0.0)
-    };
-    let parts = |w: f64| {
-        let (k, i) = (of_second_kind(w / reach), of_first_kind(relaxed * w / (reach * c0)));
-        let c = reach * c1 / relaxed * i / (i + k);
-        (c, PI / (4.0 * radius * relaxed) * (w * w + 2.0 * c * w * k))
-    };
-    let (mut low, mut high) = (0.0, (4.0 * radius * relaxed * force / PI).sqrt());
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if parts(middle).1 < force { low = middle } else { high = middle }
-    }
-    let (w, c) = (low, parts(low).0);
-    let moment = ((reach - c) * PI * w * w / (4.0 * radius) - reach * c0 * force) / relaxed;
-    (c + moment / force) / radius
 }

@@ -100,11 +100,10 @@ fn sur(source: &mut Source) -> Verdict {
     for (at, number) in [(14, 1), (18, 2), (86, source.count(0, 1)), (98, 8 * size), (108, columns), (112, rows)] {
         put(at, &(number as u16).to_le_bytes());
     }
-    for at in [120, 124, 128] {
-        put(at, &(source.scale(1e-3, 1e3) as f32).to_le_bytes());
-        put(at + if at == 120 { 60 } else { 72 }, b"um");
+    for (spacing, at, unit) in [(120, 180, b"um"), (124, 196, b"um"), (128, 212, b"nm")] {
+        put(spacing, &(source.scale(1e-3, 1e3) as f32).to_le_bytes());
+        put(at, unit);
     }
-    put(212, b"nm");
     file.extend(source.bytes(size * columns * rows));
     read(&file, Some(340), source, |file| HeightMap::from_sur(file))
 }

@@ -169,26 +169,10 @@ impl Source {
 
     /// Damages a file: a few bytes cut, turned, repeated, or replaced by what stands in files.
     pub fn damage(&mut self, file: &[u8]) -> Vec<u8> {
-        const TOKENS: [&[u8]; 18] = [
-            b"nan",
-            b"inf",
-            b"-1",
-            b"0",
-            b"1e308",
-            b"-1e-320",
-            b"18446744073709551615",
-            b"4294967296",
-            b"65536",
-            b"2147483647",
-            b"-0",
-            b"1e999",
-            b",",
-            b"\n",
-            b"\0",
-            b"<",
-            b"\xff\xff\xff\xff",
-            b"0.1",
-        ];
+        const WORDS: &str =
+            "nan inf -1 0 1e308 -1e-320 18446744073709551615 4294967296 65536 2147483647 -0 1e999 , < 0.1";
+        let words = WORDS.split(' ').map(str::as_bytes);
+        let tokens: Vec<&[u8]> = words.chain([b"\n" as &[u8], b"\0", b"\xff\xff\xff\xff"]).collect();
         let mut file = file.to_vec();
         for _ in 0..=self.below(4) {
             if file.is_empty() {
@@ -208,7 +192,7 @@ impl Source {
                     file.splice(to..to, piece);
                 }
                 6 => {
-                    let token = self.choose(&TOKENS);
+                    let token = self.choose(&tokens);
                     let end = (at + self.below(token.len() + 1)).min(file.len());
                     file.splice(at..end, token.iter().copied());
                 }

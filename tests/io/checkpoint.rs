@@ -138,6 +138,7 @@ fn other_scenes_are_refused_by_what_differs() {
     let on = |grid: Grid, settings: Settings| sphere_on(grid, three_times(), settings);
     assert_eq!(what(on(Grid::square(16, 4.1e-3).unwrap(), Settings::default())), "grid");
     assert_eq!(what(on(grid(), Settings::default().with_window(false))), "Settings::window");
+    assert_eq!(what(on(grid(), Settings::default().with_series_tolerance(1e-3))), "Settings::series_tolerance");
     assert_eq!(what(on(grid(), Settings::default().with_time_rule(TimeRule::Backward))), "Settings::time_rule");
     let layer = |thickness: f64| {
         let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();

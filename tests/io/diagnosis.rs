@@ -1,6 +1,6 @@
 //! Warnings of steps, and the reasons of failed steps.
 
-use crate::common::{builder_of, elastic, maxwell, sphere_on};
+use crate::common::{builder_of, contact_of, elastic, maxwell, sphere, sphere_on};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::{Error, Trend};
@@ -109,11 +109,8 @@ fn few_cells_are_warned_of_where_errors_are_large() {
         let (mut errors, mut warned) = ([0.0_f64; 3], 0);
         for k in 0..10 {
             let off = [0.137, 0.311].map(|part| (f64::from(k) * part).fract() * side);
-            let mut contact = ViscoelasticContact::builder(Grid::square(24, 24.0 * side).unwrap())
-                .geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), off).unwrap())
-                .material(elastic())
-                .build()
-                .unwrap();
+            let (shape, grid) = (Shifted::new(sphere(), off).unwrap(), Grid::square(24, 24.0 * side).unwrap());
+            let mut contact = contact_of(&shape, grid, elastic(), Settings::default());
             let report = contact.step(0.0, Load::force(1.0)).unwrap();
             warned += u32::from(report.warnings.contains(Warnings::FEW_CELLS));
             let found = [contact.approach(), contact.max_pressure(), contact.contact_area()];

@@ -229,11 +229,7 @@ fn metadata_are_values() {
 
     let polymer = Material::elastic_bulk(Zener::with_time(1.0e9, 1.0e8, 2.0).unwrap(), 3.0e9).unwrap();
     let steel = Material::constant_poisson(Elastic::young(210.0e9, 0.3).unwrap(), 0.3).unwrap();
-    let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
-        .geometry(&Sphere::new(10.0e-3).unwrap())
-        .material(polymer.against(steel))
-        .build()
-        .unwrap();
+    let contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), polymer.against(steel), Settings::default());
     let json = Metadata::new("values").json(&contact);
     for part in [
         r#""settings": {"tolerance": 1e-6, "max_iterations": 1000, "solver": "ActiveSet""#,

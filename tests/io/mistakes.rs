@@ -136,7 +136,7 @@ const MISTAKES: &[Mistake] = &[
      position and size with Grid::lengths"),
 ("a shape by a root of negative numbers",
     || builder_of(&FnGeometry::new(|x1: f64, x2: f64| (x1 - x2).sqrt()), grid(), elastic()).build().map(drop),
-    "the initial gap at cell [0, 1], x = (-1.9375e-3, -1.8125e-3) m, is NaN: it must be finite, or +inf where there is no \
+    "the initial gap at cell [0, 1], x = (-0.0019375, -0.0018125) m, is NaN: it must be finite, or +inf where there is no \
      body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked"),
 ("a closure of compliance without times",
     || builder_on(grid(), Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())))).build().map(drop),
@@ -158,8 +158,8 @@ const MISTAKES: &[Mistake] = &[
     "time step = -0.1 is not allowed: it must be finite and >= 0"),
 ("a load too great for the grid",
     || contact()?.step(0.0, Load::force(20.0)).map(drop),
-    "at t = 0 s the contact touches the edge of the grid on 124 cells; the grid is 4e-3 m × 4e-3 m, the load needs about \
-     6.5e-3 m × 6.5e-3 m: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"),
+    "at t = 0 s the contact touches the edge of the grid on 124 cells; the grid is 0.004 m × 0.004 m, the load needs about \
+     0.0065 m × 0.0065 m: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"),
 ("a load beside the punch",
     || punch()?.step(0.0, Load::eccentric_force(1.0, [1.5e-3, 0.0])).map(drop),
     "at t = 0 s the load acts at (0.0015, 0) m, outside the convex hull of the cells that body 0 may touch: it would tip \
@@ -211,7 +211,7 @@ const MISTAKES: &[Mistake] = &[
     "creep table: 2 given, at least 4 needed"),
 ("a relaxation table read as creep",
     || Measurements::creep(&TIMES.map(|t: f64| (t, 1.0e6 / (1.0 + t))))?.fit().map(drop),
-    "creep table, entry 0: creep compliance = 909091.0 deviates by 200.84 % from the nearest monotone curve, where the \
+    "creep table, entry 0: creep compliance = 909091 deviates by 200.84 % from the nearest monotone curve, where the \
      scatter of the data explains 10.00 %: compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter states \
      more scatter"),
 ("a step beyond the table",

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use viscocontact::ViscoelasticContact;
 use viscocontact::geometry::Geometry;
@@ -50,21 +50,15 @@ fn lines(page: &str) -> Vec<Line> {
     lines
 }
 
-/// The file of a test given as arguments of `cargo test`, and the function.
-fn test_at(arguments: &str) -> Option<(Vec<PathBuf>, &str)> {
-    let words: Vec<&str> = arguments.split(' ').collect();
-    let (folder, path) = match words[..] {
-        ["--lib", path] => ("src".to_owned(), path),
-        ["--test", "suite", path] => ("tests".to_owned(), path),
-        ["--test", binary, path] => (format!("tests/{binary}"), path),
-        _ => return None,
-    };
-    let (modules, function) = path.rsplit_once("::")?;
+/// Whether a test of the library, given as arguments of `cargo test`, exists; `documents` looks for those of the suite.
+fn exists(arguments: &str) -> bool {
+    let Some(path) = arguments.strip_prefix("--lib ") else { return arguments.starts_with("--test ") };
+    let Some((modules, function)) = path.rsplit_once("::") else { return false };
     let module = modules.strip_suffix("::tests").unwrap_or(modules).replace("::", "/");
-    Some((
-        vec![root().join(format!("{folder}/{module}.rs")), root().join(format!("{folder}/{module}/mod.rs"))],
-        function,
-    ))
+    let files = ["", "/mod"].map(|part| root().join(format!("src/{module}{part}.rs")));
+    let is_test = format!("#[test]\nfn {function}(");
+    let text = files.iter().find_map(|file| fs::read_to_string(file).ok()).unwrap_or_default();
+    text.replace("    ", "").contains(&is_test)
 }
 
 #[test]
@@ -96,17 +90,7 @@ fn sources_tests_and_pictures_of_the_page_exist() {
                 missing.push(format!("{name}: {source}"));
             }
         }
-        for test in tests {
-            let defined = test_at(&test).is_some_and(|(files, function)| {
-                let texts = files.iter().filter_map(|file| fs::read_to_string(file).ok());
-                let is_test = |text: &str, at: usize| text[..at].trim_end().ends_with("#[test]");
-                let name = format!("fn {function}(");
-                texts.into_iter().any(|text| text.match_indices(&name).any(|(at, _)| is_test(&text, at)))
-            });
-            if !defined {
-                missing.push(format!("{name}: {test}"));
-            }
-        }
+        missing.extend(tests.into_iter().filter(|test| !exists(test)));
         // the package comes without pictures
         let folder = root().join("docs/pictures");
         missing.extend(pictures.iter().filter(|file| folder.exists() && !folder.join(file).exists()).cloned());

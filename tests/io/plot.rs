@@ -1,7 +1,7 @@
 //! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
 
 use crate::common::refused::field;
-use crate::common::{Temporary, maxwell};
+use crate::common::{Temporary, contact_of, maxwell, sphere};
 use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::Path;
@@ -10,17 +10,15 @@ use proptest::prelude::*;
 use viscocontact::ErrorKind;
 use viscocontact::output::Field;
 use viscocontact::plot::{
-    Animation, COLORS, Chart, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style,
+    Animation, COLORS, Chart, ColorScale, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style, measure,
 };
 use viscocontact::prelude::*;
 
 /// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
 fn ball() -> ViscoelasticContact {
-    let mut contact = ViscoelasticContact::builder(Grid::new([32, 24], [4.0e-3, 3.0e-3]).unwrap())
-        .geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), [0.5e-3, -0.3e-3]).unwrap())
-        .material(maxwell())
-        .build()
-        .unwrap();
+    let aside = Shifted::new(sphere(), [0.5e-3, -0.3e-3]).unwrap();
+    let grid = Grid::new([32, 24], [4.0e-3, 3.0e-3]).unwrap();
+    let mut contact = contact_of(&aside, grid, maxwell(), Settings::default());
     contact.step(0.0, Load::force(0.3)).unwrap();
     contact
 }
@@ -65,6 +63,74 @@ fn a_map_shows_each_cell_where_it_is() {
             assert!((share - at[axis]).abs() < 0.01, "{share:?}, not {at:?}");
         }
     }
+}
+
+/// Pull is blue and pressure red, equally strong at equal magnitudes, whatever the ends of the scale.
+#[test]
+fn tractions_diverge_about_zero() {
+    let grid = Grid::new([4, 1], [4.0, 1.0]).unwrap();
+    let shown = |range: [f64; 2]| {
+        let mut map = Map::new(&grid, vec![-1.0, 0.0, 0.5, 2.0], "q").unwrap();
+        (map.colors, map.range) = (ColorScale::Diverging, range);
+        let picture = map.draw().unwrap();
+        let row = 54 + 182 / 2; // the middle of the cells
+        [0, 1, 2, 3]
+            .map(|cell| picture.rgb().as_chunks::<3>().0[row * picture.size()[0] as usize + 115 + 91 + cell * 182])
+    };
+    let [pull, zero, half, twice] = shown([-1.0, 2.0]);
+    assert_eq!([zero, twice], [[247, 247, 247], [103, 0, 31]]);
+    assert!(pull[2] > pull[0] + 50 && half[0] > half[2] + 50, "{pull:?} {half:?}");
+    let [pull, zero, half, beyond] = shown([-1.0, 1.0]);
+    assert_eq!([pull, zero, beyond], [[5, 48, 97], [247, 247, 247], [103, 0, 31]]);
+    // half of the scale above zero: between white and red, as far as its mirror image below
+    let [mirror, ..] = shown([-2.0, 2.0]);
+    assert!(mirror[2] > mirror[0] && half[0] > half[2], "{mirror:?} {half:?}");
+
+    let mut contact = ViscoelasticContact::builder(Grid::square(48, 0.8e-3).unwrap())
+        .geometry(&Sphere::new(1.0e-3).unwrap())
+        .material(Material::incompressible(Elastic::new(0.25e5).unwrap()))
+        .attraction(viscocontact::adhesion::ExponentialAttraction::new(0.1, 10.0e-6).unwrap())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::approach(20.0e-6)).unwrap();
+    let map = Map::traction(&contact).unwrap();
+    assert_eq!((map.colors, Map::pressure(&contact).unwrap().colors), (ColorScale::Diverging, ColorScale::Sequential));
+    assert!(map.range[0] < 0.0 && map.range[1] > 0.0, "{:?}", map.range);
+}
+
+/// The colour of each member is its place on the bar, on a logarithmic one if the parameter spans decades.
+#[test]
+fn families_are_coloured_by_their_parameter() {
+    let drawn = |parameters: [f64; 3]| {
+        let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+        let level = |value: f64| 10.0 + value.log10();
+        let levels = parameters.map(|value| (value, vec![(0.0, level(value)), (1.0, level(value))]));
+        chart.add_family(Quantity::new("speed", "m/s"), Style::Line, levels.to_vec());
+        let picture = chart.draw().unwrap();
+        // the curves across the column in the middle of the axes, from the top
+        let at = pixels(&picture).filter(|([column, row], _)| *column == 580 && (60..710).contains(row));
+        let mut colors: Vec<[u8; 3]> = at.map(|(_, rgb)| rgb).filter(|rgb| rgb.iter().any(|&c| c < 150)).collect();
+        colors.dedup();
+        let bar = pixels(&picture).filter(|([column, _], rgb)| *column > 1060 && colors.contains(rgb)).count();
+        (colors, bar, picture.size())
+    };
+    let (colors, bar, size) = drawn([1e-8, 1e-6, 1e-4]);
+    assert_eq!([colors.len(), size[0] as usize], [3, 1200], "{colors:?}");
+    let (least, greatest) = (colors[2], colors[0]);
+    assert_eq!(least, [68, 1, 84]);
+    assert!(bar > 30, "{bar} pixels of the bar");
+    // in the middle of a logarithmic bar, and near the lower end of a linear one
+    assert_eq!(drawn([1e-8, 1e-5, 1e-2]).0[1], colors[1]);
+    let (linear, ..) = drawn([1.0, 2.0, 20.0]);
+    assert_eq!([linear[2], linear[0]], [least, greatest]);
+    assert_ne!(linear[1], colors[1]);
+    // a single value has no bar; no value is refused by name
+    let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+    chart.add_family("p", Style::Line, vec![(1.0, vec![(0.0, 0.0), (1.0, 1.0)])]);
+    chart.draw().unwrap();
+    chart.add_family("p", Style::Line, vec![(1.0, vec![(0.0, 0.0)]), (1e101, vec![(1.0, 1.0)])]);
+    assert_eq!(field(chart.draw()), "parameter of a family of curves");
+    assert_eq!([measure(1.8e-7, "m/s"), measure(0.4e-6, "m²")], ["180 nm/s", "0.4 mm²"]);
 }
 
 #[test]

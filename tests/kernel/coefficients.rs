@@ -113,6 +113,10 @@ fn coefficients_of_other_bodies_are_their_closed_forms() {
         let found = line.coefficient(i, 0).unwrap();
         assert!((found / exact - 1.0).abs() < 1e-12, "{i}: {found} {exact}");
     }
+    // at the datum the surface stays where it was
+    let far = InfluenceKernel::line(&Grid::new([2001, 1], [8.004, 1.0]).unwrap(), 8.004).unwrap();
+    let exact = -FRAC_2_PI * 0.004 * (8.0_f64 / 8.004).ln();
+    assert!((far.coefficient(2000, 0).unwrap() - exact).abs() < 1e-9, "{exact}");
     // the waves of a period add up to the coefficients; the mean is their sum
     let grid = Grid::new([10, 7], [2.0, 3.0]).unwrap();
     let wave = |q1: f64, q2: f64| 1.0 / (1.0 + q1 * q1 + 2.0 * q2);

@@ -1,16 +1,11 @@
 //! The kernels beside the half-space's, each against its closed form and a sum of its own.
 
-use std::f64::consts::{FRAC_2_PI, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
-use super::{convolve, noise};
+use super::{assert_answers_waves, convolve, noise, values};
 use crate::common::refused::field;
 use approx::assert_abs_diff_eq;
 use viscocontact::{Axis, Error, Grid, InfluenceKernel, KernelError};
-
-fn values(grid: &Grid, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-    let n2 = grid.cells()[1];
-    (0..grid.len()).map(|k| grid.center(k / n2, k % n2)).map(|[x1, x2]| f(x1, x2)).collect()
-}
 
 fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
     let scale = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -22,35 +17,8 @@ fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
 fn periodic_bodies_displace_waves_as_westergaard_says() {
     for cells in [[16, 24], [15, 22], [11, 1], [1, 32], [64, 2]] {
         let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
-        let kernel = InfluenceKernel::periodic(&grid).unwrap();
-        assert_eq!(kernel.periodic_axes(), [true; 2]);
-        for [m1, m2] in [[1, 0], [0, 1], [3, 2], [5, 7], [0, 0]] {
-            if 2 * m1 >= cells[0] || 2 * m2 >= cells[1] {
-                continue;
-            }
-            let q = [TAU * m1 as f64 / 2.0, TAU * m2 as f64 / 3.0];
-            let wave = values(&grid, |x1, x2| (q[0] * x1 + q[1] * x2 + 0.3).cos());
-            let factor = if (m1, m2) == (0, 0) { 0.0 } else { 2.0 / q[0].hypot(q[1]) };
-            let found = convolve(&kernel, &wave);
-            assert!(found.iter().zip(&wave).all(|(v, p)| (v - factor * p).abs() < 1e-13), "{cells:?} {m1} {m2}");
-        }
+        assert_answers_waves(&InfluenceKernel::periodic(&grid).unwrap(), |q| 2.0 / q);
     }
-}
-
-/// The closed form of a uniform pressure.
-#[test]
-fn a_line_under_uniform_pressure_is_the_closed_form() {
-    let (grid, datum) = (Grid::new([75, 1], [1.5, 2.0]).unwrap(), 4.0);
-    let kernel = InfluenceKernel::line(&grid, datum).unwrap();
-    let under = convolve(&kernel, &[1.0; 75])[37];
-    let exact = -FRAC_2_PI * 1.5 * ((0.75 / datum).ln() - 1.0);
-    assert_abs_diff_eq!(under, exact, epsilon = 1e-13 * exact.abs());
-    // at the datum the surface stays where it was: a load in the middle, seen from far away
-    let far = Grid::new([2001, 1], [8.004, 1.0]).unwrap();
-    let kernel = InfluenceKernel::line(&far, 8.004).unwrap();
-    let mut load = vec![0.0; 2001];
-    load[0] = 1.0;
-    assert_abs_diff_eq!(convolve(&kernel, &load)[2000], -FRAC_2_PI * 0.004 * (8.0_f64 / 8.004).ln(), epsilon = 1e-9);
 }
 
 /// Waves that end across the strip are, in its middle, Westergaard's; uniform ones are lines; and both axes do it.

@@ -1,12 +1,13 @@
 //! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series, direct sums.
 
+use super::tension::carson;
 use crate::common::refused::field;
 use crate::common::{RADIUS, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, MaterialError, RelaxationSpectrum};
+use viscocontact::rheology::{MaterialError, RelaxationSpectrum};
 
 const FORCE: f64 = 1.0;
 
@@ -33,11 +34,7 @@ fn elastic_bulk_has_the_limits_of_hertz() {
         assert_abs_diff_eq!(material.contact_compliance(t) / hertz(g), 1.0, epsilon = 1e-11);
         let mut contact = builder(128, hertz(g)).material(material.clone()).build().unwrap();
         contact.step(0.0, Load::force(FORCE * 1e-6)).unwrap();
-        if t > 0.0 {
-            contact.step(t, Load::force(FORCE)).unwrap();
-        } else {
-            contact.step(0.0, Load::force(FORCE)).unwrap();
-        }
+        contact.step(t, Load::force(FORCE)).unwrap();
         let relative = cubed_radius(&contact) / (0.75 * RADIUS * FORCE * hertz(g)) - 1.0;
         println!("t = {t:e}: {relative:.1e}");
         assert_abs_diff_eq!(relative, 0.0, epsilon = 1e-3);
@@ -48,10 +45,6 @@ fn elastic_bulk_has_the_limits_of_hertz() {
 /// moduli s Ĝ(s) and B.
 #[test]
 fn elastic_bulk_obeys_the_correspondence_principle() {
-    let carson = |spectrum: &CreepSpectrum, s: f64| {
-        let terms = spectrum.terms().iter().map(|&(c, lambda)| c / (1.0 + s * lambda));
-        spectrum.glassy() + spectrum.fluidity() / s + terms.sum::<f64>()
-    };
     let bodies: Vec<Box<dyn Fn() -> Box<dyn Rheology>>> = vec![
         Box::new(|| Box::new(Maxwell::with_time(1.0e6, 1.0).unwrap())),
         Box::new(|| Box::new(Zener::with_time(1.0e9, 1.0e6, 1.0).unwrap())),
@@ -89,14 +82,13 @@ fn elastic_bulk_tends_to_its_neighbours() {
     let other = Material::constant_poisson(Elastic::new(g).unwrap(), nu).unwrap().contact_compliance(3.0);
     assert_abs_diff_eq!(one / other, 1.0, epsilon = 1e-14);
     // a rheology without a series is refused
-    let error = Material::elastic_bulk(PowerLaw::new(1.0, 1.0, 0.5).unwrap(), 1.0).unwrap_err();
-    assert!(
-        matches!(error, Error::Material(MaterialError::NoExponentialSeries { what: "an elastic bulk", .. })),
-        "{error}"
-    );
+    let what = match Material::elastic_bulk(PowerLaw::new(1.0, 1.0, 0.5).unwrap(), 1.0).unwrap_err() {
+        Error::Material(MaterialError::NoExponentialSeries { what, .. }) => what,
+        error => panic!("{error}"),
+    };
+    assert_eq!(what, "an elastic bulk");
     for bad in [0.0, -1.0, f64::NAN] {
-        let error = Material::elastic_bulk(zener(), bad).unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { field: "bulk modulus", .. }), "{error}");
+        assert_eq!(field(Material::elastic_bulk(zener(), bad)), "bulk modulus");
     }
 }
 
@@ -107,21 +99,17 @@ fn two_bodies_share_the_approach() {
     for (name, counter) in [("creeping", tyre as fn() -> Material), ("elastic", steel)] {
         let reference = GrowingSphere::step(RADIUS, &maxwell().against(counter()), FORCE).unwrap();
         let sum = maxwell().contact_compliance(2.0) + counter().contact_compliance(2.0);
-        let mut contact = builder(96, sum).material(maxwell()).counter_body(counter()).build().unwrap();
-        contact.step(0.0, Load::force(FORCE)).unwrap();
-        for _ in 0..40 {
-            contact.step(0.05, Load::force(FORCE)).unwrap();
-        }
-        let relative = contact.approach() / reference.approach(2.0) - 1.0;
+        // which is which does not matter
+        let [one, swapped] = [(maxwell(), counter()), (counter(), maxwell())].map(|(body, other)| {
+            let mut contact = builder(96, sum).material(body).counter_body(other).build().unwrap();
+            contact.step(0.0, Load::force(FORCE)).unwrap();
+            (0..40).for_each(|_| _ = contact.step(0.05, Load::force(FORCE)).unwrap());
+            contact.approach()
+        });
+        let relative = one / reference.approach(2.0) - 1.0;
         println!("{name}: {relative:.1e}");
         assert!(relative.abs() < 2e-4, "{name}: {relative:e}");
-        // which is which does not matter
-        let mut swapped = builder(96, sum).material(counter()).counter_body(maxwell()).build().unwrap();
-        swapped.step(0.0, Load::force(FORCE)).unwrap();
-        for _ in 0..40 {
-            swapped.step(0.05, Load::force(FORCE)).unwrap();
-        }
-        assert_abs_diff_eq!(swapped.approach() / contact.approach(), 1.0, epsilon = 1e-6);
+        assert_abs_diff_eq!(swapped / one, 1.0, epsilon = 1e-6);
     }
 }
 
@@ -225,14 +213,15 @@ fn a_history_and_its_end_give_the_times() {
     let table = PiecewiseLinear::new(&corners.map(|(time, force)| (time, Load::force(force * FORCE)))).unwrap();
     let mut contact = builder(32, 0.25e-6 * 5.0).material(closure()).times_of(&table, 10.0).build().unwrap();
     let [first, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
-    assert!(first <= 0.01, "{first:e}");
+    // a part of the time between two of them, not of the whole run
+    assert!(first < 1e-7, "{first:e}");
     assert_abs_diff_eq!(last / 10.0, 1.0, epsilon = 1e-12);
     let mut run = contact.follow(&table, Stepping::adaptive(1e-3), 10.0);
     while run.next_step().unwrap().is_some() {}
     assert_eq!(contact.time(), 10.0);
     for end in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = builder(16, 0.5e-6).material(closure()).times_of(&load, end).build().unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { .. }), "{end}: {error}");
+        let refused = field(builder(16, 0.5e-6).material(closure()).times_of(&load, end).build());
+        assert!(refused.ends_with("time of a series"), "{end}: {refused}");
     }
 }
 
@@ -341,11 +330,7 @@ fn a_fractional_zener_body_has_its_limits() {
 fn series_over_too_many_decades_are_refused() {
     let body = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap();
     for times in [1e-90..=1e90, 1e-26..=1e25, 1e-10..=1.1e40] {
-        let error = body.series(times.clone(), 1e-2).unwrap_err();
-        assert!(
-            matches!(error, Error::OutOfRange { field: "decades of a series", value, .. } if value > 50.0),
-            "{times:?}: {error}"
-        );
+        assert_eq!(field(body.series(times.clone(), 1e-2)), "decades of a series", "{times:?}");
     }
     assert!(body.series(1e-10..=1e30, 0.1).unwrap().report().max_misfit() <= 0.1);
     // what has an exact series needs no fit

@@ -1,9 +1,10 @@
 //! Random tables of bodies of one to four relaxation times, with noise of up to 3 % and without, that begin before or after
 //! the relaxation: their creep against the exact one at all measured times. `TABLE_SEEDS` (60) tables of each kind are drawn.
 
-use crate::common::{from_environment, pairs, triples, uniform};
+use super::fitted;
+use crate::common::{from_environment, pairs, uniform};
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};
+use viscocontact::rheology::{CreepSpectrum, Experiment, FitReport, FitWarning, RelaxationSpectrum};
 
 /// A table with its exact creep.
 struct Table {
@@ -16,8 +17,8 @@ struct Table {
 }
 
 impl Table {
-    fn random(kind: &str, seed: u64) -> Table {
-        let mut number = uniform(31 * seed + kind.len() as u64);
+    fn random(kind: Experiment, seed: u64) -> Table {
+        let mut number = uniform(31 * seed + format!("{kind:?}").len() as u64);
         let mut between = |low: f64, high: f64| low + (high - low) * number();
         let count = 1 + between(0.0, 3.999) as usize;
         let spread = between(0.0, 4.0);
@@ -37,27 +38,8 @@ impl Table {
                 (-2.0 * (1.0 - between(0.0, 1.0)).ln()).sqrt() * (std::f64::consts::TAU * between(0.0, 1.0)).cos();
             value * (1.0 + noise * normal)
         };
-        let (fitted, report, known_from) = match kind {
-            "creep" => {
-                let values: Vec<f64> = times.iter().map(|&t| measured(truth.compliance(t))).collect();
-                let table = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
-                (table.spectrum().clone(), table.report().clone(), table.measured()[0])
-            }
-            "relaxation" => {
-                let values: Vec<f64> = times.iter().map(|&t| measured(relaxation.modulus(t))).collect();
-                let table = Measurements::relaxation(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
-                (table.spectrum().clone(), table.report().clone(), table.measured()[0])
-            }
-            _ => {
-                let omega: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
-                let storage: Vec<f64> =
-                    omega.iter().map(|&omega| measured(relaxation.storage_modulus(omega))).collect();
-                let loss: Vec<f64> = omega.iter().map(|&omega| measured(relaxation.loss_modulus(omega))).collect();
-                let table =
-                    Measurements::dynamic(&triples(&omega, &storage, &loss)).and_then(|table| table.fit()).unwrap();
-                (table.spectrum().clone(), table.report().clone(), table.measured()[0])
-            }
-        };
+        let table = fitted(kind, (&|t| truth.compliance(t), &relaxation), &times, &mut measured).unwrap();
+        let (fitted, report, known_from) = (table.spectrum().clone(), table.report().clone(), table.measured()[0]);
         Table { report, fitted, truth, times: [first, times[rows - 1]], noise, known_from }
     }
 
@@ -83,7 +65,7 @@ impl Table {
 
 /// The greatest uncertainty bounds the error of 95 % of noisy tables, that at a time the error there, and no table that is off
 /// is without an interval that says so, or a warning.
-fn judge(kind: &str) {
+fn judge(kind: Experiment) {
     let (mut noisy, mut covered, mut off, mut late) = (0, 0, 0, 0);
     let (mut inside, mut times) = (0, 0);
     let mut widths = Vec::new();
@@ -99,46 +81,50 @@ fn judge(kind: &str) {
         }
         let is_late = table.known_from > 1.001 * table.times[0];
         late += usize::from(is_late);
-        assert!(!is_late || report.warning().is_some(), "{kind} {seed}: {report}");
+        assert!(!is_late || report.warning().is_some(), "{kind:?} {seed}: {report}");
         assert!(
             table.noise > 0.0 || worst < 0.05 || report.warning().is_some(),
-            "{kind} {seed}: off by {worst}; {report}"
+            "{kind:?} {seed}: off by {worst}; {report}"
         );
         if worst > f64::max(0.05, 3.0 * table.noise) {
             off += 1;
             let said = report.uncertainty() >= worst || report.warning().is_some();
-            assert!(said, "{kind} {seed}: off by {worst}; {report}");
+            assert!(said, "{kind:?} {seed}: off by {worst}; {report}");
             let known = report.uncertainties().map(|(time, _)| time).filter(|time| *time > table.known_from);
             let known = known.map(|time| table.error(time)).fold(0.0, f64::max);
-            assert!(known < f64::max(0.1, 4.0 * table.noise), "{kind} {seed}: {known} from {} s on", table.known_from);
+            assert!(
+                known < f64::max(0.1, 4.0 * table.noise),
+                "{kind:?} {seed}: {known} from {} s on",
+                table.known_from
+            );
         }
     }
     widths.sort_by(f64::total_cmp);
     println!(
-        "{kind}: {covered} of {noisy} noisy tables within their uncertainty, {:.1} % of times, in the median {:.1} times their error; {off} tables off, {late} not known from the first time on",
+        "{kind:?}: {covered} of {noisy} noisy tables within their uncertainty, {:.1} % of times, in the median {:.1} times their error; {off} tables off, {late} not known from the first time on",
         100.0 * inside as f64 / times as f64,
         widths[widths.len() / 2]
     );
-    assert!(inside as f64 >= 0.93 * times as f64, "{kind}: {inside} of {times}");
+    assert!(inside as f64 >= 0.93 * times as f64, "{kind:?}: {inside} of {times}");
     // a share of 95 % less two standard deviations of its count
     let expected = 0.95 * noisy as f64;
-    assert!(covered as f64 >= expected - 2.0 * (0.05 * expected).sqrt(), "{kind}: {covered} of {noisy}");
-    assert_eq!(late > 0, kind == "relaxation");
+    assert!(covered as f64 >= expected - 2.0 * (0.05 * expected).sqrt(), "{kind:?}: {covered} of {noisy}");
+    assert_eq!(late > 0, kind == Experiment::Relaxation);
 }
 
 #[test]
 fn creep_is_inside_the_interval_of_its_table() {
-    judge("creep");
+    judge(Experiment::Creep);
 }
 
 #[test]
 fn relaxation_is_inside_the_interval_of_its_table() {
-    judge("relaxation");
+    judge(Experiment::Relaxation);
 }
 
 #[test]
 fn dynamic_moduli_give_creep_inside_their_interval() {
-    judge("dynamic");
+    judge(Experiment::Dynamic);
 }
 
 /// Exact data of one relaxation time, which begin 7, 1 and 0.3 times as late: right, and uncertain before it is known.

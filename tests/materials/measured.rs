@@ -8,12 +8,16 @@ mod units;
 use crate::common::{noise, pairs, sphere_on, triples};
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
+use viscocontact::rheology::{CreepSeries, CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
 use viscocontact::{Error, Result};
 
 fn log_spaced(first: f64, last: f64, a_decade: usize) -> Vec<f64> {
     let count = ((last / first).log10() * a_decade as f64).round() as usize;
     (0..=count).map(|k| first * (last / first).powf(k as f64 / count as f64)).collect()
+}
+
+fn creep(rows: &[(f64, f64)]) -> Result<CreepSeries> {
+    Measurements::creep(rows).and_then(|table| table.fit())
 }
 
 /// 3 and 6 retardation times, solids and fluids.
@@ -39,7 +43,7 @@ fn clean_creep_is_recovered() {
     for (name, truth) in truths() {
         let times = log_spaced(1e-4, 1e4, 20);
         let compliances: Vec<f64> = times.iter().map(|&t| truth.compliance(t)).collect();
-        let body = Measurements::creep(&pairs(&times, &compliances)).and_then(|table| table.fit()).unwrap();
+        let body = creep(&pairs(&times, &compliances)).unwrap();
         let error = worst(&body, &truth, [1e-4, 1e4]);
         println!("{name}: {error:.1e}; {}", body.report());
         assert!(error <= 1e-4, "{name}: {error:e}");
@@ -67,7 +71,7 @@ fn noisy_creep_is_smoothed() {
             let times = log_spaced(1e-4, 1e4, 20);
             let measured = |&t: &f64| truth.creep_compliance(t) * (1.0 + 0.02 * noise());
             let compliances: Vec<f64> = times.iter().map(measured).collect();
-            let body = Measurements::creep(&pairs(&times, &compliances)).and_then(|table| table.fit()).unwrap();
+            let body = creep(&pairs(&times, &compliances)).unwrap();
             let terms = body.report().terms();
             assert!(terms <= most_terms, "{name}, {seed}: {terms} terms");
             let check = log_spaced(1e-4, 1e4, 53);
@@ -113,9 +117,11 @@ fn relaxation_and_dynamic_tables_give_the_same_body() {
 fn times_beyond_the_data_are_refused_unless_extrapolated() {
     let times = log_spaced(1e-2, 1e2, 5);
     let compliances: Vec<f64> = times.iter().map(|t| 1.0e-6 * (1.0 + t / (1.0 + t))).collect();
-    let body = Measurements::creep(&pairs(&times, &compliances)).and_then(|table| table.fit()).unwrap();
+    let body = creep(&pairs(&times, &compliances)).unwrap();
     assert_eq!(body.known_until(), 1e2);
     assert!(body.creep_compliance(1e2).is_finite() && body.creep_compliance(101.0).is_nan());
+    let bulk = Material::elastic_bulk(body.clone(), 1.0e9).unwrap();
+    assert!(bulk.contact_compliance(1e2).is_finite() && bulk.contact_compliance(101.0).is_nan());
     let mut contact = sphere(Material::incompressible(body.clone()));
     contact.step(0.0, Load::force(0.1)).unwrap();
     contact.step(100.0, Load::force(0.1)).unwrap();
@@ -147,7 +153,7 @@ fn sphere(material: Material) -> ViscoelasticContact {
 }
 
 fn table_error(times: &[f64], compliances: &[f64]) -> TableError {
-    match Measurements::creep(&pairs(times, compliances)).and_then(|table| table.fit()).unwrap_err() {
+    match creep(&pairs(times, compliances)).unwrap_err() {
         Error::Table(error) => error,
         other => panic!("{other}"),
     }
@@ -157,22 +163,27 @@ fn table_error(times: &[f64], compliances: &[f64]) -> TableError {
 fn bad_data_are_told_apart() {
     let good = [1.0, 2.0, 3.0, 4.0, 5.0];
     for few in [&[][..], &[1.0, 2.0]] {
-        let error = Measurements::creep(&pairs(few, few)).and_then(|table| table.fit()).unwrap_err();
+        let error = creep(&pairs(few, few)).unwrap_err();
         assert_eq!(error, Error::WrongLength { field: "creep table", len: few.len(), expected: 4, exact: false });
     }
-    let error = table_error(&[1.0, f64::NAN, 3.0, 4.0, 5.0], &good);
-    assert!(matches!(error, TableError::OutOfRange { place: Place::Entry(1), column: "time", .. }), "{error}");
-    let error = table_error(&good, &[1.0, 2.0, 3.0, f64::INFINITY, 5.0]);
-    assert!(matches!(error, TableError::OutOfRange { place: Place::Entry(3), column: "creep compliance", .. }));
-    let error = table_error(&[1.0, -2.0, 3.0, 4.0, 5.0], &good);
-    assert!(matches!(error, TableError::OutOfRange { place: Place::Entry(1), value: -2.0, .. }), "{error}");
-    let error = table_error(&good, &[0.0, 2.0, 3.0, 4.0, 5.0]);
-    assert!(matches!(error, TableError::OutOfRange { place: Place::Entry(0), .. }), "{error}");
+    for (times, values, entry, named) in [
+        ([1.0, f64::NAN, 3.0, 4.0, 5.0], good, 1, "time"),
+        (good, [1.0, 2.0, 3.0, f64::INFINITY, 5.0], 3, "creep compliance"),
+        ([1.0, -2.0, 3.0, 4.0, 5.0], good, 1, "time"),
+        (good, [0.0, 2.0, 3.0, 4.0, 5.0], 0, "creep compliance"),
+    ] {
+        let TableError::OutOfRange { place: Place::Entry(place), column, value, .. } = table_error(&times, &values)
+        else {
+            panic!("{times:?} {values:?}")
+        };
+        let given = if named == "time" { times[entry] } else { values[entry] };
+        assert_eq!((place, column, value.to_bits()), (entry, named, given.to_bits()));
+    }
     let error = table_error(&[5.0, 1.0, 2.0, 5.0, 4.0], &good);
-    let TableError::Duplicate { place: Place::Entry(3), earlier: Place::Entry(0), value, .. } = error else {
-        panic!("{error}")
-    };
-    assert_eq!(value, 5.0);
+    assert!(
+        matches!(error, TableError::Duplicate { place: Place::Entry(3), earlier: Place::Entry(0), value: 5.0, .. }),
+        "{error}"
+    );
     let error = table_error(&good, &[1.0, 2.0, 3.0, 1.5, 5.0]);
     assert!(matches!(error, TableError::WrongWay { place: Place::Entry(3), .. }), "{error}");
     let error = Measurements::dynamic(&triples(&[0.0, 1.0, 2.0, 3.0], &good[..4], &good[..4]))
@@ -188,30 +199,26 @@ fn bad_data_are_told_apart() {
     assert!(matches!(table_error(&times, &clean), TableError::WrongWay { .. }));
     let mut noise = noise(7);
     let noisy: Vec<f64> = clean.iter().map(|value| value * (1.0 + 0.02 * noise())).collect();
-    let body = Measurements::creep(&pairs(&times, &noisy)).and_then(|table| table.fit()).unwrap();
+    let body = creep(&pairs(&times, &noisy)).unwrap();
     assert!(body.report().wrong_way() > 0.01, "{}", body.report());
 }
 
 #[test]
 fn tables_of_any_size_and_unit_are_fitted() {
     // nothing creeps
-    let elastic =
-        Measurements::creep(&[1.0, 2.0, 3.0, 4.0].map(|t| (t, 2.0e-9))).and_then(|table| table.fit()).unwrap();
+    let elastic = creep(&[1.0, 2.0, 3.0, 4.0].map(|t| (t, 2.0e-9))).unwrap();
     assert_abs_diff_eq!(elastic.creep_compliance(2.5) / 2.0e-9, 1.0, epsilon = 1e-12);
     assert_eq!(elastic.report().terms(), 0);
     // a fluid from the start, with the time of loading itself
-    let viscous =
-        Measurements::creep(&[0.0, 1.0, 2.0, 3.0, 9.0].map(|t| (t, 1.0 + t))).and_then(|table| table.fit()).unwrap();
+    let viscous = creep(&[0.0, 1.0, 2.0, 3.0, 9.0].map(|t| (t, 1.0 + t))).unwrap();
     assert!((viscous.creep_compliance(5.0) / 6.0 - 1.0).abs() < 1e-6, "{viscous:?}");
     // the same body in other units is the same body
     let times = log_spaced(1e-3, 1e3, 7);
     let values: Vec<f64> = times.iter().map(|t| 1.0 + t.powf(0.4)).collect();
-    let body = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
+    let body = creep(&pairs(&times, &values)).unwrap();
     for (time, value) in [(1e-40, 1e-30), (1e40, 1e30), (1e20, 1e-40)] {
-        let scaled =
-            Measurements::creep(&times.iter().zip(&values).map(|(t, j)| (time * t, value * j)).collect::<Vec<_>>())
-                .and_then(|table| table.fit())
-                .unwrap();
+        let rows: Vec<_> = times.iter().zip(&values).map(|(t, j)| (time * t, value * j)).collect();
+        let scaled = creep(&rows).unwrap();
         assert_eq!(scaled.report().terms(), body.report().terms());
         for t in log_spaced(1e-3, 1e3, 3) {
             let t = t.min(1e3);
@@ -307,25 +314,23 @@ fn tables_as_they_come_are_fitted_or_refused_for_a_reason() {
         let mut noise = noise(seed);
         let printed = |&t: &f64| format!("{:.2e}", zener.creep_compliance(t) * (1.0 + 3e-4 * noise())).parse().unwrap();
         let values: Vec<f64> = times.iter().map(printed).collect();
-        Measurements::creep(&pairs(&times, &values))
-            .and_then(|table| table.fit())
-            .unwrap_or_else(|error| panic!("{seed}: {error}"));
+        creep(&pairs(&times, &values)).unwrap_or_else(|error| panic!("{seed}: {error}"));
     }
     // not those of a linear body
     let rows = [1.0, 2.0, 3.0, 4.0];
     for values in [vec![1.0, 10.0, 100.0, 1000.0], vec![1.0, 1.0, 1.0e6, 1.0e6]] {
-        let error = Measurements::creep(&pairs(&rows, &values)).and_then(|table| table.fit()).unwrap_err();
+        let error = creep(&pairs(&rows, &values)).unwrap_err();
         assert!(matches!(error, Error::Table(TableError::Inconsistent { rms, .. }) if rms > 0.1), "{error}");
     }
     let tertiary: Vec<f64> = times.iter().map(|t| 1.0 + 0.1 * t.powf(0.3) + (t / 100.0).powi(4)).collect();
-    let error = Measurements::creep(&pairs(&times, &tertiary)).and_then(|table| table.fit()).unwrap_err();
+    let error = creep(&pairs(&times, &tertiary)).unwrap_err();
     assert!(matches!(error, Error::Table(TableError::Inconsistent { .. })), "{error}");
     // a few noisy rows are not met exactly
     for seed in 0..50 {
         let mut noise = noise(seed);
         let rows = log_spaced(0.1, 10.0, 3);
         let values: Vec<f64> = rows.iter().map(|&t| zener.creep_compliance(t) * (1.0 + 0.01 * noise())).collect();
-        if let Ok(body) = Measurements::creep(&pairs(&rows, &values)).and_then(|table| table.fit()) {
+        if let Ok(body) = creep(&pairs(&rows, &values)) {
             assert!(2 * body.report().terms() < rows.len(), "{seed}: {}", body.report());
         }
     }
@@ -334,7 +339,7 @@ fn tables_as_they_come_are_fitted_or_refused_for_a_reason() {
     let times = log_spaced(1e-6, 1e6, 2000);
     let body = FractionalZener::new(1.0e9, 1.0e6, 1.0, 0.4).unwrap();
     let values: Vec<f64> = times.iter().map(|&t| body.creep_compliance(t)).collect();
-    let fitted = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
+    let fitted = creep(&pairs(&times, &values)).unwrap();
     println!("{} in {:.2} s", fitted.report(), clock.elapsed().as_secs_f64());
     assert!(fitted.report().max_misfit() < 1e-3 && fitted.report().samples().len() == times.len());
     assert_eq!(Material::incompressible(fitted).fit_reports().count(), 1);

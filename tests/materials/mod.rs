@@ -6,3 +6,29 @@ mod measured;
 mod sparse_tables;
 mod spectra;
 mod tension;
+
+use viscocontact::rheology::{CreepSeries, Experiment, Measurements, RelaxationSpectrum};
+
+use crate::common::{pairs, triples};
+
+/// A table of a body, fitted: its creep or its moduli at `times`, or at the frequencies that are their reciprocals, each value as
+/// it was `measured`.
+fn fitted(
+    experiment: Experiment,
+    (creep, relaxation): (&dyn Fn(f64) -> f64, &RelaxationSpectrum),
+    times: &[f64],
+    mut measured: impl FnMut(f64) -> f64,
+) -> viscocontact::Result<CreepSeries> {
+    let mut column = |x: &[f64], value: &dyn Fn(f64) -> f64| x.iter().map(|&x| measured(value(x))).collect::<Vec<_>>();
+    let table = match experiment {
+        Experiment::Creep => Measurements::creep(&pairs(times, &column(times, creep))),
+        Experiment::Relaxation => Measurements::relaxation(&pairs(times, &column(times, &|t| relaxation.modulus(t)))),
+        _ => {
+            let omega: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
+            let storage = column(&omega, &|omega| relaxation.storage_modulus(omega));
+            let loss = column(&omega, &|omega| relaxation.loss_modulus(omega));
+            Measurements::dynamic(&triples(&omega, &storage, &loss))
+        }
+    };
+    table.and_then(|table| table.fit())
+}

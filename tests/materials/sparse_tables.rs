@@ -1,10 +1,11 @@
 //! Tables of few rows: smooth bodies over four to eight decades, with and without noise. What is fitted is compared with the
 //! exact model at the rows and between them. `SPARSE_SEEDS` (2) times seven bodies are drawn.
 
-use crate::common::{from_environment, noise, pairs, sphere_on, triples, uniform};
+use super::fitted;
+use crate::common::{from_environment, noise, pairs, sphere_on, uniform};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSeries, CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};
+use viscocontact::rheology::{CreepSeries, CreepSpectrum, Experiment, FitReport, FitWarning};
 
 /// Rows of the tables of a body. 10 are every other one of 19, these of 37.
 const ROWS: [usize; 6] = [10, 13, 19, 25, 37, 60];
@@ -81,18 +82,11 @@ impl Fitted {
     }
 }
 
-/// What is measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    Creep,
-    Relaxation,
-    Dynamic,
-}
-
 /// All tables of a kind of every body; `look` gets name, rows a decade, and fits, from the fewest rows to the most.
-fn tables(kind: Kind, deviation: f64, mut look: impl FnMut(&str, &[(f64, Fitted)])) {
+fn tables(kind: Experiment, deviation: f64, mut look: impl FnMut(&str, &[(f64, Fitted)])) {
     for (index, body) in Body::all().enumerate() {
-        let truth = if kind == Kind::Creep { None } else { Some(body.spectrum().relaxation()) };
+        let truth = body.spectrum().relaxation();
+        let creep = |t: f64| body.creep.creep_compliance(t);
         let fits: Vec<(f64, Fitted)> = ROWS
             .iter()
             .map(|&rows| {
@@ -101,61 +95,37 @@ fn tables(kind: Kind, deviation: f64, mut look: impl FnMut(&str, &[(f64, Fitted)
                 let times = log_spaced(body.decades, rows);
                 let check = log_spaced(body.decades, (53.0 * body.decades) as usize);
                 let check: Vec<f64> = check.iter().map(|t| t.min(times[rows - 1])).collect();
-                let fitted = match &truth {
-                    None => creep(&body, &times, &check, measured),
-                    Some(truth) if kind == Kind::Relaxation => relaxation(truth, &times, &check, measured),
-                    Some(truth) => dynamic(truth, &times, &check, measured),
+                let table = fitted(kind, (&creep, &truth), &times, measured);
+                let table = table.unwrap_or_else(|error| panic!("{}: {error}", body.name));
+                let found = table.spectrum().relaxation();
+                let error = |t: f64| match kind {
+                    Experiment::Creep => vec![table.creep_compliance(t) / creep(t) - 1.0],
+                    Experiment::Relaxation => vec![found.modulus(t) / truth.modulus(t) - 1.0],
+                    _ => vec![
+                        found.storage_modulus(1.0 / t) / truth.storage_modulus(1.0 / t) - 1.0,
+                        found.loss_modulus(1.0 / t) / truth.loss_modulus(1.0 / t) - 1.0,
+                    ],
                 };
-                ((rows - 1) as f64 / body.decades, fitted)
+                let errors = check.into_iter().flat_map(error);
+                ((rows - 1) as f64 / body.decades, Fitted::new(errors, table.report()))
             })
             .collect();
         look(&body.name, &fits);
     }
 }
 
-fn creep(body: &Body, times: &[f64], check: &[f64], mut measured: impl FnMut(f64) -> f64) -> Fitted {
-    let values: Vec<f64> = times.iter().map(|&t| measured(body.creep.creep_compliance(t))).collect();
-    let table = Measurements::creep(&pairs(times, &values))
-        .and_then(|table| table.fit())
-        .unwrap_or_else(|error| panic!("{}: {error}", body.name));
-    let error = |&t: &f64| table.creep_compliance(t) / body.creep.creep_compliance(t) - 1.0;
-    Fitted::new(check.iter().map(error), table.report())
-}
-
-fn relaxation(
-    truth: &RelaxationSpectrum,
-    times: &[f64],
-    check: &[f64],
-    mut measured: impl FnMut(f64) -> f64,
-) -> Fitted {
-    let values: Vec<f64> = times.iter().map(|&t| measured(truth.modulus(t))).collect();
-    let table = Measurements::relaxation(&pairs(times, &values)).and_then(|table| table.fit()).unwrap();
-    let fitted = table.spectrum().relaxation();
-    Fitted::new(check.iter().map(|&t| fitted.modulus(t) / truth.modulus(t) - 1.0), table.report())
-}
-
-fn dynamic(truth: &RelaxationSpectrum, times: &[f64], check: &[f64], mut measured: impl FnMut(f64) -> f64) -> Fitted {
-    let omega: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
-    let storage: Vec<f64> = omega.iter().map(|&omega| measured(truth.storage_modulus(omega))).collect();
-    let loss: Vec<f64> = omega.iter().map(|&omega| measured(truth.loss_modulus(omega))).collect();
-    let table = Measurements::dynamic(&triples(&omega, &storage, &loss)).and_then(|table| table.fit()).unwrap();
-    let fitted = table.spectrum().relaxation();
-    let errors = check.iter().map(|t| 1.0 / t).flat_map(|omega| {
-        let storage = fitted.storage_modulus(omega) / truth.storage_modulus(omega) - 1.0;
-        [storage, fitted.loss_modulus(omega) / truth.loss_modulus(omega) - 1.0]
-    });
-    Fitted::new(errors, table.report())
-}
-
 /// Without noise: within half a percent from 2.5 rows a decade on; fits of fewer rows that do worse have a warning; more rows
 /// never do worse, but for a tenth of a percent; the terms stay few.
-fn clean(kind: Kind) {
+fn clean(kind: Experiment) {
     let mut classes: [Vec<(f64, usize)>; CLASSES.len()] = Default::default();
     tables(kind, 0.0, |name, fits| {
         for (a_decade, Fitted { worst, report, .. }) in fits {
             let what = format!("{kind:?} of {name}, {a_decade:.1} rows a decade: {worst:.1e}; {report}");
             assert!(*worst < 5e-3 || *a_decade < 2.5 && report.warning().is_some(), "{what}");
-            assert!(kind != Kind::Creep || *a_decade < 2.5 || report.warning().is_none(), "no reason to warn: {what}");
+            assert!(
+                kind != Experiment::Creep || *a_decade < 2.5 || report.warning().is_none(),
+                "no reason to warn: {what}"
+            );
             let class = CLASSES.iter().rposition(|least| *a_decade >= least - 1e-9).unwrap();
             classes[class].push((*worst, report.terms()));
         }
@@ -181,21 +151,21 @@ fn clean(kind: Kind) {
 
 #[test]
 fn clean_creep_is_met_between_the_rows() {
-    clean(Kind::Creep);
+    clean(Experiment::Creep);
 }
 
 #[test]
 fn clean_relaxation_is_met_between_the_rows() {
-    clean(Kind::Relaxation);
+    clean(Experiment::Relaxation);
 }
 
 #[test]
 fn clean_dynamic_moduli_are_met_between_the_rows() {
-    clean(Kind::Dynamic);
+    clean(Experiment::Dynamic);
 }
 
 /// With 2 % noise: the error in the root mean square, in percent and the mean of a class, is at most `most`.
-fn noisy(kind: Kind, most: [f64; CLASSES.len()]) {
+fn noisy(kind: Experiment, most: [f64; CLASSES.len()]) {
     let mut classes: [Vec<f64>; CLASSES.len()] = Default::default();
     let mut systematic = 0;
     tables(kind, 0.02, |_, fits| {
@@ -216,9 +186,9 @@ fn noisy(kind: Kind, most: [f64; CLASSES.len()]) {
 
 #[test]
 fn noise_is_smoothed_in_few_rows() {
-    noisy(Kind::Creep, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.0]);
-    noisy(Kind::Relaxation, [3.5, 2.3, 2.0, 1.5, 1.2, 1.2, 1.08]);
-    noisy(Kind::Dynamic, [3.5, 2.2, 1.6, 1.2, 1.1, 1.0, 0.95]);
+    noisy(Experiment::Creep, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.0]);
+    noisy(Experiment::Relaxation, [3.5, 2.3, 2.0, 1.5, 1.2, 1.2, 1.08]);
+    noisy(Experiment::Dynamic, [3.5, 2.2, 1.6, 1.2, 1.1, 1.0, 0.95]);
 }
 
 /// The tables that came out badly: six decades of logarithmic creep, of a power law with and without glassy compliance.
@@ -232,11 +202,10 @@ fn more_rows_are_no_worse() {
     ];
     for (name, creep) in bodies {
         for rows in [15, 19, 31] {
-            let times = log_spaced(6.0, rows);
-            let values: Vec<f64> = times.iter().map(|&t| creep(t)).collect();
-            let table = Measurements::creep(&pairs(&times, &values)).and_then(|table| table.fit()).unwrap();
+            let times: Vec<_> = log_spaced(6.0, rows).into_iter().map(|t| (t, creep(t))).collect();
+            let table = Measurements::creep(&times).and_then(|table| table.fit()).unwrap();
             let check = log_spaced(6.0, 400);
-            let error = |&t: &f64| table.creep_compliance(t.min(times[rows - 1])) / creep(t) - 1.0;
+            let error = |&t: &f64| table.creep_compliance(t.min(times[rows - 1].0)) / creep(t) - 1.0;
             let fitted = Fitted::new(check.iter().map(error), table.report());
             println!("{name}, {rows} rows: {:.1e}; {}", fitted.worst, fitted.report);
             assert!(fitted.worst < 1e-3, "{name}, {rows} rows: {:e}", fitted.worst);
@@ -254,10 +223,8 @@ fn contacts_warn_of_doubtful_tables() {
         contact.step(1.0, Load::force(0.1)).unwrap().warnings.contains(Warnings::UNCERTAIN_MATERIAL)
     };
     let table = |decades: f64, rows, creep: &dyn Fn(f64) -> f64| {
-        let times = log_spaced(decades, rows);
-        Measurements::creep(&times.iter().map(|&t| (t, creep(t))).collect::<Vec<_>>())
-            .and_then(|table| table.fit())
-            .unwrap()
+        let rows: Vec<_> = log_spaced(decades, rows).into_iter().map(|t| (t, creep(t))).collect();
+        Measurements::creep(&rows).and_then(|table| table.fit()).unwrap()
     };
     let slow = |t: f64| 1.0e-6 * (1.0 + t.powf(0.3));
     let good = table(6.0, 19, &slow);

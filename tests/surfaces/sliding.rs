@@ -6,7 +6,9 @@ use super::steady::Scene;
 use crate::common::steady_sliding::Time;
 use crate::common::{Draws, from_environment};
 use viscocontact::Special;
+use viscocontact::analytic::SlidingLimits;
 use viscocontact::prelude::*;
+use viscocontact::sliding::SlidingSweep;
 
 /// Waves of an indenter over its period of 1 m: numbers along x1 and x2, phase, height.
 const WAVES: [[f64; 4]; 4] =
@@ -162,7 +164,7 @@ fn a_rolling_cylinder_is_hunters() {
         assert!(report.transforms <= 600);
         [report.friction(), sliding.contact().lateral_force(&cylinder)[0] / force]
     };
-    // the closed form (tests/common/steady_sliding.rs) with 40 digits: of a long memory most cancel
+    // the closed form (`RollingCylinder`) with 40 digits: of a long memory most cancel
     for (over_half, exact, most) in [
         (0.01, 0.00112916499941, 5e-5),
         (0.05, 0.0055210009519, 2e-5),
@@ -179,6 +181,166 @@ fn a_rolling_cylinder_is_hunters() {
     }
     // along the lines nothing resists
     assert!(friction(256, half, Axis::X2).iter().all(|friction| friction.abs() < 1e-12));
+}
+
+/// The friction of a ball and of a cylinder, over three retardation times, reaches the closed forms of slow and fast motion in the order of their remainders.
+#[test]
+fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
+    let (radius, terms) = (10e-3, [(3e-6, 0.3), (2e-6, 1.0), (1e-6, 2.0)]);
+    let body = || Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &terms).unwrap());
+    // the reach of the longest time over half the contact with the relaxed body, of the shortest with the glassy one; the order, and the greatest remainder
+    for (line, fast, [far, near], orders, most) in [
+        (true, false, [0.2, 0.025], 0.98..1.02, 0.012),
+        (false, false, [0.2, 0.05], 0.98..1.08, 0.027),
+        (true, true, [16.0, 128.0], 1.98..2.08, 5e-5),
+        // but for the logarithm
+        (false, true, [64.0, 512.0], 0.98..1.08, 8e-3),
+    ] {
+        let (compliance, time, length) = if fast { (0.25e-6, 0.3, 4.0) } else { (1.75e-6, 2.0, 2.6) };
+        let (force, half) = if line {
+            (500.0, f64::sqrt(4.0 * 500.0 * radius * compliance / PI))
+        } else {
+            (1.0, f64::cbrt(0.75 * radius * compliance))
+        };
+        let (counts, shape): ([usize; 2], Box<dyn Geometry>) = if line {
+            ([2048, 1], Box::new(Cylinder::new(radius).unwrap()))
+        } else {
+            ([128; 2], Box::new(Sphere::new(radius).unwrap()))
+        };
+        let grid = Grid::new(counts, [length * half, if line { 1.0 } else { length * half }]).unwrap();
+        let kernel = if line { InfluenceKernel::line(&grid, 1.0) } else { InfluenceKernel::half_space(&grid) };
+        let mut sliding = ViscoelasticContact::builder(grid)
+            .geometry(&shape)
+            .material(body())
+            .kernel(kernel.unwrap())
+            .settings(Settings::default().with_tolerance(1e-9))
+            .build_sliding()
+            .unwrap();
+        let limits = match line {
+            true => SlidingLimits::cylinder(radius, &body(), force),
+            false => SlidingLimits::ellipsoid([radius; 2], &body(), force),
+        };
+        let limits = limits.unwrap();
+        let [greater, less] = [far, near].map(|reach| {
+            let speed = reach * half / time;
+            let exact = if fast { limits.fast(speed) } else { limits.slow(speed) };
+            (sliding.at([speed, 0.0], Load::force(force)).unwrap().friction() / exact - 1.0).abs()
+        });
+        let log = if fast && !line { f64::ln(far) / f64::ln(near) } else { 1.0 };
+        let order = (greater / less / log).ln() / f64::ln(far / near).abs();
+        println!("line {line}, fast {fast}: remainders {greater:e} {less:e}, order {order}");
+        assert!(orders.contains(&order) && less < most, "line {line}, fast {fast}: {greater:e} {less:e} {order}");
+    }
+}
+
+/// An eccentric force on a blunt body that tilts freely: at rest all that is read of the steady state are the readings of the elastic contact with the relaxed body,
+/// and in motion load and moments balance, and the mirrored motion under the mirrored force is the mirror image.
+#[test]
+fn a_steady_state_is_read_like_a_contact() {
+    let grid = Grid::square(48, 1.0).unwrap();
+    let shape = FnGeometry::new(|x1, x2| 0.4 * (x1 * x1 + x2 * x2).powi(2));
+    let builder = |body| {
+        let settings = Settings::default().with_tolerance(1e-10);
+        ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(body).settings(settings)
+    };
+    let load = Load::eccentric_force(500.0, [0.03, -0.02]);
+    let mut sliding = builder(rubber()).build_sliding().unwrap();
+    sliding.at([0.0; 2], load).unwrap();
+    let mut still = builder(Material::incompressible(Elastic::new(1e5).unwrap())).build().unwrap();
+    still.step(0.0, load).unwrap();
+    let gap = |contact: &ViscoelasticContact| {
+        let mut gap = vec![0.0; grid.len()];
+        contact.gap_into(&mut gap).unwrap();
+        gap
+    };
+    let readings = |contact: &ViscoelasticContact| -> Vec<(&'static str, Vec<f64>)> {
+        let (patches, profile) = (contact.patches().unwrap(), contact.profile(Axis::X2, 0.1).unwrap());
+        let stress = contact.stress().unwrap().at(&[[0.0, 0.0, 0.1], [0.1, 0.2, 0.3]]).unwrap();
+        let file = crate::common::Temporary::file("steady_gap.npy");
+        viscocontact::output::write_field_npy(&*file, contact, viscocontact::output::Field::Gap).unwrap();
+        let bytes = std::fs::read(&*file).unwrap();
+        let numbers = bytes[bytes.len() - 8 * grid.len()..].chunks(8);
+        vec![
+            ("pressure", contact.pressure().to_vec()),
+            ("displacement", contact.displacement().to_vec()),
+            ("gap", gap(contact)),
+            ("gap of a file", numbers.map(|own| f64::from_le_bytes(own.try_into().unwrap())).collect()),
+            ("approach", vec![contact.approach()]),
+            ("tilt", contact.tilt().to_vec()),
+            ("force", vec![contact.force()]),
+            ("area", vec![contact.contact_area(), contact.contact_cells() as f64]),
+            ("maximum", vec![contact.max_pressure(), contact.mean_pressure()]),
+            ("patches", patches.all.iter().flat_map(|patch| [patch.area, patch.force / 500.0]).collect()),
+            ("profile", [profile.pressure, profile.gap.iter().map(|gap| 1e6 * gap).collect()].concat()),
+            ("stress", stress.iter().map(|own| own.von_mises()).collect()),
+            ("stiffness", vec![contact.stiffness_over_modulus().unwrap()]),
+        ]
+    };
+    let both: Vec<_> = readings(sliding.contact()).into_iter().zip(readings(&still)).collect();
+    assert_eq!(both.len(), 13);
+    for ((what, found), (_, exact)) in both {
+        let scale = exact.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
+        let differ = found.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(found.len() == exact.len() && scale > 0.0 && differ < 1e-6 * scale, "{what}: {differ:e} of {scale:e}");
+    }
+    let [ahead, back] = [1.0, -1.0].map(|sign: f64| {
+        let report = sliding.at([0.5 * sign, 0.0], Load::eccentric_force(500.0, [0.03 * sign, -0.02])).unwrap();
+        let contact = sliding.contact();
+        let cells = contact.pressure().iter().enumerate().map(|(k, p)| (*p, grid.center(k / 48, k % 48)));
+        let moments = cells
+            .fold([0.0; 3], |[f, m1, m2], (p, [x1, x2])| [f + p, m1 + p * (x1 - 0.03 * sign), m2 + p * (x2 + 0.02)]);
+        assert!((moments[0] / (48.0 * 48.0) / 500.0 - 1.0).abs() < 1e-12);
+        assert!(moments[1..].iter().all(|moment| moment.abs() < 1e-10 * moments[0]), "{moments:?}");
+        let deepest = gap(contact).into_iter().fold(f64::INFINITY, f64::min);
+        assert!(deepest > -1e-8 && contact.pressure().iter().all(|p| *p >= 0.0), "{deepest}");
+        (report.friction(), report.approach, contact.tilt())
+    });
+    assert!(ahead.0 > 1e-3 && (ahead.0 / back.0 - 1.0).abs() < 1e-7 && (ahead.1 / back.1 - 1.0).abs() < 1e-8);
+    assert!((ahead.2[0] + back.2[0]).abs() < 1e-8 && (ahead.2[1] - back.2[1]).abs() < 1e-8, "{ahead:?} {back:?}");
+}
+
+/// A watcher sees the sets and iterations of a search, and ends it at any of them: the state found last is kept, and the search repeated is the search that was not
+/// watched.
+#[test]
+fn a_search_is_watched_and_ended() {
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::{Arc, Mutex};
+
+    let (velocity, load) = ([3.0, 1.0], Load::force(40.0));
+    let mut plain = wavy(32);
+    let exact = plain.at(velocity, load).unwrap();
+    let (seen, left) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicUsize::new(usize::MAX)));
+    let (sees, leaves) = (Arc::clone(&seen), Arc::clone(&left));
+    let mut watched = wavy(32).watched_by(move |progress| {
+        sees.lock().unwrap().push(*progress);
+        let left = leaves.load(Ordering::Relaxed);
+        leaves.store(left.saturating_sub(1), Ordering::Relaxed);
+        if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(watched.at(velocity, load).unwrap(), exact);
+    let all = std::mem::take(&mut *seen.lock().unwrap());
+    assert!(all.len() > 10 && all.iter().enumerate().all(|(k, progress)| progress.iterations == k));
+    assert!(all.windows(2).all(|two| two[0].sets <= two[1].sets));
+    assert!(all[0].residual.is_infinite() && all[all.len() - 1].residual < 1e-3, "{:?}", all[all.len() - 1]);
+    let mut fresh = wavy(32);
+    let (before, _) = (fresh.at([0.0; 2], Load::force(10.0)).unwrap(), left.store(usize::MAX, Ordering::Relaxed));
+    let again = watched.at([0.0; 2], Load::force(10.0)).unwrap();
+    assert!((again.approach - before.approach).abs() < 1e-10);
+    let pressure = watched.contact().pressure().to_vec();
+    for ends in [0, 1, 5, 12] {
+        left.store(ends, Ordering::Relaxed);
+        seen.lock().unwrap().clear();
+        let ended = watched.at(velocity, load);
+        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ends}: {ended:?}");
+        assert_eq!(seen.lock().unwrap().len(), ends + 1, "no iteration follows the last");
+        assert_eq!(watched.contact().pressure(), pressure, "the state found last is kept");
+        let ended = watched.sweep(&SlidingSweep::new([velocity], [load]));
+        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ends}: {ended:?}");
+    }
+    left.store(usize::MAX, Ordering::Relaxed);
+    let found = watched.at(velocity, load).unwrap();
+    assert!((found.friction() - exact.friction()).abs() < 1e-8 * exact.friction());
 }
 
 #[test]
@@ -235,7 +397,6 @@ fn a_sweep_is_its_states() {
     use std::ops::ControlFlow;
 
     use viscocontact::rheology::TimeTemperature;
-    use viscocontact::sliding::SlidingSweep;
 
     let law = TimeTemperature::wlf(8.61, 200.4, 298.15).unwrap();
     let (velocities, loads) = ([[1e-2, 0.0], [1.0, 1.0], [30.0, -4.0]], [Load::force(20.0), Load::force(60.0)]);
@@ -258,6 +419,10 @@ fn a_sweep_is_its_states() {
         assert!((state.report.friction() - single.friction()).abs() < 1e-8 * single.friction().abs().max(1e-3), "{k}");
         assert!((state.report.mean_gap - single.mean_gap).abs() < 1e-10);
         assert_eq!(state.report.contact_cells, single.contact_cells);
+    }
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(|| wavy(16).sweep(&sweep)).unwrap(), table, "the same bits on {threads} threads");
     }
     let ended = wavy(16).sweep_with(&sweep, |_, _| ControlFlow::Break(())).unwrap();
     assert_eq!(ended.states().len(), 1);

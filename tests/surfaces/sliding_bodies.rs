@@ -9,6 +9,7 @@ use crate::common::{Draws, from_environment};
 use viscocontact::Layer;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
+use viscocontact::sliding::{SlidingError, SlidingReport};
 
 const GLASSY: f64 = 0.25e-6;
 
@@ -396,7 +397,7 @@ impl Scene {
     fn row(&self, k: usize) -> Vec<f64> {
         let ([n, m], [d, side]) = (self.cells, self.spacing);
         let kappa = TAU * k as f64 / (m as f64 * side);
-        let datum = self.line_datum();
+        let datum = self.datum();
         let dense = self.dense(Below::Line(datum));
         let own = dense.coefficients_of(&|x| strip(x, d, kappa, datum));
         let at_datum = if k == 0 { self.at_datum(d) } else { 0.0 };
@@ -405,17 +406,12 @@ impl Scene {
         own.iter().enumerate().map(|(i, own)| own + rest(i) - at_datum).collect()
     }
 
-    fn line_datum(&self) -> f64 {
-        // on a rigid base it is free: the displacement is bounded
-        self.datum()
-    }
-
     /// The displacement j cells aside under a wave along the motion.
     fn aside(&self, j: usize, kappa: f64) -> Complex64 {
         let side = self.spacing[1];
         let x = j as f64 * side;
         let at_datum = if kappa == 0.0 { self.at_datum(side) } else { 0.0 };
-        let own = self.creep.at(kappa) * strip(x, side, kappa, self.line_datum());
+        let own = self.creep.at(kappa) * strip(x, side, kappa, self.datum());
         own + self.integral(x, kappa, side, false) - at_datum
     }
 
@@ -527,10 +523,7 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
 }
 
 /// A builder of a ball or a wavy indenter on a grid of 1 m.
-fn pressed(
-    kernel: impl Fn(&Grid) -> viscocontact::Result<InfluenceKernel>,
-    grid: &Grid,
-) -> viscocontact::contact::Builder {
+fn pressed(kernel: impl Fn(&Grid) -> viscocontact::Result<InfluenceKernel>, grid: &Grid) -> Builder {
     let kernel = kernel(grid).unwrap();
     let periodic = kernel.periodic_axes();
     let shape = FnGeometry::new(move |x1: f64, x2: f64| {
@@ -551,7 +544,7 @@ fn body(factor: f64, nu: f64) -> Material {
 type Kernels = dyn Fn(&Grid, Option<Layer>) -> viscocontact::Result<InfluenceKernel>;
 
 /// Friction and approach over two bases are the same to 1e-8.
-fn same(what: &str, found: &viscocontact::sliding::SlidingReport, exact: &viscocontact::sliding::SlidingReport) {
+fn same(what: &str, found: &SlidingReport, exact: &SlidingReport) {
     let errors = [found.friction() / exact.friction() - 1.0, found.approach / exact.approach - 1.0];
     println!("{what}: {errors:?}");
     assert!(errors.iter().all(|error| error.abs() < 1e-8), "{what}: {errors:?}");
@@ -669,16 +662,7 @@ fn a_half_space_may_flow() {
     };
     let mut table = dense.coefficients();
     for (j, row) in table.iter_mut().enumerate() {
-        let love = |x: f64| {
-            let (a, y) = (0.5 * d, j as f64 * d);
-            if x.hypot(y) > 100.0 * d {
-                return d * d / (PI * x.hypot(y))
-                    * (1.0 + d * d * (3.0 / (x * x + y * y) * (x * x + y * y) - 2.0) / (24.0 * (x * x + y * y)));
-            }
-            let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
-            let corner = |x: f64, y: f64| term(x, y) + term(y, x);
-            (corner(x + a, y + a) - corner(x - a, y + a) - corner(x + a, y - a) + corner(x - a, y - a)) / PI
-        };
+        let love = |x: f64| dense.influence(x, j);
         // over a way of S, less what a point has done from the length of the grid on
         let (mut tail, mut from) = (0.0, n as f64 * d);
         while from < 1e7 {
@@ -719,5 +703,5 @@ fn a_modulus_over_frequency_is_its_series() {
     let mut active = builder().build_sliding_by(|omega| Complex64::new(1e6 - 1e5 * omega, 1e5)).unwrap();
     assert!(active.at([1e-3, 0.0], Load::force(20.0)).is_ok());
     let refused = active.at([1.0, 0.0], Load::force(20.0)).unwrap_err();
-    assert!(matches!(refused, Error::Sliding(viscocontact::sliding::SlidingError::NotPassive { .. })), "{refused}");
+    assert!(matches!(refused, Error::Sliding(SlidingError::NotPassive { .. })), "{refused}");
 }

@@ -4,8 +4,9 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time, hunter};
+use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time};
 use crate::common::{Draws, from_environment};
+use viscocontact::analytic::RollingCylinder;
 use viscocontact::contact::{Builder, Edge, Unsteady};
 use viscocontact::prelude::*;
 
@@ -357,7 +358,7 @@ fn a_body_without_elastic_response_arrives() {
 fn the_reference_is_hunters() {
     let (radius, c0, c1, force) = (1.0, 0.25e-6, 2.25e-6, 5.0e3);
     for reach in [0.01, 0.1, 1.0, 10.0] {
-        let exact = hunter(radius, force, [c0, c1], reach);
+        let exact = RollingCylinder::new(radius, [c0, c1], force, reach).unwrap().friction;
         let half = (4.0 * radius * (c0 + c1) * force / PI).sqrt();
         let side = 3.0 * half / 128.0;
         let x = |k: usize| (k as f64 + 0.5 - 64.0) * side;

@@ -124,3 +124,44 @@ fn check_honesty(features: Features, count: (&'static str, u64)) {
         assert!(high <= 2.0 && most < 3.0, "at {tolerance:e}: {high} {most}");
     }
 }
+
+/// What surfaces attract each other: at 1e-2 every error of approach or force is at most twice what was asked; at 1e-3 95 % are, and all are below six
+/// times. Loads of all kinds, springs, and loads that go back and return, at times within steps, too.
+#[test]
+fn errors_of_surfaces_that_attract_are_honest() {
+    let [scenes, seed, first, most_steps] =
+        [("HONEST_ATTRACTED", 2), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", 2000)]
+            .map(|(name, default)| from_environment(name, default));
+    let mut ratios: [Ratios; 2] = Default::default();
+    let (mut unknown, mut unjudged) = (0, 0);
+    for features in [Features::ANY, Features::SPRING, Features::RETURNING, Features::RETURNING_BY_SPRING] {
+        for number in first..first + scenes {
+            let scene = Scene::draw(seed, number, features.attracted());
+            let Ok(truth) = Truth::of(&scene, 1e-4, most_steps) else {
+                println!("without truth: {}", scene.name);
+                unknown += 1;
+                continue;
+            };
+            for (tolerance, ratios) in [1e-2, 1e-3].into_iter().zip(&mut ratios) {
+                let mut contact = scene.contact(Settings::default().tolerance());
+                let stepping = Stepping::adaptive(tolerance);
+                let run = watch(&scene, &mut contact, scene.load(), stepping, &scene.stops, MOST_PROBLEMS)
+                    .unwrap_or_else(|stopped| panic!("{} at {tolerance:e}: {stopped}", scene.name));
+                let error = truth.errors(&run)[0];
+                if truth.uncertainty[0] <= 0.1 * tolerance.max(error) {
+                    ratios.push(error / tolerance, &format!("in {} problems: {}", run.problems(), scene.name));
+                } else {
+                    unjudged += 1;
+                }
+            }
+        }
+    }
+    println!("seed {seed}: {unknown} scenes without truth, {unjudged} runs of doubtful truth");
+    for (tolerance, (ratios, most)) in [1e-2, 1e-3].into_iter().zip(ratios.iter().zip([2.0, 6.0])) {
+        ratios.print(&format!("over {tolerance:.0e}"), 4);
+        assert!(
+            ratios.count() as u64 > scenes && ratios.quantile(0.95) <= 2.0 && ratios.quantile(1.0) <= most,
+            "at {tolerance:e}"
+        );
+    }
+}

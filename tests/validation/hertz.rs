@@ -1,13 +1,12 @@
 //! Elastic contacts against their closed forms, and how fast the mesh converges to them.
 
-use crate::common::{E_STAR, elastic};
+use crate::common::{E_STAR, contact_of, elastic};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{Hertz, HertzEllipse, RigidPunch};
 use viscocontact::prelude::*;
 
 fn press(grid: Grid, shape: &dyn Geometry, force: f64, settings: Settings) -> ViscoelasticContact {
-    let mut contact =
-        ViscoelasticContact::builder(grid).geometry(shape).material(elastic()).settings(settings).build().unwrap();
+    let mut contact = contact_of(shape, grid, elastic(), settings);
     contact.step(0.0, Load::force(force)).unwrap();
     contact
 }

@@ -81,6 +81,10 @@ fn elastic(nu: f64) -> Material {
     Material::constant_poisson(Elastic::new(1.0e6).unwrap(), nu).unwrap()
 }
 
+fn creeping(nu: f64) -> Material {
+    Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap(), nu).unwrap()
+}
+
 /// A body pressed on a layer, E* = 1/C.
 fn press(layer: Layer, shape: &dyn Geometry, cells: usize, length: f64, load: Load) -> ViscoelasticContact {
     let grid = Grid::square(cells, length).unwrap();
@@ -186,18 +190,13 @@ fn thin_layers_are_springs_or_squeezed() {
 #[test]
 fn a_ball_sinks_into_a_creeping_layer() {
     let (radius, a, nu) = (10.0e-3, 0.2e-3, 0.3);
-    let rheology = || Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap();
-    let material = Material::constant_poisson(rheology(), nu).unwrap();
+    let material = creeping(nu);
     for ratio in [1.0, 20.0] {
         let layer = Layer::bonded_to_rigid(a / ratio, nu).unwrap();
         let grid = Grid::square(128, 2.8 * a).unwrap();
         let kernel = Arc::new(InfluenceKernel::layer(&grid, layer).unwrap());
-        let contact = |material: Material| {
-            builder_of(&Sphere::new(radius).unwrap(), grid.clone(), material)
-                .kernel(Arc::clone(&kernel))
-                .build()
-                .unwrap()
-        };
+        let builder = builder_of(&Sphere::new(radius).unwrap(), grid, material.clone()).kernel(kernel);
+        let contact = |material: Material| builder.clone().material(material).build().unwrap();
         let force = {
             let modulus = 1.0 / material.contact_compliance(0.0);
             Equation::new(bonded(nu), 1.0 / ratio).paraboloid()[1] * modulus * a * a * a / radius
@@ -233,12 +232,8 @@ fn layers_take_at_most_half_as_many_convolutions_again_as_a_half_space() {
             (x1 * x1 + x2 * x2) / (2.0 * radius) + 2e-8 * ((x1 / a * 9.0).cos() * (x2 / a * 11.0).cos() + 1.0)
         });
         let shape: &dyn Geometry = if wavy { &ripples } else { &ball };
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(shape)
-            .material(Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap(), nu).unwrap())
-            .kernel(Arc::new(kernel(&grid, h).unwrap()))
-            .build()
-            .unwrap();
+        let kernel = kernel(&grid, h).unwrap();
+        let mut contact = builder_of(shape, grid, creeping(nu)).kernel(kernel).build().unwrap();
         // to the same contact, wherever the layer ends
         let loads = (0..12).map(|k| Load::approach(a * a / radius * (0.25 + 0.01 * f64::from(k))));
         loads.map(|load| contact.step(0.05, load).unwrap().convolution_equivalents()).sum::<f64>()
@@ -336,13 +331,8 @@ fn a_cylinder_on_a_thin_layer_rests_on_springs() {
 fn cylinders_and_chains_of_balls_on_periodic_layers() {
     let layer = Layer::bonded_to_rigid(0.4e-3, 0.3).unwrap();
     let press = |kernel: InfluenceKernel, shape: &dyn Geometry| {
-        let mut contact = ViscoelasticContact::builder(kernel.grid().clone())
-            .geometry(shape)
-            .material(Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 2.0).unwrap(), 0.3).unwrap())
-            .kernel(Arc::new(kernel))
-            .settings(Settings::default().with_tolerance(1e-10))
-            .build()
-            .unwrap();
+        let builder = builder_of(shape, kernel.grid().clone(), creeping(0.3)).kernel(kernel);
+        let mut contact = builder.settings(Settings::default().with_tolerance(1e-10)).build().unwrap();
         contact.step(0.0, Load::approach(5.0e-6)).unwrap();
         contact.step(1.0, Load::approach(6.0e-6)).unwrap();
         contact

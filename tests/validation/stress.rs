@@ -1,7 +1,7 @@
 //! The stress below the surface, of whole contacts: against Hertz, against the published places where bodies yield, and against
 //! the closed forms of a body whose Poisson's ratio changes.
 
-use crate::common::{builder_of, contact_of};
+use crate::common::{G, builder_of, contact_of, maxwell};
 use std::sync::Arc;
 
 use super::rolling::{FINE, roll, scene};
@@ -14,17 +14,16 @@ use viscocontact::prelude::*;
 use viscocontact::rheology::MaterialError;
 
 const RADIUS: f64 = 10.0e-3;
-const G: f64 = 1.0e6;
+
+fn elastic(nu: f64) -> Material {
+    Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap()
+}
 
 /// A ball on an elastic body, on a grid 2.6 contact radii wide.
 fn ball(cells: usize, nu: f64) -> (ViscoelasticContact, Hertz) {
     let hertz = Hertz::new(RADIUS, 2.0 * G / (1.0 - nu), 0.5).unwrap();
     let grid = Grid::square(cells, 2.6 * hertz.contact_radius).unwrap();
-    let mut contact = ViscoelasticContact::builder(grid)
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap())
-        .build()
-        .unwrap();
+    let mut contact = contact_of(&Sphere::new(RADIUS).unwrap(), grid, elastic(nu), Settings::default());
     contact.step(0.0, Load::force(0.5)).unwrap();
     (contact, hertz)
 }
@@ -101,12 +100,8 @@ fn a_cylinder_yields_where_hertz_says() {
         let cells = if axis == 0 { [256, 1] } else { [1, 256] };
         let grid = Grid::new(cells, along(2.6 * a, 1.0)).unwrap();
         let kernel = InfluenceKernel::periodic_along(&grid, Axis::BOTH[1 - axis], 1.0).unwrap();
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&FnGeometry::new(move |x1, x2| [x1, x2][axis].powi(2) / (2.0 * RADIUS)))
-            .material(Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap())
-            .kernel(Arc::new(kernel))
-            .build()
-            .unwrap();
+        let shape = FnGeometry::new(move |x1, x2| [x1, x2][axis].powi(2) / (2.0 * RADIUS));
+        let mut contact = builder_of(&shape, grid, elastic(nu)).kernel(kernel).build().unwrap();
         contact.step(0.0, Load::force(per_length)).unwrap();
         let stress = contact.stress().unwrap();
         let found = stress.greatest(&depths(12, 1.5 * a), Stress::tresca).unwrap();
@@ -179,11 +174,9 @@ fn stress_does_not_depend_on_the_window() {
 /// A section is the planes it cuts, and a volume is its planes.
 #[test]
 fn sections_and_volumes_are_cut_from_planes() {
-    let mut contact = ViscoelasticContact::builder(Grid::new([24, 20], [3.0e-3, 2.0e-3]).unwrap())
-        .geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.2e-3, -0.1e-3]).unwrap())
-        .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
-        .build()
-        .unwrap();
+    let aside = Shifted::new(Sphere::new(RADIUS).unwrap(), [0.2e-3, -0.1e-3]).unwrap();
+    let grid = Grid::new([24, 20], [3.0e-3, 2.0e-3]).unwrap();
+    let mut contact = contact_of(&aside, grid, maxwell(), Settings::default());
     for dt in [0.0, 0.5] {
         contact.step(dt, Load::force(0.05)).unwrap();
     }
@@ -243,19 +236,11 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
 /// The second body has its own Poisson's ratio.
 #[test]
 fn the_counter_body_has_its_own_poisson_ratio() {
-    let mut contact = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap())
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
-        .build()
-        .unwrap();
+    let builder = builder_of(&Sphere::new(RADIUS).unwrap(), Grid::square(24, 2.0e-3).unwrap(), maxwell());
+    let contact = builder.clone().build().unwrap();
     assert_eq!(contact.stress_in_counter_body().unwrap_err(), Error::Missing { part: "counter_body" });
     let other = Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
-    contact = ViscoelasticContact::builder(contact.grid().clone())
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
-        .counter_body(other)
-        .build()
-        .unwrap();
+    let mut contact = builder.counter_body(other).build().unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
     let expected =
         |nu| SubsurfaceStress::new(contact.kernel(), contact.pressure(), nu).unwrap().on_plane(0.2e-3).unwrap();

@@ -13,7 +13,7 @@ pub enum DataError {
 
     /// Times in a file do not ascend.
     #[error(
-        "line {line}: the time {value:e} s follows {previous:e} s: times must ascend; where the time of each segment begins anew, add the end of the segment before; drop repeated rows"
+        "line {line}: the time {value:?} s follows {previous:?} s: times must ascend; where the time of each segment begins anew, add the end of the segment before; drop repeated rows"
     )]
     TimesNotAscending {
         /// The line, from 1.
@@ -35,7 +35,7 @@ pub enum DataError {
 
     /// The force falls where the tip goes deeper.
     #[error(
-        "the force falls by {fall:e} N from the shallow to the deep end of the curve: forces that press are positive; use Recording::flip_force"
+        "the force falls by {fall:.2e} N from the shallow to the deep end of the curve: forces that press are positive; use Recording::flip_force"
     )]
     ForceFlipped {
         /// The fall \[N\].
@@ -44,7 +44,7 @@ pub enum DataError {
 
     /// The force changes where the drive is low and stays where it is high.
     #[error(
-        "the force changes by {shallow:e} N in the lower half of the drive, and by {deep:e} N in the upper half: the drive grows toward the sample; use Recording::flip_drive"
+        "the force changes by {shallow:.2e} N in the lower half of the drive, and by {deep:.2e} N in the upper half: the drive grows toward the sample; use Recording::flip_drive"
     )]
     DriveFlipped {
         /// Range of the force in the lower half of the drive \[N\].
@@ -55,7 +55,7 @@ pub enum DataError {
 
     /// The spring would give way by more than the drive moves.
     #[error(
-        "the force deflects the spring by {deflection:e} m while the drive moves by {travel:e} m: check the stiffness of the spring, and the units of force and drive"
+        "the force deflects the spring by {deflection:.2e} m while the drive moves by {travel:.2e} m: check the stiffness of the spring, and the units of force and drive"
     )]
     SpringTooSoft {
         /// Deflection of the spring from first touch to the greatest force \[m\].
@@ -66,7 +66,7 @@ pub enum DataError {
 
     /// The depth is larger than the contact.
     #[error(
-        "the depth reaches {depth:e} m, more than the contact radius of {radius:e} m there: check the unit of the drive and the size of the tip (a thousandth would be plausible)"
+        "the depth reaches {depth:.2e} m, more than the contact radius of {radius:.2e} m there: check the unit of the drive and the size of the tip (a thousandth would be plausible)"
     )]
     DepthTooLarge {
         /// The depth \[m\].
@@ -77,7 +77,7 @@ pub enum DataError {
 
     /// Force and depth give a modulus that no material has.
     #[error(
-        "force and depth give a contact modulus of about {modulus:e} Pa: no material is outside 1 Pa to 10 TPa; check the units of force and drive, and the size of the tip"
+        "force and depth give a contact modulus of about {modulus:.2e} Pa: no material is outside 1 Pa to 10 TPa; check the units of force and drive, and the size of the tip"
     )]
     Modulus {
         /// Force over the elastic level of the tip \[Pa\].

@@ -14,18 +14,17 @@ const NO_EFFECT: f64 = 10.0;
 /// Relative information on a combination of parameters that is rounding.
 const SINGULAR: f64 = 1e-13;
 
-/// The standard deviation that gives, with the weighted columns, the deviations of an estimate with the weights w = 1 − u² of residuals r
-/// (P. J. Huber, *Robust Statistics*, 1981): √(Σψ²/freedom · mean w²)/mean ψ′, with ψ = w² r.
-pub(super) fn robust_deviation(problem: &Problem<'_>, weighted: &[f64], freedom: f64) -> f64 {
+/// The standard deviation that gives, with columns without weights, the deviations of an estimate with the weights w = 1 − u² of residuals r
+/// (P. J. Huber, *Robust Statistics*, 1981): √(Σψ²/freedom)/mean ψ′, with ψ = w² r.
+pub(super) fn robust_deviation(problem: &Problem, weighted: &[f64], freedom: f64) -> f64 {
     let weights = problem.parts.iter().flat_map(|part| &part.outliers);
-    let (mut square, mut slope, mut mean, mut count) = (0.0, 0.0, 0.0, 0.0);
+    let (mut square, mut slope, mut count) = (0.0, 0.0, 0.0);
     for (&weight, &residual) in weights.zip(weighted) {
         square += (weight * residual).powi(2);
         slope += weight * (5.0 * weight - 4.0);
-        mean += weight * weight;
         count += 1.0;
     }
-    (square / freedom * mean * count).sqrt() / slope
+    (square / freedom).sqrt() * count / slope
 }
 
 /// (JᵀJ)⁻¹ without the coordinates at a limit, and which ones are.
@@ -52,8 +51,8 @@ pub(super) fn limit(name: &str, value: f64) -> &'static str {
     match name {
         "E0" => "E0 = Einf: no relaxation",
         "Einf" => "Einf = 0: no equilibrium",
-        "alpha" if value < 0.5 => "alpha = 0: no relaxation",
-        "alpha" => "alpha = 1: one relaxation time",
+        "alpha" | "beta" if value < 0.5 => "an exponent of 0: no relaxation",
+        "alpha" | "beta" => "an exponent of 1: one relaxation time",
         "stiffness" => "a rigid spring",
         name if name.starts_with("tau") => "a time without effect, or beyond the data",
         _ => "0",

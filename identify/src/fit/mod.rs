@@ -68,12 +68,14 @@ pub struct Fit {
     sum: f64,
     log_weight: f64,
     iterations: usize,
+    work: usize,
+    window: [f64; 2],
     /// The least sum of squares of a model that this one contains.
     contained: Option<(Model, f64)>,
 }
 
 impl Fit {
-    pub(crate) fn new(identification: &Identification, problem: Problem<'_>, found: Found) -> Result<Fit> {
+    pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
         let Found { minimum, contained } = found;
         let values = problem.values(&minimum.coordinates);
         let prony = problem.prony(&values)?;
@@ -91,9 +93,10 @@ impl Fit {
         };
         let free: Vec<Parameter> = problem.free().cloned().collect();
         let scales = problem.scales(&values);
-        let (inverse, limits) = inverse(&free, &minimum.jacobian, sigma)?;
+        let (weighted, _) = inverse(&free, &minimum.jacobian, sigma)?;
         let lengths: Vec<usize> = problem.parts.iter().map(|part| part.len()).collect();
-        let sandwich = &scales * sandwich(&minimum, &inverse, &lengths) * scales.transpose();
+        let sandwich = &scales * sandwich(&minimum, &weighted, &lengths) * scales.transpose();
+        let (inverse, limits) = inverse(&free, &problem.without_outliers().jacobian(&minimum.coordinates)?, sigma)?;
         let covariance = &scales * &inverse * scales.transpose();
         let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
         let mut at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
@@ -133,7 +136,7 @@ impl Fit {
         });
         let noise = noise.collect();
         let curve =
-            |part: &crate::problem::Part<'_>| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
+            |part: &crate::problem::Part| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
         Ok(Fit {
             identification: identification.clone(),
             curves: problem.parts.iter().map(curve).collect(),
@@ -150,6 +153,8 @@ impl Fit {
             sum,
             log_weight: problem.parts.iter().map(|part| part.log_weight()).sum(),
             iterations: minimum.iterations,
+            work: problem.work.get(),
+            window: problem.window,
             contained,
         })
     }
@@ -274,6 +279,11 @@ impl Fit {
         self.iterations
     }
 
+    /// Work of the search: exponentials that were advanced by a sample, each derivative counted.
+    pub fn work(&self) -> usize {
+        self.work
+    }
+
     /// Samples with the tip in contact.
     pub fn points_in_contact(&self) -> usize {
         self.samples.iter().flatten().filter(|sample| sample.contact_depth > 0.0).count()
@@ -304,7 +314,7 @@ impl Fit {
     }
 
     /// The problem that was solved.
-    pub(crate) fn problem(&self) -> Result<Problem<'_>> {
+    pub(crate) fn problem(&self) -> Result<Problem> {
         self.identification.refit_problem(&self.curves, &self.noise)
     }
 
@@ -313,15 +323,14 @@ impl Fit {
         &self.values
     }
 
-    pub(crate) fn prony(&self) -> &Prony {
-        &self.prony
+    /// The exponentials, with moduli of zero or more.
+    pub(crate) fn prony(&self) -> Prony {
+        self.prony.positive()
     }
 
     /// Shortest interval and longest curve \[s\].
     pub(crate) fn window(&self) -> [f64; 2] {
-        let times = || self.curves.iter().map(|curve| curve.experiment.protocol.times());
-        let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
-        [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)]
+        self.window
     }
 
     /// The value of the contact point of a curve \[m\].

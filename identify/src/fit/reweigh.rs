@@ -22,17 +22,17 @@ const MEDIAN: f64 = 0.6745;
 
 impl Identification {
     /// Whether something of the noise is found from the residuals of a fit, and changes the fit.
-    pub(super) fn finds_noise(&self, problem: &Problem<'_>) -> bool {
+    pub(super) fn finds_noise(&self, problem: &Problem) -> bool {
         self.fits_correlation() || self.is_robust() || self.finds_deviations(problem)
     }
 
     /// Whether each curve has a standard deviation of its own.
-    fn finds_deviations(&self, problem: &Problem<'_>) -> bool {
+    fn finds_deviations(&self, problem: &Problem) -> bool {
         self.sigma().is_none() && problem.parts.len() > 1
     }
 
     /// Sets correlation and weights of each curve by the residuals at a minimum; whether they were as good as found.
-    pub(super) fn reweigh(&self, problem: &mut Problem<'_>, minimum: &Minimum) -> Result<bool> {
+    pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Minimum) -> Result<bool> {
         let mut bare = problem.clone();
         for part in &mut bare.parts {
             part.weights.fill(1.0);
@@ -81,23 +81,21 @@ impl Identification {
             }
             part.outliers = weights;
         }
-        // relative to their geometric mean
+        Ok(is_found & self.balance(problem, &deviations))
+    }
+
+    /// Weighs curves by the deviations of their noise, relative to their geometric mean; whether the weights were as good as those.
+    pub(super) fn balance(&self, problem: &mut Problem, deviations: &[f64]) -> bool {
         let mean = deviations.iter().map(|s| s.ln()).sum::<f64>() / deviations.len() as f64;
-        for (part, deviation) in problem.parts.iter_mut().zip(&deviations) {
-            let scale = if self.finds_deviations_of(deviations.len()) && mean.is_finite() {
-                mean.exp() / deviation
-            } else {
-                1.0
-            };
+        let is_unequal = self.finds_deviations(problem) && mean.is_finite();
+        let mut is_found = true;
+        for (part, deviation) in problem.parts.iter_mut().zip(deviations) {
+            let scale = if is_unequal { mean.exp() / deviation } else { 1.0 };
             is_found &= (scale / part.scale).ln().abs() < FOUND;
             part.scale = scale;
             part.weights = part.outliers.iter().map(|weight| scale * weight).collect();
         }
-        Ok(is_found)
-    }
-
-    fn finds_deviations_of(&self, curves: usize) -> bool {
-        self.sigma().is_none() && curves > 1
+        is_found
     }
 }
 

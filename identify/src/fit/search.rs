@@ -7,7 +7,7 @@ use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
 use crate::model::Model;
 use crate::problem::Problem;
-use crate::start::starts;
+use crate::start::{check_contact, scatter, starts};
 
 /// Rounds of fits, each with the noise of the one before.
 const MAX_ROUNDS: usize = 12;
@@ -31,6 +31,9 @@ impl Identification {
         let pairs = curves.iter().map(|curve| (&curve.experiment, Some(&curve.force)));
         let mut problem = self.problem(pairs)?;
         let free = problem.free().count();
+        check_contact(&problem)?;
+        let scatters: Vec<f64> = problem.parts.iter().map(|part| scatter(&part.data)).collect();
+        self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
         if self.finds_noise(&problem) {
             for _ in 0..MAX_ROUNDS {
@@ -51,40 +54,53 @@ impl Identification {
         Ok(fit)
     }
 
-    /// The least of the minima from several starts, of which one is the minimum of each model that this one contains.
-    fn global_minimum(&self, problem: &Problem<'_>) -> Result<Found> {
-        let mut found: Vec<(f64, Minimum)> = Vec::new();
-        let mut failure = Error::NoContact { curve: 0 };
-        let mut search = |coordinates: Vec<f64>| match self.minimum(problem, coordinates) {
-            Ok(minimum) => {
-                found.push((square(&minimum.residuals), minimum));
-                found.sort_by(|a, b| a.0.total_cmp(&b.0));
-                // two searches that end at one minimum are believed
-                found[0].0 <= problem.rounding() || found.len() > 1 && found[1].0 <= (1.0 + AGREED) * found[0].0
-            }
-            Err(error) => {
-                failure = error;
-                false
-            }
-        };
-        let mut contained = None;
+    /// The least of the minima from several starts, of which one is the minimum of each model that this one contains. Most of the search is on
+    /// few samples.
+    fn global_minimum(&self, problem: &Problem) -> Result<Found> {
+        let (mut contained, mut inside) = (None, Vec::new());
         for inner in problem.model.contained() {
-            let simpler = problem.with_model(inner);
-            if let Some(Found { minimum, .. }) = simpler.and_then(|simpler| self.global_minimum(&simpler).ok()) {
+            let Some(simpler) = problem.with_model(inner) else { continue };
+            if let Ok(Found { minimum, .. }) = self.global_minimum(&simpler) {
                 contained = Some((inner, square(&minimum.residuals)));
-                let values = problem.with_model(inner).map(|simpler| simpler.values(&minimum.coordinates));
-                search(problem.coordinates(&problem.of_contained(inner, &values.unwrap_or_default())));
+                let values = simpler.values(&minimum.coordinates);
+                inside.push(problem.coordinates(&problem.of_contained(inner, &values)));
             }
         }
-        for coordinates in starts(problem)? {
-            if search(coordinates) {
+        let rough = problem.thinned();
+        let some = rough.as_ref().unwrap_or(problem);
+        let mut best = self.least(some, inside.iter().cloned().chain(starts(some)?), AGREED.max(some.enough));
+        if rough.is_some() {
+            let start = best.map(|minimum| minimum.coordinates);
+            best = self.least(problem, start.into_iter(), AGREED);
+            let is_above = |minimum: &Minimum| contained.is_some_and(|(_, sum)| square(&minimum.residuals) > sum);
+            if best.as_ref().map_or(true, is_above) {
+                let again = self.least(problem, inside.into_iter(), AGREED);
+                let sum = |found: &Result<Minimum>| found.as_ref().map_or(f64::INFINITY, |m| square(&m.residuals));
+                best = if sum(&again) < sum(&best) { again } else { best };
+            }
+        }
+        Ok(Found { minimum: best?, contained })
+    }
+
+    /// The least of the minima from several starts; two that agree end the search.
+    fn least(&self, problem: &Problem, starts: impl Iterator<Item = Vec<f64>>, agreed: f64) -> Result<Minimum> {
+        let mut found: Vec<(f64, Minimum)> = Vec::new();
+        let (mut failure, mut iterations) = (Error::NoContact { curve: 0 }, 0);
+        for start in starts {
+            match self.minimum(problem, start) {
+                Ok(minimum) => {
+                    iterations += minimum.iterations;
+                    found.push((square(&minimum.residuals), minimum));
+                }
+                Err(error) => failure = error,
+            }
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let is_exact = found.first().is_some_and(|(sum, _)| *sum <= problem.rounding());
+            if is_exact || found.len() > 1 && found[1].0 <= (1.0 + agreed) * found[0].0 {
                 break;
             }
         }
-        let iterations = found.iter().map(|(_, minimum)| minimum.iterations).sum();
-        match found.into_iter().next() {
-            Some((_, minimum)) => Ok(Found { minimum: Minimum { iterations, ..minimum }, contained }),
-            None => Err(failure),
-        }
+        let best = found.into_iter().next().map(|(_, minimum)| Minimum { iterations, ..minimum });
+        best.ok_or(failure)
     }
 }

@@ -55,7 +55,7 @@ impl Builder {
                 Region::whole(&self.grid, folded)
             };
             parts.footprint(bodies).check(&region, 0)?;
-            return Ok(self.assemble(parts, indenter, region));
+            return Ok(self.assemble(parts, Arc::new(indenter), region));
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
@@ -64,12 +64,12 @@ impl Builder {
             rows.agree(parts.footprint(1).check(&region, 0))?;
             let indenter = gap.on(&region, &self.grid, even);
             drop(gaps);
-            Ok(self.assemble(parts, indenter, region))
+            Ok(self.assemble(parts, Arc::new(indenter), region))
         })
     }
 
     /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
-    fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
+    fn assemble(self, parts: Parts, indenter: Arc<Indenter>, region: Region) -> ViscoelasticContact {
         let Builder { grid, waves, temperature, attraction, steady, .. } = self;
         let Parts { settings, material, kernel, history, .. } = parts;
         let missed = Missed::of(&waves, &grid, kernel.periodic_axes());
@@ -88,7 +88,7 @@ impl Builder {
             attraction,
         };
         let attracts = scene.attraction.is_some();
-        let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history, attracts));
+        let computation = Computation::new(&scene, State::at_rest(indenter, region, &history, attracts));
         ViscoelasticContact::new(scene, computation, missed)
     }
 
@@ -241,23 +241,9 @@ impl ViscoelasticContact {
         let region = Region::whole(&scene.grid, folded);
         let parts = Parts { settings, material, kernel: Arc::clone(&scene.kernel), history, attracts: false };
         parts.footprint(1).check(&region, 0)?;
-        let Parts { settings, material, kernel, history, .. } = parts;
-        let unit = Scene {
-            grid: scene.grid.clone(),
-            limits: Limits::of(&material),
-            #[cfg(feature = "checkpoint")]
-            built: Built::default(),
-            temperature: None,
-            attraction: None,
-            softening: 0.0,
-            steady: false,
-            bodies: 1,
-            kernel,
-            material,
-            settings,
-        };
-        let computation = Computation::new(&unit, State::at_rest(Arc::clone(indenter), region, &history, false));
-        Ok(ViscoelasticContact::new(unit, computation, self.missed))
+        let mut unit = ViscoelasticContact::builder(scene.grid.clone()).assemble(parts, Arc::clone(indenter), region);
+        unit.missed = self.missed;
+        Ok(unit)
     }
 }
 

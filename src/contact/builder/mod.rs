@@ -236,16 +236,8 @@ pub(in crate::contact) struct Times {
 impl Times {
     /// The times of a run along `history` to the time `until`.
     pub(in crate::contact) fn of_run(history: &dyn LoadHistory, until: f64) -> Times {
-        let (mut shortest, mut corner) = (until, 0.0);
-        for _ in 0..MAX_CORNERS {
-            match history.next_breakpoint(corner) {
-                Some(next) if next > corner && next < until => {
-                    shortest = shortest.min(next - corner);
-                    corner = next;
-                }
-                _ => break,
-            }
-        }
+        let corners = history.breakpoints(0.0).take(MAX_CORNERS).take_while(|&next| next < until);
+        let (shortest, _) = corners.fold((until, 0.0), |(least, corner), next| (f64::min(least, next - corner), next));
         Times { range: SHORTEST_PART * shortest..=until, of_run: true }
     }
 

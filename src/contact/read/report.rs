@@ -64,6 +64,8 @@ pub struct Figures {
     pub periods: Option<f64>,
     /// Cells in the zone in which an attraction acts, if fewer than four ([`Warnings::COARSE_ZONE`]).
     pub cells_in_zone: Option<f64>,
+    /// The force that the attraction beyond the edge of the grid would add, over the force on it, if the part matters ([`Warnings::BEYOND_EDGE`]).
+    pub beyond_edge: Option<f64>,
     /// The contact modulus at once \[Pa\], if no solid has it ([`Warnings::MODULUS`]).
     pub modulus: Option<f64>,
     /// The approach at which the upright bodies touch \[m\], at the end of a run that never brought them into contact
@@ -145,13 +147,15 @@ impl StepReport {
 
     /// What the number of a warning is, and the number.
     fn figure(&self, warning: Warnings) -> Option<(&'static str, f64)> {
-        let Figures { max_slope, compression, cells_in_wave, periods, cells_in_zone, modulus, touch } = self.figures;
+        let Figures { max_slope, compression, cells_in_wave, periods, cells_in_zone, beyond_edge, modulus, touch } =
+            self.figures;
         let (name, figure) = match warning {
             Warnings::STEEP => ("greatest slope", max_slope),
             Warnings::DEEP => ("depth over thickness", compression),
             Warnings::SHORT_WAVES => ("cells in a wave:", cells_in_wave),
             Warnings::OTHER_PERIOD => ("periods:", periods),
             Warnings::COARSE_ZONE => ("cells in the zone:", cells_in_zone),
+            Warnings::BEYOND_EDGE => ("part of the force:", beyond_edge),
             Warnings::MODULUS => ("E* in Pa:", modulus),
             Warnings::LONG_STEP => ("relative error", self.time_error),
             Warnings::FEW_CELLS => ("cells in contact:", Some(self.contact_cells as f64)),

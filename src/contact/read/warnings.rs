@@ -93,6 +93,10 @@ bitflags! {
         /// The run has ended, and its approach or spring has never brought the bodies into contact: they touch at the approach that
         /// equals the least gap, and a greater approach presses. Carried by the last step of a run.
         const NO_CONTACT = 1 << 18;
+        /// The attraction beyond the edge of the grid, which is not computed, would add more than 1e-3 of the force
+        /// ([`Figures::beyond_edge`](crate::contact::Figures::beyond_edge)), or than [`Settings::tolerance`](crate::contact::Settings::tolerance): enlarge the grid.
+        /// From 5 % on a step fails with [`AdhesionError::BeyondEdge`](crate::adhesion::AdhesionError::BeyondEdge). Only with [`Edge::Refuse`](crate::contact::Edge::Refuse).
+        const BEYOND_EDGE = 1 << 19;
     }
 }
 
@@ -113,12 +117,15 @@ impl IntoIterator for &Warnings {
 }
 
 /// What each warning says, and its cure.
-const MESSAGES: [(Warnings, &str); 19] = [
+const MESSAGES: [(Warnings, &str); 20] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data: measure it longer, or end earlier"),
     (Warnings::FASTER_THAN_MATERIAL, "the step counts as elastic, shorter than the material is known for: lengthen it"),
-    (Warnings::NEAR_END_OF_MATERIAL, "one more such step looks beyond what is known of the material: know it longer"),
+    (
+        Warnings::NEAR_END_OF_MATERIAL,
+        "the next such step exceeds the times at which the material is known: measure longer",
+    ),
     (Warnings::RINGS, "the time rule rings at steps of this length: take shorter ones, or another rule"),
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
@@ -135,6 +142,7 @@ const MESSAGES: [(Warnings, &str); 19] = [
         "the shortest waves of the shape have fewer than 4 cells: refine the mesh, or leave them out",
     ),
     (Warnings::LONG_STEP, "the step is too long, its error in time over 5 %: take shorter or adaptive steps"),
+    (Warnings::BEYOND_EDGE, "attraction beyond the edge of the grid is left out: enlarge the grid"),
     (Warnings::NO_CONTACT, "the bodies never touched in the run: raise the approach, or check its sign and unit"),
 ];
 

@@ -86,6 +86,7 @@ pub(super) fn collect_warnings(
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
     let reasons = [
         (Warnings::COARSE_ZONE, figures.cells_in_zone.is_some()),
+        (Warnings::BEYOND_EDGE, figures.beyond_edge.is_some()),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
         (Warnings::FEW_CELLS, few),
         (Warnings::RINGS, oscillates),

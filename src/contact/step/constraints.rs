@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use crate::Grid;
 use crate::axis::Axis;
 use crate::contact::state::net_sum;
+use crate::contact::step::edge::{MOST, attraction_beyond};
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
-use crate::error::{Convergence, Error, Result, Special, StepError, exact_length};
+use crate::error::{AdhesionError, Convergence, Error, Result, Special, StepError, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
@@ -153,6 +154,10 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
         if cells > 0 {
             let (lengths, needed) = (scene.grid.lengths(), needed_lengths(scene, state, trial, step));
             return Err(Error::Step(StepError::ContactAtEdge { time, cells, lengths, needed }));
+        }
+        let share = attraction_beyond(scene, state, &trial.solution);
+        if share > MOST {
+            return Err(AdhesionError::BeyondEdge { time, share, lengths: scene.grid.lengths() }.into());
         }
     }
     let motion = |body: usize| {

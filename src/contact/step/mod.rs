@@ -11,12 +11,14 @@
 //! | pressure and displacement kept for the steps to come (Eq. 11); next step | [`ViscoelasticContact::accept`] |
 //!
 //! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in a copy
-//! of the state on a larger region ([`outgrown`]). A step writes to its trial, to this copy, and to the part of the history
-//! reserved for steps. The state changes when the step is accepted. A failed step has nothing to undo.
+//! of the state on a larger region ([`outgrown`]). A step writes to its trial, to the window, to this copy, and to the part of the
+//! history reserved for steps. The state changes when the step is accepted ([`ViscoelasticContact::adopt`]): after a failed step it is
+//! what it was, but for the start of the step before, which [`ViscoelasticContact::within_step`] would need.
 
 mod accept;
 pub(in crate::contact) mod attraction;
 pub(in crate::contact) mod constraints;
+mod edge;
 pub(crate) mod error_in_time;
 mod gap;
 mod initial_guess;
@@ -44,6 +46,7 @@ use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use constraints::{find_free_motions, validate_loads};
+use edge::{attraction_beyond, least_beyond};
 use error_in_time::error_in_time;
 use gap::RigidBodies;
 use initial_guess::initial_guess;
@@ -199,12 +202,15 @@ impl ViscoelasticContact {
         let motion = |body: usize| RigidMotion { approach: -datum, tilt: [0.0; 2] } + state.current.motions[body];
         let compliance = || scene.material.contact_compliance(clock.age().max(clock.last_dt));
         let in_zone = || cells_in_zone(scene.softening, compliance(), &scene.grid);
+        let refused = scene.attraction.is_some() && scene.settings.edge == Edge::Refuse;
+        let beyond_edge = refused.then(|| attraction_beyond(scene, state, &state.current.solution));
         let figures = Figures {
             max_slope: indenter.steepest(&scene.grid, region, pressure),
             compression: scene.compression(indenter, region, pressure, motion),
             cells_in_wave: self.missed.cells,
             periods: self.missed.periods,
             cells_in_zone: (scene.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
+            beyond_edge: beyond_edge.filter(|share| *share > least_beyond(scene)),
             modulus: scene.limits.modulus,
             touch: None,
         };

@@ -28,7 +28,10 @@ impl Step<'_> {
     /// the gap.
     pub(crate) fn prescribed(&self, body: usize) -> RigidMotion {
         let (load, datum) = (&self.loads[body], self.indenter.gap().datum);
-        let approach = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
+        let approach = match load {
+            Load::Approach { approach, .. } => approach - datum,
+            Load::Force { .. } | Load::Spring { .. } => 0.0,
+        };
         let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
         RigidMotion { approach, tilt }
     }

@@ -28,7 +28,7 @@ fn springs<'a>(step: &'a Step<'_>) -> impl Iterator<Item = (usize, f64, f64)> + 
     let datum = step.indenter.gap().datum;
     step.loads.iter().enumerate().filter_map(move |(body, load)| match *load {
         Load::Spring { stiffness, drive, .. } => Some((body, 1.0 / stiffness, drive - datum)),
-        _ => None,
+        Load::Force { .. } | Load::Approach { .. } => None,
     })
 }
 

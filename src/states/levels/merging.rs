@@ -5,8 +5,8 @@ use crate::states::levels::{Group, Levels};
 
 /// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
 const MORE: [usize; 2] = [16, 8];
-/// What merging changes is measured against the force and depth with a cut at the level of the groups, but against this part of those at the
-/// top at least.
+/// The error of merging is relative to the force that the groups below carry and to their depth. This is the least of both that counts, as a
+/// part of the whole force and depth.
 const LEAST: f64 = 1e-4;
 
 /// Share of the error that merging uses: the contact area errs by up to ten times as much as the depth.

@@ -124,7 +124,7 @@ impl Levels {
     }
 
     /// The level up to which groups are held at the end of a step, and the sum δ(c) + `give` c/C_Δ that a demand for a
-    /// depth finds it by. Changes nothing that steps are made of.
+    /// depth finds it by. Writes only the prediction: groups and past stay.
     pub(super) fn wanted(
         &mut self,
         states: &ElasticStates,

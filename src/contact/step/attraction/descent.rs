@@ -12,6 +12,7 @@
 
 use std::sync::atomic::Ordering;
 
+use super::front::Front;
 use super::{AttractedStep, GREATEST_CHANGE, Passes};
 use crate::contact::state::State;
 use crate::contact::step::request::Trial;
@@ -33,6 +34,10 @@ const ROUNDING: f64 = 1e-13;
 /// is r over the curvature. The least of so many iterations counts.
 const SOFT: f64 = 0.1;
 const REMEMBERED: usize = 8;
+/// Iterations that lose cells before the edge of a line contact is moved on.
+const LOSSES: usize = 16;
+/// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
+const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
 /// q is computed afresh after so many iterations.
 const FRESH: usize = 50;
@@ -119,14 +124,15 @@ impl AttractedStep<'_> {
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
         let (mut steepest, mut has_last, mut softness) = (0.0, false, [1.0_f64; REMEMBERED]);
-        let mut plain = false;
+        let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
         for iteration in 0..=MAX_ITERATIONS {
             let gradient = self.gradient(balance, window, trial);
             if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
                 let what = "the residual of the contact problem";
                 return Err(Error::Step(StepError::Overflow { time, what }));
             }
-            let soft = softness.iter().fold(1.0_f64, |least, &soft| least.min(soft));
+            let measured = softness.iter().fold(1.0_f64, |least, &soft| least.min(soft));
+            let soft = if iteration < LEAST_MEASURED { 0.0 } else { measured };
             if gradient.greatest <= limit * (soft / SOFT).clamp(SMALLEST, 1.0) {
                 trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                 self.finish(balance, gradient.multiplier, trial);
@@ -187,9 +193,36 @@ impl AttractedStep<'_> {
             plain = !kept && !has_last;
             has_last = kept;
             own.last[1].copy_from_slice(&trial.solution.pressure);
+            let Trial { gap, solution, .. } = &*trial;
+            let (x, cells) = (&solution.potential, gap.len());
+            if let Some(profile) = front.look((gradient.greatest, curvature <= 0.0), cells, |k| gap[k] + x[k] <= 0.0) {
+                for (k, tried) in own.far.iter_mut().enumerate() {
+                    let from = profile.source(k, cells);
+                    let rise = gap[from] - gap[k];
+                    *tried = x[from] + if rise.is_finite() { rise } else { 0.0 };
+                }
+                self.project(balance, window.kernel.rows(), gap, &mut own.far);
+                balance.tractions(inverse, window, &own.far, &mut own.image, false);
+                counts.convolutions += 1;
+                let tried = self.swap_energy(balance, own, window, trial);
+                let falls = tried[0] < energy[0];
+                front.learn(falls);
+                if falls {
+                    (energy, has_last) = (tried, false);
+                } else {
+                    self.swap_energy(balance, own, window, trial);
+                }
+            }
         }
         let change = self.gradient(balance, window, trial).greatest;
         Err(AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance: limit }.into())
+    }
+
+    /// Exchanges x and q of the trial for the tried ones; returns their energy.
+    fn swap_energy(&self, balance: Balance, own: &mut Passes, window: &Window, trial: &mut Trial) -> [f64; 2] {
+        std::mem::swap(&mut own.far, &mut trial.solution.potential);
+        std::mem::swap(&mut own.image, &mut trial.solution.attraction);
+        self.energy_in_gap(balance, window, trial)
     }
 
     /// Writes the lift x of the guess, and its q but for what the wall changes; returns whether that is so.

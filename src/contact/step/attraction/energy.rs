@@ -1,7 +1,7 @@
 //! The energy of a pass, of the state before the step, and how the surfaces respond.
 
 use super::{AttractedStep, Passes};
-use crate::contact::state::Equilibrium;
+use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Trial;
 use crate::load::Load;
 use crate::parallel::for_each_band;
@@ -75,10 +75,10 @@ impl AttractedStep<'_> {
         [elastic - attracted - wall + of_load, elastic.abs() + attracted + of_load.abs()]
     }
 
-    /// The free motion of the state before the step.
-    fn motion_before(&self) -> RigidMotion {
-        let (state, step) = (self.state, self.step);
-        let (RigidMotion { approach, tilt }, prescribed) = (state.current.motions[0], step.prescribed(0));
+    /// The free part of the motion of a state before the step.
+    fn free_motion(&self, state: &Equilibrium) -> RigidMotion {
+        let (RigidMotion { approach, tilt }, step) = (state.motions[0], self.step);
+        let prescribed = step.prescribed(0);
         let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
         RigidMotion {
             approach: free(self.wanted.translation, approach - step.indenter.gap().datum - prescribed.approach),
@@ -124,7 +124,7 @@ impl AttractedStep<'_> {
             return false;
         }
         let (state, law, c) = (self.state, self.law, self.given[0]);
-        let [start, end] = [self.motion_before(), self.motion_at_end(trial)];
+        let [start, end] = [self.free_motion(&self.state.current), self.motion_at_end(trial)];
         let [before, now] = [&state.current.solution, &trial.solution];
         let [convex, softened] = state.region.rows().sum_terms(|k| {
             let at = state.region.center(k);
@@ -138,15 +138,45 @@ impl AttractedStep<'_> {
                 [(net(now) - net(before)) * displaced, (attraction(h1) - attraction(h0)) * (h1 - h0)]
             })
         });
-        let moved = end.approach - start.approach;
-        let of_spring =
-            if let Load::Spring { stiffness, .. } = self.step.loads[0] { stiffness / self.area() } else { 0.0 };
-        -softened > (1.0 - LEAST_BEND) * (convex + of_spring * moved * moved)
+        -softened > (1.0 - LEAST_BEND) * (convex + self.of_spring(end.approach - start.approach))
+    }
+
+    /// By what part of its convex part the energy bends up in the direction of the last step. Beside a fold surfaces move along the mode that is soft, in which
+    /// a small residual is a great error.
+    pub(super) fn softness(&self, trial: &Trial) -> f64 {
+        let (law, c) = (self.law, self.given[0]);
+        let State { previous, current, region, .. } = self.state;
+        let [start, end] = [previous, current].map(|state| self.free_motion(state));
+        let [before, now] = [&previous.solution, &current.solution];
+        let [convex, softened] = region.rows().sum_terms(|k| {
+            let at = region.center(k);
+            let lift = |solution: &Solution, motion: RigidMotion| c * solution.potential[k] - motion.at(at);
+            let (h, moved) = (trial.gap[k] + lift(now, end), lift(now, end) - lift(before, start));
+            let net = |solution: &Solution| solution.pressure[k] - solution.attraction[k];
+            let attraction = |h: f64| law.traction(h.max(0.0));
+            h.is_finite().then(|| {
+                let open = now.pressure[k] == 0.0 && moved != 0.0;
+                let softened = if open { (attraction(h - moved) - attraction(h)) * moved } else { 0.0 };
+                [(net(now) - net(before)) * moved, softened]
+            })
+        });
+        let convex = convex + self.of_spring(end.approach - start.approach);
+        if convex > 0.0 { 1.0 - softened / convex } else { 1.0 }
+    }
+
+    /// The work of the spring on a way, over the area of a cell.
+    fn of_spring(&self, moved: f64) -> f64 {
+        if let Load::Spring { stiffness, .. } = self.step.loads[0] {
+            stiffness / self.area() * moved * moved
+        } else {
+            0.0
+        }
     }
 
     /// Writes to the report what the step released, and whether the surfaces may have snapped.
     pub(super) fn report_release(&self, own: &mut Passes, trial: &Trial) {
-        let [before, _] = self.energy_of(&self.state.current.solution, self.motion_before(), &trial.gap);
+        let [before, _] =
+            self.energy_of(&self.state.current.solution, self.free_motion(&self.state.current), &trial.gap);
         let [now, scale] = self.energy_of(&trial.solution, self.motion_at_end(trial), &trial.gap);
         own.report.released = self.area() * (before - now);
         own.report.suspected = self.is_suspected(before - now, scale, trial);

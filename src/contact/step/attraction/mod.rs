@@ -15,11 +15,14 @@
 
 mod descent;
 mod energy;
+mod front;
 mod gap_direction;
 mod near_field;
 mod passes;
 mod split;
 
+use front::Front;
+use passes::Extrapolation;
 pub use passes::PassReport;
 pub(in crate::contact) use passes::Passes;
 
@@ -54,6 +57,10 @@ const LEAST_EXACT: f64 = 1e-3;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
+/// Passes that lose cells before the edge of a line contact is moved on.
+const LOSSES: usize = 200;
+/// The greatest error of s after the first pass, over what the pass changed.
+const MOST_ERROR: f64 = 100.0;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
 const GREATEST_CHANGE: f64 = 0.5;
 
@@ -90,7 +97,7 @@ impl AttractedStep<'_> {
 
     fn iterate(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Result<()> {
         let (state, mut counts) = (self.state, Counts::default());
-        own.report = PassReport::default();
+        (own.report, own.error) = (PassReport::default(), (1.0 / self.softness(trial) - 1.0).clamp(1.0, MOST_ERROR));
         if window.inverse.is_some() {
             self.descend_in_gap(own, window, trial, &mut counts)?;
         } else {
@@ -135,6 +142,8 @@ impl AttractedStep<'_> {
         let (mut change, mut exactness, mut exact) = (f64::INFINITY, 0.0, 1.0);
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1_usize);
+        let region = &self.state.region;
+        let (mut front, mut moved) = (Front::new(region.cells(), region.folded(), LOSSES), false);
         for _ in 0..MAX_PASSES {
             self.open_gap(window, trial);
             own.report.passes += 1;
@@ -169,13 +178,21 @@ impl AttractedStep<'_> {
                 // the plain pass from the last state that was kept
                 own.report.rejected += 1;
                 trial.solution.attraction.copy_from_slice(&own.last[1]);
-                (plain, wait, penalty) = (true, penalty, penalty.saturating_mul(2));
+                plain = true;
+                if std::mem::take(&mut moved) {
+                    front.learn(false);
+                } else {
+                    (wait, penalty) = (penalty, penalty.saturating_mul(2));
+                }
                 continue;
             };
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
-            if !plain && !reversed && found.change >= change {
+            if std::mem::take(&mut moved) {
+                front.learn(true);
+                own.has_last = false;
+            } else if !plain && !reversed && found.change >= change {
                 // it gained nothing: the more often, the more plain passes follow
                 (wait, penalty) = (penalty, penalty.saturating_mul(2));
             }
@@ -185,21 +202,28 @@ impl AttractedStep<'_> {
             // the force of the spring, too
             let scale = (trial.free[0].total * self.area()).max(pulled);
             trial.solution.residual = trial.solution.residual.max(trial.springs[0].missing / scale);
-            if change <= limit && trial.solution.residual <= stop.tolerance {
+            let (s, g) = (&mut trial.solution.attraction, &trial.gap);
+            let next = own.extrapolation(self.state, s, g);
+            own.error = if own.has_last { next.error } else { own.error };
+            let ends = change * own.error <= limit;
+            if ends && trial.solution.residual <= stop.tolerance {
                 return Ok(counts.convolutions > before);
             }
-            if change <= limit {
+            if ends {
                 // the same pass, more exactly
                 (inner, convolved) = (0.0, true);
                 continue;
             }
-            let (s, g) = (&mut trial.solution.attraction, &trial.gap);
             let weight;
-            (weight, reversed) = own.extrapolation(self.state, s, g);
+            Extrapolation { weight, reversed, .. } = next;
             // where a stable state has just vanished, plain passes would creep
             plain = !own.has_last || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
+            if let Some(profile) = front.look((1.0, true), s.len(), |k| trial.solution.pressure[k] > 0.0) {
+                s.iter_mut().enumerate().for_each(|(k, s)| *s = own.last[1][profile.source(k, g.len())]);
+                (plain, moved) = (false, true);
+            }
         }
         let (time, passes) = (step.interval.time, own.report.passes);
         Err(AdhesionError::NotConverged { time, passes, change, tolerance: limit }.into())

@@ -17,6 +17,8 @@ pub(crate) struct Passes {
     /// s of the last pass that was kept, and s at the gap that it led to.
     pub(super) last: [Vec<f64>; 2],
     pub(super) has_last: bool,
+    /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows before they do.
+    pub(super) error: f64,
     pub(crate) report: PassReport,
     /// The end of a step that was [split](super::split).
     pub(super) end: Option<Box<State>>,
@@ -41,6 +43,17 @@ pub struct PassReport {
     pub jumped: bool,
     /// Whether this may be so: much is released, and the energy bends up little on the way, or down.
     pub(crate) suspected: bool,
+}
+
+/// How the next s follows from a pass and the one before.
+#[derive(Clone, Copy)]
+pub(super) struct Extrapolation {
+    /// γ; zero without a last pass.
+    pub(super) weight: f64,
+    /// Whether its sign is reversed.
+    pub(super) reversed: bool,
+    /// The error of s after the pass, over what the pass changed, at the rate of the passes; at least one.
+    pub(super) error: f64,
 }
 
 impl PassReport {
@@ -68,6 +81,7 @@ impl Passes {
             far: field(),
             last: [field(), field()],
             has_last: false,
+            error: 1.0,
             report: PassReport::default(),
             end: None,
         }
@@ -90,20 +104,23 @@ impl Passes {
 
     /// Of a pass from s to g the γ that makes f = g − s less γ Δf as small as it can, Δ being the change from the last pass: the next s is g − γ Δg.
     /// Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and the sign of γ is reversed (saddle-free
-    /// Newton method, Dauphin et al., NIPS 27, 2014). Returns γ, and whether it is reversed; zero without a last pass.
-    pub(super) fn extrapolation(&self, state: &State, s: &[f64], g: &[f64]) -> (f64, bool) {
+    /// Newton method, Dauphin et al., NIPS 27, 2014).
+    pub(super) fn extrapolation(&self, state: &State, s: &[f64], g: &[f64]) -> Extrapolation {
         if !self.has_last {
-            return (0.0, false);
+            return Extrapolation { weight: 0.0, reversed: false, error: 1.0 };
         }
         let [last_s, last_g] = &self.last;
-        let [overlap, square, along, remaining] = state.region.rows().sum_terms(|k| {
+        let [overlap, square, along, remaining, together] = state.region.rows().sum_terms(|k| {
             let (f, of_g) = (g[k] - s[k], g[k] - last_g[k]);
             let of_f = of_g - (s[k] - last_s[k]);
-            Some([of_f * f, of_f * of_f, of_g * f, f * f])
+            Some([of_f * f, of_f * of_f, of_g * f, f * f, of_g * of_f])
         });
-        let weight = if square > 0.0 { overlap / square } else { 0.0 };
+        let over_square = |sum: f64| if square > 0.0 { sum / square } else { 0.0 };
+        let weight = over_square(overlap);
         let reversed = weight * along > remaining;
-        (if reversed { -weight } else { weight }, reversed)
+        // at the rate λ of plain passes Δg = −λ/(1 − λ) Δf
+        let error = (-over_square(together)).max(1.0);
+        Extrapolation { weight: if reversed { -weight } else { weight }, reversed, error }
     }
 
     /// Keeps the pass from s to g, and writes the next s, g − γ Δg between 0 and the greatest.

@@ -1,0 +1,112 @@
+//! What contacts in space and on elastic states have in common: runs, copies, checkpoints, and pickles through them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
+
+use crate::contact::ViscoelasticContact;
+use crate::errors::OrRaise;
+use crate::held::Options;
+use crate::run::Run;
+use crate::scratch::{bytes_of, file_of};
+use crate::states_contact::StatesContact;
+
+/// How an object is made again, and the bytes of its state.
+type Pickled<'py> =
+    (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>), Bound<'py, PyBytes>);
+
+macro_rules! both {
+    ($contact:ident) => {
+        #[pymethods]
+        impl $contact {
+            /// Follows a load to the time `until` [s]: an iterator over the reports of the steps.
+            ///
+            /// Parameters
+            /// ----------
+            /// load : LoadHistory, Load (held), sequence of (time, load), or function of time that returns a Load
+            /// until : float
+            /// tolerance : float, default 1e-3
+            ///     Steps are as long as their estimated error in time allows.
+            /// dt : float, optional
+            ///     Equal steps of this length instead [s].
+            /// stop_at : times, optional
+            ///     Where steps end too: a sequence of times [s], or `Times`.
+            /// sample_at : times, optional
+            ///     Times at which `Run.samples` and `Run.table` give the state. Samples leave the steps as they are.
+            /// fields_to : float, optional
+            ///     Error in time of the pressure at the times of `sample_at`, relative, in [1e-5, 0.1]; `Sample.field` has the error estimated.
+            ///     Without it approach and force alone are as exact as `tolerance` says.
+            /// progress : function, optional
+            ///     Called after each step with the share of the time that is over; the run ends with `Cancelled` where it returns False.
+            /// autosave : (path, seconds), optional
+            ///     Saves the run to a checkpoint as often.
+            ///
+            /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+            /// >>> history = [(0, Load.force(0)), (0.5, Load.force(0.5)), (1, Load.force(0.1))]
+            /// >>> for report in contact.follow(history, until=1.0, tolerance=1e-2):
+            /// ...     area = contact.contact_area
+            /// >>> report.time
+            /// 1.0
+            #[pyo3(signature = (load, until, *, tolerance=None, dt=None, stop_at=None, sample_at=None, fields_to=None, progress=None, autosave=None))]
+            #[allow(clippy::too_many_arguments)]
+            fn follow(
+                slf: Bound<'_, Self>,
+                load: &Bound<'_, PyAny>,
+                until: f64,
+                tolerance: Option<f64>,
+                dt: Option<f64>,
+                stop_at: Option<Bound<'_, PyAny>>,
+                sample_at: Option<Bound<'_, PyAny>>,
+                fields_to: Option<f64>,
+                progress: Option<Py<PyAny>>,
+                autosave: Option<(PathBuf, f64)>,
+            ) -> PyResult<Run> {
+                let options = Options::new(load, until, tolerance, dt, stop_at, sample_at, fields_to, progress, autosave)?;
+                let mut contact = slf.borrow_mut();
+                let cancel = Arc::clone(&contact.cancel);
+                let run = contact.held.follow(&options, cancel)?;
+                Ok(Run::of(slf.clone().unbind().into(), run, options))
+            }
+
+            fn __copy__(&self, py: Python<'_>) -> PyResult<$contact> {
+                let contact = self.get()?;
+                Ok($contact::of(py.detach(|| contact.clone()), self.recipe.again(py)))
+            }
+
+            fn __deepcopy__(&self, py: Python<'_>, _memo: Bound<'_, PyAny>) -> PyResult<$contact> {
+                self.__copy__(py)
+            }
+
+            /// Saves the whole state to a file, from which a contact that is built like this one continues by `resume`.
+            fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = self.get()?;
+                py.detach(|| contact.save(path)).or_raise()
+            }
+
+            /// Puts a saved state in the place of this one; the following steps are the same, bit by bit.
+            ///
+            /// Raises OSError if the file cannot be read, is damaged, or is of another scene.
+            fn resume(&mut self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = self.held.free()?;
+                py.detach(|| contact.resume(path)).or_raise()
+            }
+
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
+                let of = slf.borrow();
+                let (again, arguments) = of.recipe.reduce(slf.get_type())?;
+                let contact = of.get()?;
+                Ok((again, arguments, bytes_of(slf.py(), "checkpoint", |file| contact.save(file))?))
+            }
+
+            fn __setstate__(&mut self, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
+                let (file, contact) = (file_of(state)?, self.held.free()?);
+                py.detach(|| contact.resume(&file.0)).or_raise()
+            }
+        }
+    };
+}
+
+both!(ViscoelasticContact);
+both!(StatesContact);

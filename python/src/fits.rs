@@ -1,0 +1,255 @@
+//! Fits: identified parameters, and what the curves determine.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::IntoPyArray;
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact_identify as id;
+
+use crate::arrays::{Array, mapped, to_array};
+use crate::errors::{OrRaise, in_python};
+use crate::grid::Grid;
+use crate::materials::Material;
+use crate::pictures::Picture;
+use crate::recipe::Recipe;
+use crate::rheology::Rheology;
+use crate::scene::builder;
+
+/// One identified parameter.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Estimate(id::Estimate);
+
+#[pymethods]
+impl Estimate {
+    fn __repr__(&self) -> String {
+        format!(
+            "Estimate({}={:e}, 95 %: {:e} to {:e})",
+            self.0.name, self.0.value, self.0.interval[0], self.0.interval[1]
+        )
+    }
+}
+
+getters! {Estimate, of:
+    /// Its name.
+    name: &str = &of.name;
+    /// Its value, in SI units.
+    value: f64 = of.value;
+    /// Standard deviation: relative for moduli, times and stiffness.
+    deviation: f64 = of.deviation;
+    /// The same from the scatter of the residuals, without an assumption on the noise.
+    robust_deviation: f64 = of.robust_deviation;
+    /// Interval of 95 %.
+    interval: (f64, f64) = of.interval.into();
+}
+
+/// The result of a fit: `fit["E0"]` is the estimate of a parameter.
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Fit(pub id::Fit);
+
+#[pymethods]
+impl Fit {
+    fn __getitem__(&self, name: &str) -> PyResult<Estimate> {
+        self.0.estimate(name).cloned().map(Estimate).ok_or_else(|| {
+            let names: Vec<&str> = self.0.estimates().iter().map(|estimate| &*estimate.name).collect();
+            PyKeyError::new_err(format!("no parameter is named {name:?}: there are {}", names.join(", ")))
+        })
+    }
+
+    /// Covariance of two parameters, of logarithms where deviations are relative; None without one of them.
+    fn covariance(&self, one: &str, other: &str) -> Option<f64> {
+        self.0.covariance(one, other)
+    }
+
+    /// Correlation of two parameters; None without one of them.
+    fn correlation(&self, one: &str, other: &str) -> Option<f64> {
+        self.0.correlation(one, other)
+    }
+
+    /// The contact modulus E*(t) [Pa] at times after a sudden step [s].
+    fn modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("t", t, |t| self.0.modulus(t))
+    }
+
+    /// The relative standard deviation of `modulus`.
+    fn modulus_deviation<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        mapped("t", t, |t| self.0.modulus_band(t)[1])
+    }
+
+    /// The shear modulus [Pa] for a known Poisson's ratio, at a time [s].
+    fn shear_modulus(&self, t: f64, nu: f64) -> PyResult<f64> {
+        self.0.shear_modulus(t, nu).or_raise()
+    }
+
+    /// The incompressible body of the identified contact modulus, against a rigid tip, for contacts.
+    fn material(&self, py: Python<'_>) -> PyResult<Material> {
+        let material = self.0.material().or_raise()?;
+        let spectrum = material.contact_spectrum().or_raise()?;
+        let spectrum = spectrum.ok_or_else(|| PyTypeError::new_err("this model has no exact exponential series"))?;
+        let shear = spectrum.scaled(SHEAR_OVER_CONTACT).or_raise()?;
+        let arguments = (shear.glassy(), shear.fluidity(), shear.terms().to_vec());
+        let rheology = Py::new(py, Rheology::made(py, "generalized_kelvin", arguments, Arc::new(shear))?)?;
+        Ok(Material::by(Recipe::new(py, "", (rheology,))?, material))
+    }
+
+    /// Force of the fit at each time of a curve [N], and measured less fitted force.
+    #[pyo3(signature = (curve=0))]
+    fn force<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.check(curve)?;
+        let array = |values: &[f64]| values.to_vec().into_pyarray(py).into_any();
+        Ok((array(self.0.force(curve)), array(self.0.residuals(curve))))
+    }
+
+    /// All values of a parameter for which the best fit of the others is not significantly worse.
+    #[pyo3(signature = (name, confidence=0.95))]
+    fn profile_interval(&self, py: Python<'_>, name: &str, confidence: f64) -> PyResult<(f64, f64)> {
+        py.detach(|| self.0.profile_interval(name, confidence)).or_raise().map(Into::into)
+    }
+
+    /// A spectrum without a model from the same curves: "equilibrium" [Pa], "times" [s] and "moduli" [Pa] of the terms, "smoothing", "sigma" [N]
+    /// and "forces", an array [N] for each curve.
+    fn free_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let of = py.detach(|| self.0.free_spectrum()).or_raise()?;
+        let (times, moduli): (Vec<f64>, Vec<f64>) = of.terms.iter().copied().unzip();
+        let forces: Vec<_> = of.forces.into_iter().map(|force| force.into_pyarray(py)).collect();
+        Ok(dict! { py;
+            "equilibrium": of.equilibrium,
+            "times": times.into_pyarray(py),
+            "moduli": moduli.into_pyarray(py),
+            "smoothing": of.smoothing,
+            "sigma": of.sigma,
+            "forces": forces,
+        })
+    }
+
+    /// The decades of time that the curves determine: dicts of "times" [s], "modulus" that relaxes there [Pa], its "deviation" [Pa], and
+    /// "is_determined".
+    fn decades<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let decades = py.detach(|| self.0.decades()).or_raise()?;
+        let of = |of: id::Decade| {
+            Ok(dict! { py;
+                "times": (of.times[0], of.times[1]),
+                "modulus": of.modulus,
+                "deviation": of.deviation,
+                "is_determined": of.is_determined,
+            })
+        };
+        decades.into_iter().map(of).collect()
+    }
+
+    /// Computes a curve once more in space, cell by cell, with the identified material under a `shape` on a `grid`: the force at each sample
+    /// [N], and the greatest difference from the fit over its greatest force. Keywords are those of `ViscoelasticContact`.
+    ///
+    /// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+    /// >>> maxwell = Identification("maxwell")
+    /// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+    /// >>> force, difference = fit.verify(Grid(64, 6e-6), Shape.sphere(5e-6))
+    /// >>> difference < 0.02
+    /// True
+    #[pyo3(signature = (grid, shape, *, curve=0, **options))]
+    fn verify<'py>(
+        &self,
+        py: Python<'py>,
+        grid: &Grid,
+        shape: &Bound<'py, PyAny>,
+        curve: usize,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<(Array<'py>, f64)> {
+        let scene = builder(grid, shape, &self.material(py)?, options)?;
+        let of = py.detach(|| self.0.verify(curve, &scene)).or_raise()?;
+        let n = of.force.len();
+        Ok((to_array(py, of.force, &[n])?, of.difference))
+    }
+
+    /// What the answer depends on: fits of the same curves under another assumption ("drift", "tilt", "correlated noise", "no outliers"):
+    /// dicts of the "assumption", "times" [s], the "ratios" of their moduli to those of this fit, and "aicc_difference".
+    fn variants<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let of = |of: id::Variant| {
+            Ok(dict! { py;
+                "assumption": of.assumption,
+                "times": of.times.to_vec(),
+                "ratios": of.ratios.to_vec(),
+                "aicc_difference": of.aicc_difference,
+            })
+        };
+        py.detach(|| self.0.variants()).into_iter().map(of).collect()
+    }
+
+    /// The fit of a curve at each of its times, as arrays: "time" [s], "force" [N], "depth" and "contact_depth" [m].
+    #[pyo3(signature = (curve=0))]
+    fn samples<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.check(curve)?;
+        let samples = self.0.samples(curve);
+        let column = |of: fn(&id::Sample) -> f64| samples.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
+        Ok(dict! { py;
+            "time": self.0.curves()[curve].experiment().protocol().times().to_vec().into_pyarray(py),
+            "force": column(|sample| sample.force),
+            "depth": column(|sample| sample.depth),
+            "contact_depth": column(|sample| sample.contact_depth),
+        })
+    }
+
+    /// A picture of a curve: measured and fitted force, residuals and modulus.
+    #[pyo3(signature = (curve=0))]
+    fn picture(&self, py: Python<'_>, curve: usize) -> PyResult<Picture> {
+        py.detach(|| self.0.picture(curve)).or_raise().map(Picture)
+    }
+
+    /// The contact point of a curve [m].
+    #[pyo3(signature = (curve=0))]
+    fn contact_point(&self, curve: usize) -> PyResult<f64> {
+        self.check(curve)?;
+        Ok(self.0.contact_point(curve))
+    }
+
+    fn __repr__(&self) -> String {
+        let all: Vec<String> =
+            self.0.estimates().iter().map(|of| format!("{}={:e} ± {:.1e}", of.name, of.value, of.deviation)).collect();
+        format!("Fit({})", all.join(", "))
+    }
+}
+
+getters! {Fit, of:
+    /// The model.
+    model: String = of.model().to_string();
+    /// Number of curves.
+    curves: usize = of.curves().len();
+    /// Coefficient of the autoregressive noise; None of white noise.
+    autoregression: Option<f64> = of.autoregression();
+    /// Iterations of the search.
+    iterations: usize = of.iterations();
+    /// Samples with the tip in contact.
+    points_in_contact: usize = of.points_in_contact();
+    /// Standard deviation of the residuals over that of the noise, 1 if the model is right, and over the greatest force.
+    misfit: (f64, f64) = of.misfit().into();
+    /// The identified parameters, of the material first.
+    estimates: Vec<Estimate> = of.estimates().iter().cloned().map(Estimate).collect();
+    /// What a user should know before the parameters are used, a line each.
+    warnings: Vec<String> = of.warnings().iter().map(in_python).collect();
+    /// Standard deviation of the noise [N].
+    sigma: f64 = of.sigma();
+    /// Akaike's criterion, corrected for the number of samples: less is better.
+    aicc: f64 = of.aicc();
+    /// Probability of residuals as extreme by their runs of one sign, and by their correlations, if the model is right.
+    probabilities: (f64, f64) = (of.runs().probability, of.correlations().probability);
+}
+
+impl Fit {
+    fn check(&self, curve: usize) -> PyResult<()> {
+        let n = self.0.curves().len();
+        if curve < n { Ok(()) } else { Err(PyIndexError::new_err(format!("curve {curve} of {n}"))) }
+    }
+}
+
+/// Writes a table of fits as a CSV file with a row for each parameter.
+#[pyfunction]
+pub fn write_fits(py: Python<'_>, path: PathBuf, fits: Vec<Bound<'_, Fit>>) -> PyResult<()> {
+    let summaries: Vec<id::Summary> = fits.iter().map(|fit| fit.get().0.summary()).collect();
+    let file = std::fs::File::create(path)?;
+    py.detach(|| id::Summary::write_csv(&summaries, file)).or_raise()
+}
+
+/// J over C of an incompressible body.
+const SHEAR_OVER_CONTACT: f64 = 4.0;

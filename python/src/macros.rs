@@ -1,0 +1,56 @@
+//! What many classes repeat.
+
+/// Getters of a class: documentation, name, type and value, of what the class wraps, or (`try`) of the contact that it holds.
+macro_rules! getters {
+    (try $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+        #[pymethods]
+        impl $class {
+            $(
+                $(#[$doc])*
+                #[getter]
+                fn $name(&self) -> PyResult<$type> {
+                    let $of = self.get()?;
+                    Ok($value)
+                }
+            )*
+        }
+    };
+    ($class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+        #[pymethods]
+        impl $class {
+            $(
+                $(#[$doc])*
+                #[getter]
+                fn $name(&self) -> $type {
+                    let $of = &self.0;
+                    $value
+                }
+            )*
+        }
+    };
+}
+
+/// A dict of names and values.
+macro_rules! dict {
+    ($py:expr; $($name:literal: $value:expr),* $(,)?) => {{
+        let all = pyo3::types::PyDict::new($py);
+        $(all.set_item($name, $value)?;)*
+        all
+    }};
+}
+
+/// The methods of a class whose objects are made again by the call that made them.
+macro_rules! made_by_calls {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+                slf.get().recipe.repr(&slf.get_type())
+            }
+
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<crate::recipe::Reduced<'py>> {
+                slf.get().recipe.reduce(slf.get_type())
+            }
+        }
+    };
+}

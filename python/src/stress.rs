@@ -1,0 +1,242 @@
+//! The stress below the surface, and what follows a run: its history, and the balance of its energy.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::contact as ct;
+use viscocontact::observe::{self as ob, Stress};
+use viscocontact::output::{Format, write_stress};
+
+use crate::arrays::{Array, field, table, to_array};
+use crate::contact::ViscoelasticContact;
+use crate::errors::{OrRaise, choice};
+use crate::grid::Grid;
+use crate::kernels::{InfluenceKernel, axis};
+use crate::reports::StepReport;
+use crate::writers::{FORMATS, metadata};
+
+/// The stress below the surface [Pa]: tension positive, x3 the depth. Components are in the order 11, 22, 33, 12, 13, 23.
+///
+/// Contacts have it as `stress()`; this makes it of a pressure.
+///
+/// Parameters
+/// ----------
+/// kernel : InfluenceKernel
+///     The body, a half-space.
+/// pressure : array of the shape of the grid [Pa]
+/// nu : float
+///     Poisson's ratio.
+///
+/// `quantity` of its methods gives one number in place of the components: "von_mises", "tresca", "mean", "principal_1" or "principal_3".
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 1e-3), Shape.sphere(10e-3), Material(Rheology.elastic(1e6)))
+/// >>> _ = contact.step(0.0, Load.force(0.01))
+/// >>> contact.stress().on_plane(1e-4).shape
+/// (32, 32, 6)
+/// >>> contact.stress().on_plane(1e-4, quantity="von_mises").shape
+/// (32, 32)
+/// >>> contact.stress().greatest([5e-5, 1e-4, 2e-4])["value"] > 0
+/// True
+#[pyclass(frozen, module = "viscocontact")]
+pub struct SubsurfaceStress(pub ob::SubsurfaceStress);
+
+/// A quantity of a stress, by name.
+type Quantity = (&'static str, fn(&Stress) -> f64);
+
+pub const QUANTITIES: [Quantity; 5] = [
+    ("von_mises", Stress::von_mises),
+    ("tresca", Stress::tresca),
+    ("mean", Stress::mean),
+    ("principal_1", |stress| stress.principal()[0]),
+    ("principal_3", |stress| stress.principal()[2]),
+];
+
+/// The components, or a quantity of them, as an array of `shape`, with the components along the last axis.
+fn shown<'py>(py: Python<'py>, of: &[Stress], quantity: Option<&str>, shape: &[usize]) -> PyResult<Array<'py>> {
+    match quantity {
+        Some(name) => {
+            let quantity = choice("quantity", name, &QUANTITIES)?;
+            to_array(py, of.iter().map(quantity).collect(), shape)
+        }
+        None => to_array(py, of.iter().flat_map(Stress::components).collect(), &[shape, &[6]].concat()),
+    }
+}
+
+#[pymethods]
+impl SubsurfaceStress {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        kernel: &InfluenceKernel,
+        pressure: &Bound<'_, PyAny>,
+        nu: f64,
+    ) -> PyResult<SubsurfaceStress> {
+        let pressure = field("pressure", pressure, kernel.kernel.grid().cells())?;
+        py.detach(|| ob::SubsurfaceStress::new(&kernel.kernel, &pressure, nu)).or_raise().map(SubsurfaceStress)
+    }
+
+    /// The components below each cell at a `depth` [m]: an array of shape (n1, n2, 6).
+    #[pyo3(signature = (depth, *, quantity=None))]
+    fn on_plane<'py>(&self, py: Python<'py>, depth: f64, quantity: Option<&str>) -> PyResult<Array<'py>> {
+        let values = py.detach(|| self.0.on_plane(depth)).or_raise()?;
+        shown(py, &values, quantity, &self.0.grid().cells())
+    }
+
+    /// A section below the line of cells in the direction of the axis `along` at the other coordinate `at` [m]: positions [m], and the
+    /// components as an array of shape (positions, depths, 6).
+    #[pyo3(signature = (along, at, depths, *, quantity=None))]
+    fn on_section<'py>(
+        &self,
+        py: Python<'py>,
+        along: usize,
+        at: f64,
+        depths: Vec<f64>,
+        quantity: Option<&str>,
+    ) -> PyResult<(Array<'py>, Array<'py>)> {
+        let along = axis(along)?;
+        let section = py.detach(|| self.0.on_section(along, at, &depths)).or_raise()?;
+        let n = section.positions.len();
+        let values = shown(py, &section.values, quantity, &[n, depths.len()])?;
+        Ok((to_array(py, section.positions, &[n])?, values))
+    }
+
+    /// The components below each cell at each of the `depths` [m]: an array of shape (depths, n1, n2, 6).
+    #[pyo3(signature = (depths, *, quantity=None))]
+    fn in_volume<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: Option<&str>) -> PyResult<Array<'py>> {
+        let volume = py.detach(|| self.0.in_volume(&depths)).or_raise()?;
+        let [n1, n2] = self.0.grid().cells();
+        shown(py, &volume.values, quantity, &[depths.len(), n1, n2])
+    }
+
+    /// The components at points (x1, x2, depth) [m], an array of shape (n, 3): an array of shape (n, 6).
+    #[pyo3(signature = (points, *, quantity=None))]
+    fn at<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>, quantity: Option<&str>) -> PyResult<Array<'py>> {
+        let points: Vec<[f64; 3]> = table("points", points)?;
+        let values = py.detach(|| self.0.at(&points)).or_raise()?;
+        shown(py, &values, quantity, &[points.len()])
+    }
+
+    /// Where a quantity is greatest between the depths [m]: "value" [Pa], "position" [m], "components", and whether it is
+    /// "at_end_of_depths", so that more may lie beyond.
+    #[pyo3(signature = (depths, quantity="von_mises"))]
+    fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Bound<'py, PyDict>> {
+        let quantity = choice("quantity", quantity, &QUANTITIES)?;
+        let peak = py.detach(|| self.0.greatest(&depths, quantity)).or_raise()?;
+        Ok(dict! { py;
+            "value": peak.value,
+            "position": peak.position,
+            "components": peak.stress.components().to_vec(),
+            "at_end_of_depths": peak.at_end_of_depths,
+        })
+    }
+
+    /// Writes the stress at `depths` [m] below a `contact` of this grid: `format` "npz" (`numpy.load`) or "vtk" (`.vtr`: ParaView, PyVista).
+    #[pyo3(signature = (path, contact, depths, *, format="npz", title="", notes=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn write(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        contact: &ViscoelasticContact,
+        depths: Vec<f64>,
+        format: &str,
+        title: &str,
+        notes: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<()> {
+        let format: Format = choice("format", format, &FORMATS)?;
+        let (contact, metadata) = (contact.get()?, metadata(title, notes)?);
+        let write = || write_stress(path, format, contact, &self.0.in_volume(&depths)?, &metadata);
+        py.detach(write).or_raise()
+    }
+}
+
+getters! {SubsurfaceStress, of:
+    /// The least depth at which the stress is given [m].
+    least_depth: f64 = of.least_depth();
+    /// The grid of the surface.
+    grid: Grid = Grid(of.grid().clone());
+}
+
+/// The stress in a body with an elastic bulk, whose Poisson's ratio changes as it creeps: it follows a run from before the first load.
+///
+/// With `in_counter_body` that of the counter body. Raises ValueError if the contact is pressed already.
+///
+/// >>> polymer = Material(Rheology.zener(1e9, 2e8, 0.25), bulk_modulus=3e9)
+/// >>> contact = ViscoelasticContact(Grid(32, 2e-3), Shape.sphere(10e-3), polymer)
+/// >>> history = StressHistory(contact)            # before the first load
+/// >>> for report in contact.follow(Load.force(20.0), 0.7, dt=0.1):
+/// ...     history.record(contact)                 # after every step
+/// >>> history.stress(contact).greatest([1e-4, 2e-4, 3e-4])["value"] > 0.5 * contact.max_pressure
+/// True
+#[pyclass(module = "viscocontact")]
+pub struct StressHistory(ct::StressHistory);
+
+#[pymethods]
+impl StressHistory {
+    #[new]
+    #[pyo3(signature = (contact, *, in_counter_body=false))]
+    fn new(contact: &ViscoelasticContact, in_counter_body: bool) -> PyResult<StressHistory> {
+        let of = if in_counter_body { ct::StressHistory::of_counter_body } else { ct::StressHistory::new };
+        of(contact.get()?).or_raise().map(StressHistory)
+    }
+
+    /// Takes in the step that the contact has made since the last call.
+    fn record(&mut self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<()> {
+        let contact = contact.get()?;
+        py.detach(|| self.0.record(contact)).or_raise()
+    }
+
+    /// The stress of the state recorded last.
+    fn stress(&self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<SubsurfaceStress> {
+        let contact = contact.get()?;
+        py.detach(|| self.0.stress(contact)).or_raise().map(SubsurfaceStress)
+    }
+}
+
+/// The work of the load of a contact, and what the bodies store and dissipate of it: it follows a run from before the first step.
+///
+/// >>> contact = ViscoelasticContact(Grid(48, 4e-3), Shape.sphere(10e-3), Material(Rheology.relaxing(4e6, 1e6, 1.0)))
+/// >>> balance = EnergyBalance(contact)
+/// >>> for report in contact.follow(LoadHistory.ramp(Load.approach(0.0), Load.approach(1e-4), 1.0), 11.0):
+/// ...     energies = balance.record(contact, report)
+/// >>> energies["viscous"] > 0.3 * energies["work"] and abs(energies["imbalance"]) < 0.01 * energies["work"]
+/// True
+#[pyclass(module = "viscocontact")]
+pub struct EnergyBalance(ct::EnergyBalance);
+
+fn energies<'py>(py: Python<'py>, of: ct::Energies) -> PyResult<Bound<'py, PyDict>> {
+    Ok(dict! { py;
+        "work": of.work,
+        "stored": of.stored,
+        "viscous": of.viscous,
+        "lost": of.lost,
+        "imbalance": of.imbalance(),
+    })
+}
+
+#[pymethods]
+impl EnergyBalance {
+    #[new]
+    fn new(contact: &ViscoelasticContact) -> PyResult<EnergyBalance> {
+        ct::EnergyBalance::new(contact.get()?).or_raise().map(EnergyBalance)
+    }
+
+    /// Takes in the last step, of which this is the report, and returns `energies`.
+    fn record<'py>(
+        &mut self,
+        py: Python<'py>,
+        contact: &ViscoelasticContact,
+        report: &StepReport,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let contact = contact.get()?;
+        energies(py, py.detach(|| self.0.record(contact, &report.0)).or_raise()?)
+    }
+
+    /// Since the bodies were undisturbed [J]: the "work" of the load, what is "stored", what the creep dissipated ("viscous"), what was "lost"
+    /// in jumps, and the "imbalance" of these, the error of the steps.
+    #[getter]
+    fn energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        energies(py, self.0.energies())
+    }
+}

@@ -1,0 +1,106 @@
+//! The edge of a line contact that runs over many cells within a step.
+//!
+//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where the energy bends down, and cells
+//! were lost several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
+//! cells that are left, since the edge may stop. The trial is kept where the energy falls.
+
+/// Losses count anew where the residual falls to this part, or below so much of the greatest traction.
+const FALLEN: f64 = 0.3;
+const FINE: f64 = 0.01;
+/// The part of the contact by which each edge is moved at most, and losses between a failure and the next trial.
+const MOST: usize = 16;
+const PAUSE: usize = 4;
+
+/// How the edge has moved so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Front {
+    /// Whether there are edges to move: of a line contact, whose cells begin at its middle where it is folded.
+    is_line: bool,
+    folded: bool,
+    touching: usize,
+    least: usize,
+    /// How often cells were lost while the residual did not fall, less a pause.
+    losses: usize,
+    residual: f64,
+    bends_down: bool,
+    span: usize,
+}
+
+/// Where the profile of a contact was before it moved.
+pub(super) struct Moved {
+    by: usize,
+    /// The middles of the parts in contact.
+    middles: Vec<f64>,
+}
+
+impl Front {
+    /// A front that is moved after so many losses.
+    pub(super) fn new(cells: [usize; 2], folded: [bool; 2], least: usize) -> Front {
+        let is_line = cells.contains(&1);
+        Front {
+            is_line,
+            folded: folded[usize::from(cells[0] == 1)],
+            touching: 0,
+            least,
+            losses: 0,
+            residual: 0.0,
+            bends_down: false,
+            span: 1,
+        }
+    }
+
+    /// Looks at the residual, over the greatest traction, whether the energy bends down, and which cells touch; returns how the profile is to be moved.
+    pub(super) fn look(
+        &mut self,
+        (residual, bends_down): (f64, bool),
+        cells: usize,
+        touches: impl Fn(usize) -> bool,
+    ) -> Option<Moved> {
+        if !self.is_line {
+            return None;
+        }
+        self.bends_down |= bends_down;
+        if residual < FINE || residual < FALLEN * self.residual {
+            (self.losses, self.residual) = (0, residual);
+        }
+        self.residual = self.residual.max(residual);
+        let (mut parts, mut start, mut touching) = (Vec::new(), None, 0);
+        for k in 0..=cells {
+            if k < cells && touches(k) {
+                (start, touching) = (start.or(Some(k)), touching + 1);
+            } else if let Some(first) = start.take() {
+                parts.push((first, k));
+            }
+        }
+        let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
+        self.losses += usize::from(lost > 0);
+        if lost == 0 || self.losses < self.least || !self.bends_down {
+            return None;
+        }
+        let at_mirror = |first: usize| self.folded && first == 0;
+        let of_part = |&(first, end): &(usize, usize)| if at_mirror(first) { 2 * end } else { end - first };
+        let longest = parts.iter().map(of_part).max()?;
+        let middle = |&(first, end): &(usize, usize)| if at_mirror(first) { -0.5 } else { 0.5 * (first + end) as f64 };
+        let by = (lost.div_ceil(2 * parts.len()) * self.span).min(longest / MOST).max(1);
+        Some(Moved { by, middles: parts.iter().map(middle).collect() })
+    }
+
+    /// Takes note of whether the profile that was moved is kept.
+    pub(super) fn learn(&mut self, kept: bool) {
+        if kept {
+            self.span *= 2;
+        } else {
+            self.span = (self.span / 2).max(1);
+            self.losses = self.least.saturating_sub(PAUSE);
+        }
+    }
+}
+
+impl Moved {
+    /// The cell whose value cell `k` of so many takes.
+    pub(super) fn source(&self, k: usize, cells: usize) -> usize {
+        let off = |middle: &f64| k as f64 - middle;
+        let nearest = self.middles.iter().map(off).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+        if nearest < 0.0 { k.saturating_sub(self.by) } else { (k + self.by).min(cells - 1) }
+    }
+}
