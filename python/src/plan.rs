@@ -170,10 +170,22 @@ impl Plan {
         self.plan.mesh_error.approach
     }
 
+    /// Times at which steps end besides, for `follow`: with them the run has the greatest pressure that is promised [s].
+    #[getter]
+    fn stops(&self) -> Vec<f64> {
+        self.plan.stops.clone()
+    }
+
     /// Whether the greatest pressure of the run is promised.
     #[getter]
     fn pressure_converges(&self) -> bool {
         self.plan.pressure_converges()
+    }
+
+    /// Why the greatest pressure of the run is not promised.
+    #[getter]
+    fn pressure_doubt(&self) -> Option<&'static str> {
+        self.plan.pressure_doubt()
     }
 
     fn __str__(&self) -> String {

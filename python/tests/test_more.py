@@ -84,6 +84,7 @@ def test_motion():
 
 def test_a_plan():
     plan = vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=1e-2)
+    assert plan.pressure_converges and plan.pressure_doubt is None and all(0.0 <= time <= 2.0 for time in plan.stops)
     contact = plan.contact()
     table = contact.follow(vc.Load.force(1.0), 2.0, tolerance=plan.tolerance).table()
     exact = vc.GrowingSphere(10e-3, RUBBER, vc.Load.force(1.0)).approach(2.0)
