@@ -82,11 +82,11 @@ pub struct Plan {
     pub builder: Builder,
     /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
     pub stepping: Stepping,
+    /// The grid.
+    pub grid: Grid,
     /// Times at which steps end besides, for [`Run::stop_at`](crate::run::Run::stop_at): with them the run has the greatest pressure that is
     /// promised. Approach and force do not need them. \[s\]
     pub stops: Vec<f64>,
-    /// The grid.
-    pub grid: Grid,
     /// The accuracy.
     pub accuracy: Accuracy,
     /// Expected extent of the contact from the middle of the grid, along x1 and x2 \[m\].
