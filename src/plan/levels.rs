@@ -237,6 +237,9 @@ impl Curve {
             }
             stops.append(&mut new);
         }
+        if error > allowed {
+            return Ok((Vec::new(), error));
+        }
         // adaptive steps on other cells end elsewhere: steps before great pressures stay where they are
         for (end, _) in self.follow(scene, &legs, 1)?.iter().enumerate().filter(|(_, state)| state.peak >= NEAR * peak)
         {
@@ -244,7 +247,7 @@ impl Curve {
         }
         stops.sort_by(f64::total_cmp);
         stops.dedup();
-        Ok(if error <= allowed { (stops, error) } else { (Vec::new(), error.max(allowed)) })
+        Ok((stops, error))
     }
 }
 

@@ -49,7 +49,7 @@ impl Watch {
         self.ended.get()
     }
 
-    /// Before an iteration: whether the search goes on.
+    /// Asks the watcher before an iteration. Returns whether it lets the search continue.
     pub(super) fn goes_on(&self) -> bool {
         let progress = self.progress.get();
         let call = |call: &Arc<Mutex<Call>>| call.lock().unwrap_or_else(PoisonError::into_inner)(&progress);

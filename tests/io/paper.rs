@@ -50,7 +50,7 @@ fn lines(page: &str) -> Vec<Line> {
     lines
 }
 
-/// Whether a test of the library, given as arguments of `cargo test`, exists; `documents` looks for those of the suite.
+/// Whether a test of the library, given as arguments of `cargo test`, exists; `documents` looks for the tests of the suite.
 fn exists(arguments: &str) -> bool {
     let Some(path) = arguments.strip_prefix("--lib ") else { return arguments.starts_with("--test ") };
     let Some((modules, function)) = path.rsplit_once("::") else { return false };

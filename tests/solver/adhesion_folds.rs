@@ -3,14 +3,13 @@
 
 use std::sync::Arc;
 
-use super::adhesion_population::law;
+use super::adhesion_population::{SIDE, law, rough};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use viscocontact::contact::{StepError, Warnings};
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
-const SIDE: f64 = 8.0;
 /// Halvings of the step before a jump.
 const HALVINGS: u32 = 8;
 
@@ -28,17 +27,7 @@ impl Pair {
         let law = law(&mut draws, 1.0 / mu);
         let periodic = draws.chance(0.6);
         // without symmetry, which an unstable state may keep
-        let waves: Vec<[f64; 4]> = (0..6)
-            .map(|_| {
-                let [a, b] = [0, 1].map(|_| draws.below(7) as f64 - 3.0);
-                [a, b, draws.between(0.05, 0.4), draws.between(0.0, 6.0)]
-            })
-            .collect();
-        let height = move |x: f64, y: f64| {
-            let turn = std::f64::consts::TAU / SIDE;
-            waves.iter().map(|[a, b, height, phase]| height * (turn * (a * x + b * y) + phase).cos()).sum::<f64>()
-        };
-        let rough = FnGeometry::new(height);
+        let rough = rough(&mut draws, 3, [0.05, 0.4]);
         let shape: Box<dyn Geometry> = match periodic {
             true => Box::new(rough),
             false => Box::new(Sum::new(Sphere::new(1.0).unwrap(), rough)),

@@ -11,7 +11,7 @@ use viscocontact::contact::StepError;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
-const SIDE: f64 = 8.0;
+pub(super) const SIDE: f64 = 8.0;
 
 pub(super) fn law(draws: &mut Draws, range: f64) -> Arc<dyn Attraction> {
     match draws.below(4) {
@@ -20,6 +20,20 @@ pub(super) fn law(draws: &mut Draws, range: f64) -> Arc<dyn Attraction> {
         _ if draws.chance(0.5) => Arc::new(LinearSoftening::new(1.0, range).unwrap()),
         _ => Arc::new(Dugdale::new(1.0, range).unwrap().with_width(0.5).unwrap()),
     }
+}
+
+/// Six waves of up to `most` periods along each axis of the side, with heights between two.
+pub(super) fn rough(draws: &mut Draws, most: usize, [low, high]: [f64; 2]) -> impl Geometry + use<> {
+    let waves: Vec<[f64; 4]> = (0..6)
+        .map(|_| {
+            let [a, b] = [0, 1].map(|_| draws.below(2 * most + 1) as f64 - most as f64);
+            [a, b, draws.between(low, high), draws.between(0.0, 6.0)]
+        })
+        .collect();
+    FnGeometry::new(move |x: f64, y: f64| {
+        let turn = std::f64::consts::TAU / SIDE;
+        waves.iter().map(|[a, b, height, phase]| height * (turn * (a * x + b * y) + phase).cos()).sum::<f64>()
+    })
 }
 
 fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
@@ -31,19 +45,7 @@ fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
             let wavy = Wavy::new(draws.between(0.05, 0.5), SIDE / draws.between(3.0, 6.0)).unwrap();
             ("wavy sphere", Box::new(Sum::new(sphere(), wavy)))
         }
-        _ => {
-            let waves: Vec<[f64; 4]> = (0..6)
-                .map(|_| {
-                    let [a, b] = [0, 1].map(|_| draws.below(5) as f64 - 2.0);
-                    [a, b, draws.between(0.1, 0.5), draws.between(0.0, 6.0)]
-                })
-                .collect();
-            let height = move |x: f64, y: f64| {
-                let turn = std::f64::consts::TAU / SIDE;
-                waves.iter().map(|[a, b, height, phase]| height * (turn * (a * x + b * y) + phase).cos()).sum::<f64>()
-            };
-            ("rough", Box::new(FnGeometry::new(height)))
-        }
+        _ => ("rough", Box::new(rough(draws, 2, [0.1, 0.5]))),
     }
 }
 

@@ -19,7 +19,7 @@ fn units_of_headings_are_those_given() {
             other => panic!("{headings}: {other}"),
         };
     let as_text = |column, unit: &str, field, expected: &str| (column, unit.to_owned(), field, expected.to_owned());
-    // the places of all other units are those of the population below
+    // all other units stand in the places that the population below draws
     assert_eq!(refused("J (MPa^-1);t (min)", minutes), as_text(1, "MPa^-1", "value", "1/GPa"));
     assert_eq!(refused("t;J [GPa]", minutes), as_text(2, "GPa", "value", "1/GPa"));
     assert_eq!(refused("J;t [h]", Units::SI), as_text(2, "h", "abscissa", "s"));

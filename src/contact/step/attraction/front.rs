@@ -64,18 +64,19 @@ impl Front {
             (self.losses, self.residual) = (0, residual);
         }
         self.residual = self.residual.max(residual);
-        let (mut parts, mut start, mut touching) = (Vec::new(), None, 0);
-        for k in 0..=cells {
-            if k < cells && touches(k) {
-                (start, touching) = (start.or(Some(k)), touching + 1);
-            } else if let Some(first) = start.take() {
-                parts.push((first, k));
-            }
-        }
+        let in_contact = || (0..cells).filter(|&k| touches(k));
+        let touching = in_contact().count();
         let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
         self.losses += usize::from(lost > 0);
         if lost == 0 || self.losses < self.least || !self.bends_down {
             return None;
+        }
+        let mut parts: Vec<(usize, usize)> = Vec::new();
+        for k in in_contact() {
+            match parts.last_mut() {
+                Some((_, end)) if *end == k => *end += 1,
+                _ => parts.push((k, k + 1)),
+            }
         }
         let at_mirror = |first: usize| self.folded && first == 0;
         let of_part = |&(first, end): &(usize, usize)| if at_mirror(first) { 2 * end } else { end - first };
