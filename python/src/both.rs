@@ -39,9 +39,10 @@ macro_rules! both {
             ///     Error in time of the pressure at the times of `sample_at`, relative, in [1e-5, 0.1]; `Sample.field` has the error estimated.
             ///     Without it approach and force alone are as exact as `tolerance` says.
             /// progress : function, optional
-            ///     Called after each step with the share of the time that is over; the run ends with `Cancelled` where it returns False.
+            ///     Called after each step with the share of the time that is over (`Run.progress` has that of the decades, too); the run ends with
+            ///     `Cancelled` where it returns False.
             /// autosave : (path, seconds), optional
-            ///     Saves the run to a checkpoint as often.
+            ///     Saves the run to a checkpoint every so many seconds of the clock, and at its end.
             ///
             /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
             /// >>> history = [(0, Load.force(0)), (0.5, Load.force(0.5)), (1, Load.force(0.1))]

@@ -209,7 +209,9 @@ impl LoadHistory {
 
     /// A function of time [s] that returns a `Load`, smooth but for corners at `breakpoints` [s], where steps end.
     ///
-    /// An exception of the function comes out of the step that needed the load.
+    /// A run asks for loads of its whole time before the first step, for the greatest ones: the function must be defined up to `until` and
+    /// depend on the time alone. (A load that depends on the contact is for a loop over `step`.) An exception comes out of the step that
+    /// needed the load, in a run often the first.
     #[staticmethod]
     #[pyo3(signature = (load, breakpoints=vec![]))]
     fn function(py: Python<'_>, load: Py<PyAny>, breakpoints: Vec<f64>) -> PyResult<LoadHistory> {

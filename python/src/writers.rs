@@ -39,7 +39,8 @@ const EARLIER: [(&str, Earlier); 3] =
 ///     Written into the file.
 /// columns : sequence of str
 ///     Additional columns, with their units in brackets.
-/// earlier : "refuse" (default: FileExistsError), "replace" or "continue" after the state of the contact
+/// earlier : "refuse" (default: FileExistsError), "replace", or "continue"
+///     "continue" goes on after the state of the contact, as after `resume`: what the file has of later times is removed.
 #[pyclass(module = "viscocontact")]
 pub struct CsvHistory(vo::CsvHistory);
 

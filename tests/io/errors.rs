@@ -270,7 +270,7 @@ fn a_program_that_returns_an_error_says_what_to_do() {
         String::from_utf8(ended.stderr).unwrap()
     };
     let widths = "the grid is 0.004 m × 0.004 m, the load needs about 0.011 m × 0.011 m";
-    let advice = "enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there";
+    let advice = "enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there";
     let expected =
         format!("Error: at t = 0 s the contact touches the edge of the grid on 60 cells; {widths}: {advice}\n");
     assert_eq!(printed(&[]), expected);

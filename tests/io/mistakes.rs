@@ -159,7 +159,7 @@ const MISTAKES: &[Mistake] = &[
 ("a load too great for the grid",
     || contact()?.step(0.0, Load::force(20.0)).map(drop),
     "at t = 0 s the contact touches the edge of the grid on 124 cells; the grid is 0.004 m × 0.004 m, the load needs about \
-     0.0065 m × 0.0065 m: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"),
+     0.0065 m × 0.0065 m: enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there"),
 ("a load beside the punch",
     || punch()?.step(0.0, Load::eccentric_force(1.0, [1.5e-3, 0.0])).map(drop),
     "at t = 0 s the load acts at (0.0015, 0) m, outside the convex hull of the cells that body 0 may touch: it would tip \
