@@ -8,7 +8,8 @@ use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
 
 use crate::contact::ViscoelasticContact;
 use crate::errors::OrRaise;
-use crate::held::Options;
+use crate::held::{Options, saved_every, stepping, times};
+use crate::loads::history;
 use crate::run::Run;
 use crate::scratch::{bytes_of, file_of};
 use crate::states_contact::StatesContact;
@@ -64,7 +65,10 @@ macro_rules! both {
                 progress: Option<Py<PyAny>>,
                 autosave: Option<(PathBuf, f64)>,
             ) -> PyResult<Run> {
-                let options = Options::new(load, until, tolerance, dt, stop_at, sample_at, fields_to, progress, autosave)?;
+                let (stop_at, sample_at) = (times("stop_at", stop_at)?, times("sample_at", sample_at)?);
+                let (stepping, autosave) = (stepping(dt, tolerance)?, saved_every(autosave)?);
+                let options =
+                    Options { history: history(load)?, stepping, until, stop_at, sample_at, progress, fields_to, autosave };
                 let mut contact = slf.borrow_mut();
                 let cancel = Arc::clone(&contact.cancel);
                 let run = contact.held.follow(&options, cancel)?;

@@ -1,7 +1,8 @@
 //! Steady sliding and rolling: one problem a velocity.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use numpy::{Complex64, IntoPyArray};
 use pyo3::exceptions::PyTypeError;
@@ -12,7 +13,7 @@ use viscocontact::{self as vc, sliding as sl};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice, raised_number};
 use crate::grid::Grid;
-use crate::interrupt::Listener;
+use crate::interrupt::{Listener, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
@@ -89,6 +90,7 @@ getters! {SlidingReport, of:
 #[pyclass(module = "viscocontact")]
 pub struct SteadySliding {
     sliding: sl::SteadySliding,
+    cancel: Arc<AtomicBool>,
     /// A contact at rest of the same parts.
     recipe: Recipe,
 }
@@ -123,21 +125,23 @@ impl SteadySliding {
             (None, Some(modulus)) => py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega))),
             _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
         };
-        let sliding = sliding.or_raise()?;
+        let cancel = Arc::<AtomicBool>::default();
+        let sliding = sliding.or_raise()?.cancelled_by(Arc::clone(&cancel));
         let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options);
-        Ok(SteadySliding { sliding, recipe })
+        Ok(SteadySliding { sliding, cancel, recipe })
     }
 
-    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` along x1 and x2 [m/s].
+    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` along x1 and x2 [m/s]. Ctrl-C ends the
+    /// search within an iteration, and keeps the state found last.
     fn at(&mut self, py: Python<'_>, velocity: [f64; 2], load: &Load) -> PyResult<SlidingReport> {
         let load = load.load;
-        py.detach(|| self.sliding.at(velocity, load)).or_raise().map(SlidingReport)
+        interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load)).map(SlidingReport)
     }
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
     ///
     /// `progress` is called after each state with the part that is done; where it returns False, the sweep ends with the states so far.
-    /// Ctrl-C ends it between two states.
+    /// Ctrl-C ends it within a state.
     ///
     /// Returns the table of the states, each found from the one before: neighbours cost least.
     #[pyo3(signature = (velocities, loads, *, law=None, temperatures=None, progress=None))]
@@ -161,8 +165,10 @@ impl SteadySliding {
             _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
         }
         let mut listener = Listener::new(progress);
-        let table =
-            py.detach(|| self.sliding.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
+        let SteadySliding { sliding, cancel, .. } = self;
+        let table = interruptible(py, true, cancel, || {
+            sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,)))
+        });
         listener.result(table).map(SlidingTable)
     }
 
