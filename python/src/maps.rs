@@ -82,7 +82,7 @@ impl HeightMap {
         periodic: bool,
     ) -> PyResult<PyClassInitializer<HeightMap>> {
         let (heights, cells) = plane("heights", heights)?;
-        let map = geo::HeightMap::new(cells, lengths.both(), heights).or_raise()?;
+        let map = geo::HeightMap::new(cells, lengths.0, heights).or_raise()?;
         HeightMap::parts(py, if periodic { map.periodic() } else { map })
     }
 
@@ -116,7 +116,7 @@ impl HeightMap {
         if let Some(height) = missing_height {
             format = format.with_missing_height(height);
         }
-        let lengths = lengths.map(PerAxis::both);
+        let lengths = lengths.map(|lengths| lengths.0);
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
         let map = match ending.as_str() {
             "sdf" | "sur" | "pro" | "x3p" => py.detach(|| geo::HeightMap::read(&path)),
@@ -301,7 +301,7 @@ impl HeightMap {
             spec = spec.with_anisotropy(Anisotropy::new(ratio, direction));
         }
         let on = &grid.get().0;
-        let period = period.map(PerAxis::both);
+        let period = period.map(|period| period.0);
         let rough = py.detach(|| match period {
             Some(period) => geo::Rough::windowed(on, spec, period),
             None => geo::Rough::new(on, spec),

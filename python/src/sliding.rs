@@ -27,6 +27,13 @@ pub fn complex(function: &Py<PyAny>, omega: f64) -> Complex64 {
     raised_number(value, Complex64::new(f64::NAN, f64::NAN))
 }
 
+/// A velocity along x1, or along x1 and x2.
+pub fn velocity(given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
+    let along = given.extract::<f64>().map(|speed| [speed, 0.0]);
+    let needed = "velocity: a speed along x1, or a pair along x1 and x2 [m/s], is needed";
+    along.or_else(|_| given.extract()).map_err(|_| PyTypeError::new_err(needed))
+}
+
 /// The state of a steady motion, in numbers.
 #[pyclass(frozen, module = "viscocontact")]
 pub struct SlidingReport(sl::SlidingReport);
@@ -131,10 +138,10 @@ impl SteadySliding {
         Ok(SteadySliding { sliding, cancel, recipe })
     }
 
-    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` along x1 and x2 [m/s]. Ctrl-C ends the
-    /// search within an iteration, and keeps the state found last.
-    fn at(&mut self, py: Python<'_>, velocity: [f64; 2], load: &Load) -> PyResult<SlidingReport> {
-        let load = load.load;
+    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
+    /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
+    fn at(&mut self, py: Python<'_>, velocity: &Bound<'_, PyAny>, load: &Load) -> PyResult<SlidingReport> {
+        let (velocity, load) = (self::velocity(velocity)?, load.load);
         interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load)).map(SlidingReport)
     }
 

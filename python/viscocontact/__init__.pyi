@@ -856,7 +856,7 @@ class SteadySliding:
         modulus: Callable[[float], complex] | None = None,
         **options: Any,
     ) -> SteadySliding: ...
-    def at(self, velocity: _Pair, load: Load) -> SlidingReport: ...
+    def at(self, velocity: float | _Pair, load: Load) -> SlidingReport: ...
     def sweep(
         self,
         velocities: ArrayLike,
@@ -1290,7 +1290,7 @@ def persson_friction(
     surface: Shape,
     modulus: Callable[[float], complex],
     pressure: float,
-    velocity: _Pair,
+    velocity: float | _Pair,
     gamma: float,
 ) -> tuple[float, float]: ...
 def published_materials() -> dict[str, tuple[str, str]]: ...
