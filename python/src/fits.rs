@@ -1,7 +1,6 @@
 //! Fits: identified parameters, and what the curves determine.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError};

@@ -190,7 +190,10 @@ impl InfluenceKernel {
         let array =
             out.cast::<PyArrayDyn<f64>>().map_err(|_| PyTypeError::new_err("out: an array of float64 is needed"))?;
         if *array.shape() != cells {
-            return Err(needed(format!("the shape {cells:?} of the grid is needed, the array has {:?}", array.shape())));
+            return Err(needed(format!(
+                "the shape {cells:?} of the grid is needed, the array has {:?}",
+                array.shape()
+            )));
         }
         let mut writable = array.try_readwrite().map_err(|error| needed(error.to_string()))?;
         convolve(writable.as_slice_mut().map_err(|_| needed("a contiguous array is needed".to_owned()))?)?;

@@ -120,7 +120,7 @@ makers! {Rheology, py:
     function(creep_compliance: Py<PyAny>) = {
         let function = creep_compliance.clone_ref(py);
         let call = move |t: f64| Python::attach(|py| function.call1(py, (t,))?.extract::<f64>(py));
-        viscocontact::Result::Ok(rh::FnRheology::fallible(call))
+        Ok::<_, viscocontact::Error>(rh::FnRheology::fallible(call))
     };
 }
 

@@ -108,7 +108,7 @@ makers! {Shape, py:
     function(gap: Py<PyAny>) = {
         let function = gap.clone_ref(py);
         let call = move |x1: f64, x2: f64| Python::attach(|py| function.call1(py, (x1, x2))?.extract::<f64>(py));
-        vc::Result::Ok(geo::FnGeometry::fallible(call))
+        Ok::<_, vc::Error>(geo::FnGeometry::fallible(call))
     };
 }
 

@@ -173,9 +173,8 @@ impl SteadySliding {
         }
         let mut listener = Listener::new(progress);
         let SteadySliding { sliding, cancel, .. } = self;
-        let table = interruptible(py, true, cancel, || {
-            sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,)))
-        });
+        let table =
+            interruptible(py, true, cancel, || sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,))));
         listener.result(table).map(SlidingTable)
     }
 
