@@ -95,8 +95,8 @@ const NAMES: [(&str, &str); 11] = [
     ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
     ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),
     ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
-    ("FrameSeries::create_or_replace removes it", "earlier=\"replace\" removes it"),
-    ("CsvHistory::create_or_replace replaces it", "earlier=\"replace\" replaces it"),
+    ("Earlier::Replace removes it", "earlier=\"replace\" removes it"),
+    ("Earlier::Replace replaces it", "earlier=\"replace\" replaces it"),
     ("::", "."),
 ];
 

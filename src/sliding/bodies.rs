@@ -10,7 +10,7 @@ use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
 use crate::error::{Error, Result, SlidingError, Special};
-use crate::fft::wave_numbers;
+use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
 use crate::numeric::EULER;
 
@@ -119,20 +119,13 @@ impl Bodies {
             Some(layer) => layer.of_waves(&self.kernel, (axis, speed), &self.creep, &waves),
             None => (0..aside).map(|i| (0..waves.len()).map(|k| of(i, k)).collect()).collect(),
         };
-        let mut coefficients = Coefficients::zero(aside, 2 * n - 1);
-        for (i, own) in table.iter().enumerate() {
-            for (k, displaces) in own.iter().enumerate() {
-                // the shortest wave is its own mirror image
-                let both = k > 0 && 2 * k < n;
-                let [re, im] = if both { [2.0 * displaces.re, 2.0 * displaces.im] } else { [displaces.re, 0.0] };
-                for m in 0..2 * n - 1 {
-                    let (sin, cos) = (TAU * (k * (m + 1) % n) as f64 / n as f64).sin_cos();
-                    coefficients.response[i][m] += (re * cos - im * sin) / n as f64;
-                    coefficients.loss[i][m] += waves[k] * (im * cos + re * sin) / n as f64;
-                }
-            }
-        }
-        coefficients
+        // the shortest wave is its own mirror image
+        let part = |i: usize, k: usize| if 2 * k == n { table[i][k].re.into() } else { table[i][k] } / n as f64;
+        let along = |part: &dyn Fn(usize, usize) -> Complex64| {
+            let rows = real_rows(aside, n, part);
+            rows.chunks_exact(n).map(|row| (1..2 * n).map(|m| row[m % n]).collect()).collect()
+        };
+        Coefficients { response: along(&part), loss: along(&|i, k| -Complex64::I * waves[k] * part(i, k)) }
     }
 
     /// What the approach of a body that flows exceeds the one after a way of the length of the grid by, under a force:

@@ -119,12 +119,6 @@ impl fmt::Display for SlidingReport {
     }
 }
 
-/// Fails by the first of these that is the case, with what is not covered, and the cure.
-fn refuse<const N: usize>(cases: [(bool, &'static str, &'static str); N]) -> Result<()> {
-    let refuse = |(_, what, cure)| Err(Error::not_covered(Special::SteadyMotion, what, cure));
-    cases.into_iter().find(|(is, ..)| *is).map_or(Ok(()), refuse)
-}
-
 /// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
 fn jumps(gap: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> bool {
     (0..2).filter(|&axis| periodic[axis] && cells[axis] > 2).any(|axis| {
@@ -209,7 +203,7 @@ impl Builder {
 
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
         let shift = "multiply the velocity by the shift factor of the temperature";
-        refuse([
+        Special::SteadyMotion.refuses([
             (self.attraction.is_some(), "a contact of surfaces that attract each other", "build it without attraction"),
             (self.temperature.is_some(), "a history of the temperature", shift),
             (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
@@ -225,7 +219,7 @@ impl Builder {
         let jumps = jumps(&contact.initial_gap().above, grid.cells(), periodic);
         let by_modulus = modulus.is_some() && periodic != [true; 2];
         let measured = "a modulus over frequency, of a body that is not periodic along both axes,";
-        refuse([
+        Special::SteadyMotion.refuses([
             (!has_rows, "a body of coefficients", "take InfluenceKernel::from_spectrum or a layer"),
             (contact.bodies() > 1, "a contact of several rigid bodies", "take one"),
             (jumps, "a shape that jumps at the period of its body", "take one that repeats, or taper its ends"),
@@ -237,7 +231,7 @@ impl Builder {
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
         let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
-        refuse([(flows, "a body that flows", rest)])?;
+        Special::SteadyMotion.refuses([(flows, "a body that flows", rest)])?;
         let on_base = |base: Material| {
             let cure = "make the layer by Layer::bonded_to_material";
             let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
@@ -250,7 +244,7 @@ impl Builder {
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
             let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
             let thin = ends().any(|axis| grid.lengths()[axis] > THINNEST * layer.thickness());
-            refuse([
+            Special::SteadyMotion.refuses([
                 (other, "a base of another ratio than the layer's", cure),
                 (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
             ])?;
@@ -282,7 +276,7 @@ impl SteadySliding {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
         let on_spring = matches!(load, Load::Spring { .. });
-        refuse([(on_spring, "a body on a spring", "give the force or the approach")])?;
+        Special::SteadyMotion.refuses([(on_spring, "a body on a spring", "give the force or the approach")])?;
         let (free, lowered) = self.contact.steady_motion(load)?;
         let mut bodies = self.moving(velocity, load)?;
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
@@ -362,7 +356,11 @@ impl SteadySliding {
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
         let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
-        refuse([(drifts, "a body that flows, under an approach or at rest,", "give a force and a velocity")])?;
+        Special::SteadyMotion.refuses([(
+            drifts,
+            "a body that flows, under an approach or at rest,",
+            "give a force and a velocity",
+        )])?;
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
         let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
@@ -370,7 +368,7 @@ impl SteadySliding {
         let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
         let what =
             "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
-        refuse([(near, what, "give the force, or a datum farther away")])?;
+        Special::SteadyMotion.refuses([(near, what, "give the force, or a datum farther away")])?;
         Ok(bodies)
     }
 

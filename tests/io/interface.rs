@@ -146,7 +146,7 @@ mod outputs {
     use std::fs;
     use std::io::ErrorKind::AlreadyExists;
 
-    use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata};
+    use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata};
 
     use super::*;
     use crate::common::temporary::Temporary;
@@ -161,9 +161,13 @@ mod outputs {
         let count = |name: &str| fs::read_dir(folder.join(name)).unwrap().count();
 
         let (archives, images, table) = (folder.join("npz"), folder.join("vtk"), folder.join("history.csv"));
-        let mut first = FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
-        let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
+        let mut first =
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &contact, &[Field::Pressure], Earlier::Refuse)
+                .unwrap();
+        let mut second =
+            FrameSeries::create(&images, Format::Vtk, &metadata(), &contact, &[Field::Pressure], Earlier::Refuse)
+                .unwrap();
+        let mut third = CsvHistory::create(&table, &metadata(), &contact, &[], Earlier::Refuse).unwrap();
         for _ in 0..3 {
             first.record(&contact).unwrap();
             second.record(&contact).unwrap();
@@ -172,9 +176,11 @@ mod outputs {
         fs::write(archives.join("notes.txt"), "kept").unwrap();
         let before = fs::read(&table).unwrap();
         for error in [
-            FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap_err(),
-            FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap_err(),
-            CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &contact, &[Field::Pressure], Earlier::Refuse)
+                .unwrap_err(),
+            FrameSeries::create(&images, Format::Vtk, &metadata(), &contact, &[Field::Pressure], Earlier::Refuse)
+                .unwrap_err(),
+            CsvHistory::create(&table, &metadata(), &contact, &[], Earlier::Refuse).unwrap_err(),
         ] {
             assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
             let named = ["frame_000000.npz", "vtk", "history.csv"];
@@ -184,19 +190,24 @@ mod outputs {
         assert_eq!([count("npz"), count("vtk")], [4, 4]);
 
         // an invalid request removes nothing
-        let twice = FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).unwrap_err();
+        let twice =
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &contact, &[Field::Gap; 2], Earlier::Replace)
+                .unwrap_err();
         assert!(messages(&twice).concat().contains("gap is requested twice"), "{:?}", messages(&twice));
         assert_eq!(
-            CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).unwrap_err().kind(),
+            CsvHistory::create(&table, &metadata(), &contact, &["a", "a"], Earlier::Replace).unwrap_err().kind(),
             ErrorKind::File
         );
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!(count("npz"), 4);
 
         let mut first =
-            FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = FrameSeries::create_or_replace(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
-        CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &contact, &[Field::Pressure], Earlier::Replace)
+                .unwrap();
+        let mut second =
+            FrameSeries::create(&images, Format::Vtk, &metadata(), &contact, &[Field::Pressure], Earlier::Replace)
+                .unwrap();
+        CsvHistory::create(&table, &metadata(), &contact, &[], Earlier::Replace).unwrap();
         assert_eq!([count("npz"), count("vtk")], [1, 0]);
         first.record(&contact).unwrap();
         second.record(&contact).unwrap();
@@ -204,7 +215,7 @@ mod outputs {
         assert_eq!(fs::read_to_string(&table).unwrap().lines().count(), 2);
         assert_eq!(fs::read_to_string(archives.join("notes.txt")).unwrap(), "kept");
 
-        let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
+        let error = CsvHistory::create(&archives, &metadata(), &contact, &[], Earlier::Replace).unwrap_err();
         assert!(matches!(error, Error::File(FileError::NotAFile { .. })), "{error}");
     }
 }

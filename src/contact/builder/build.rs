@@ -14,7 +14,8 @@ use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
-use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, count_within, length, positive};
+use crate::error::{AdhesionError, Error, KernelError, ONE_PROCESS, Refusal, Result, Special, StepError};
+use crate::error::{count_within, length, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
@@ -108,19 +109,18 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
-        self.special().map_or(Ok(()), |[what, _]| Err(Error::not_shared(what)))
+        Special::Ranks.refuses(self.special().map(|(is, what, _)| (is, what, ONE_PROCESS)))
     }
 
     /// What neither ranks nor surfaces that attract each other cover, and what to do.
-    fn special(&self) -> Option<[&'static str; 2]> {
+    fn special(&self) -> [Refusal; 4] {
         let Settings { solver, time_rule, frame, .. } = self.settings;
-        let refused = [
-            (self.gaps.len() > 1, ["a contact of several rigid bodies", "compute one body"]),
-            (solver != Solver::ActiveSet, ["Solver::PolonskyKeer", "take Solver::ActiveSet"]),
-            (!time_rule.needs_series(), ["a direct sum", "take TimeRule::Exponential"]),
-            (frame != Frame::Bodies, ["Frame::Indenter", "take Frame::Bodies"]),
-        ];
-        refused.into_iter().find(|(refused, _)| *refused).map(|(_, what)| what)
+        [
+            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
+            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
+            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
+            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
+        ]
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -189,10 +189,11 @@ impl Builder {
     fn attraction_is_covered(&self) -> Result<()> {
         let cure =
             "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
-        let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
-        let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
-        let refused = self.special().or(shared).or(planned);
-        refused.map_or(Ok(()), |[what, cure]| Err(Error::not_covered(Special::Attraction, what, cure)))
+        Special::Attraction.refuses(self.special())?;
+        Special::Attraction.refuses([
+            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
+            (self.planned, "a grid that was planned without attraction", cure),
+        ])
     }
 
     /// Material, kernel and history.
