@@ -92,6 +92,16 @@ pub fn to_array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyRe
     values.into_pyarray(py).reshape(shape.to_vec())
 }
 
+/// Columns as arrays, by name.
+pub fn columns<'py>(
+    py: Python<'py>,
+    named: impl IntoIterator<Item = (&'static str, Vec<f64>)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    named.into_iter().try_for_each(|(name, column)| all.set_item(name, column.into_pyarray(py)))?;
+    Ok(all)
+}
+
 /// A function of one number, at a number or at each value of an array: a number or an array of the same shape.
 pub fn mapped<'py>(name: &str, at: &Bound<'py, PyAny>, of: impl Fn(f64) -> f64) -> PyResult<Bound<'py, PyAny>> {
     let py = at.py();

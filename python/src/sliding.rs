@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use numpy::{Complex64, IntoPyArray};
+use numpy::Complex64;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -231,11 +231,7 @@ impl SlidingTable {
     /// Arrays with a value for each state: "velocity1", "velocity2" [m/s], "temperature" [K] (NaN without), "force" [N], "approach" [m],
     /// "friction", "lateral_force1", "lateral_force2" [N], "contact_area" [m²], "mean_gap" [m] and "dissipation" [W].
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        for (name, of) in COLUMNS {
-            all.set_item(name, self.0.states().iter().map(of).collect::<Vec<_>>().into_pyarray(py))?;
-        }
-        Ok(all)
+        crate::arrays::columns(py, COLUMNS.map(|(name, of)| (name, self.0.states().iter().map(of).collect())))
     }
 
     /// A picture of a column over the speed, a curve for each temperature and load.

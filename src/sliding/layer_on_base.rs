@@ -35,7 +35,6 @@ pub(super) const THINNEST: f64 = 64.0;
 pub(super) struct LayerOnBase {
     pub(super) layer: Layer,
     pub(super) base: Creep,
-    pub(super) base_poisson: f64,
 }
 
 impl Layer {
@@ -84,8 +83,8 @@ impl LayerOnBase {
     /// C₁ and C₂ at a frequency, and L of a wave qh.
     fn at(&self, creep: &Creep, omega: f64) -> (Complex64, Complex64, impl Fn(f64) -> Complex64) {
         let [own, base] = [creep.at(omega), self.base.at(omega)];
-        let mu = base / (1.0 - self.base_poisson) * ((1.0 - self.layer.poisson_ratio()) / own);
-        let layer = self.layer.oscillating(mu);
+        let base_poisson = self.layer.base_poisson().unwrap_or(0.5);
+        let layer = self.layer.oscillating(base / (1.0 - base_poisson) * ((1.0 - self.layer.poisson_ratio()) / own));
         (own, base, move |t| layer.at(t))
     }
 

@@ -233,13 +233,10 @@ impl Builder {
         let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
         Special::SteadyMotion.refuses([(flows, "a body that flows", rest)])?;
         let on_base = |base: Material| {
-            let cure = "make the layer by Layer::bonded_to_material";
+            let (what, cure) =
+                ("a base below another body than a layer", "make the layer by Layer::bonded_to_material");
             let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
-            let layer = layer.ok_or(Error::not_covered(
-                Special::SteadyMotion,
-                "a base below another body than a layer",
-                cure,
-            ))?;
+            let layer = layer.ok_or(Error::not_covered(Special::SteadyMotion, what, cure))?;
             let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
             let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
@@ -248,11 +245,7 @@ impl Builder {
                 (other, "a base of another ratio than the layer's", cure),
                 (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
             ])?;
-            Ok::<_, Error>(LayerOnBase {
-                layer,
-                base: series(&base)?,
-                base_poisson: layer.base_poisson().unwrap_or(0.5),
-            })
+            Ok::<_, Error>(LayerOnBase { layer, base: series(&base)? })
         };
         let layer = base.map(on_base).transpose()?;
         let bodies = Arc::new(Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() });
