@@ -60,7 +60,7 @@ impl Builder {
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
-        rows.together(|| {
+        rows.unless_lost(|| {
             let (parts, gap, even, region) = self.shared_parts(&gaps, &rows)?;
             rows.agree(parts.footprint(1).check(&region, 0))?;
             let indenter = gap.on(&region, &self.grid, even);
@@ -97,7 +97,7 @@ impl Builder {
     fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
         // for the agreement on the grid, before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
-        anything.together(|| {
+        anything.unless_lost(|| {
             anything.agree(self.may_be_shared())?;
             let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
             let Settings { tolerance, symmetry, .. } = self.settings;
@@ -162,7 +162,7 @@ impl Builder {
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
-            return rows.together(|| {
+            return rows.unless_lost(|| {
                 let (parts, _, _, region) = self.shared_parts(&self.gaps, &rows)?;
                 Ok(parts.footprint(1).on(&region))
             });

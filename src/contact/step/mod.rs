@@ -95,7 +95,7 @@ impl ViscoelasticContact {
 
     fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
-        rows.together(|| {
+        rows.unless_lost(|| {
             let requested = self.request_next(dt, loads);
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
             let step = rows.agree(requested)?;
@@ -162,7 +162,7 @@ impl ViscoelasticContact {
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other
         let cells = if region.is_shared() { 0 } else { region.len() };
-        let tried = rows.together(|| {
+        let tried = rows.unless_lost(|| {
             rows.same(marks(step))?;
             // ranks would see the flag in different iterations: they ask once a step
             if step.cancelled.is_some_and(|flag| rows.any(flag.load(Ordering::Relaxed))) {
