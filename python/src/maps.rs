@@ -120,13 +120,14 @@ impl HeightMap {
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
         let map = match ending.as_str() {
             "sdf" | "sur" | "pro" | "x3p" => py.detach(|| geo::HeightMap::read(&path)),
-            "gsf" if unit.is_none() => py.detach(|| geo::HeightMap::read(&path)),
+            "gsf" => {
+                let file = opened(&path)?;
+                py.detach(|| geo::HeightMap::from_gsf(file, unit))
+            }
             _ => {
                 let file = opened(&path)?;
                 let unit = unit.ok_or_else(|| needs("the unit of its numbers, such as unit=\"um\""))?;
-                if ending == "gsf" {
-                    py.detach(|| geo::HeightMap::from_gsf_with(file, unit))
-                } else if points {
+                if points {
                     py.detach(|| geo::HeightMap::from_xyz(file, unit, unit, format))
                 } else if profile {
                     py.detach(|| geo::HeightMap::from_profile(file, unit, unit, format))
