@@ -97,7 +97,7 @@ impl Curve {
         let times = &times[inside.clone()];
         let force = harmonic(times, &self.force()[inside.clone()], frequency)?;
         let drive = harmonic(times, &self.experiment().protocol().drive()[inside], frequency)?;
-        let (spring, tip) = (self.experiment.stiffness, &self.experiment.tip);
+        let spring = self.experiment.stiffness;
         let deflection = force.amplitude / spring;
         let amplitude = drive.amplitude - deflection;
         let depth = positive("mean depth in the window", drive.mean - contact_point - force.mean / spring)?;
@@ -107,10 +107,7 @@ impl Curve {
             amplitude.norm() > 1e-9 * depth && amplitude.norm() < depth,
             "above 1e-9 of the mean depth, and below it",
         )?;
-        let level = |depth: f64| match tip.level_at(tip.approach(0.0) + depth) {
-            level if level.is_nan() => Err(Error::BeyondStates { curve: 0, depth }),
-            level => Ok(level),
-        };
+        let level = |depth: f64| self.experiment.level_within(depth);
         let stiffness = (level(depth + swing)? - level(depth - swing)?) / (2.0 * swing);
         let modulus = force.amplitude / (stiffness * amplitude);
         // dE*/dF̂ of E* = F̂/(S (ẑ − F̂/k)): an analytic function

@@ -108,29 +108,10 @@ impl Linear {
         }
     }
 
-    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long go as far as they may, and the
-    /// others are found again; if the sum of squares would not fall so, the whole step is shortened.
+    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long go as far as they may.
     fn step(&self, damping: f64) -> Vec<f64> {
-        let limits: Vec<f64> = self.scale.iter().map(|scale| LONGEST_STEP * scale).collect();
-        let mut held: Vec<Option<f64>> = vec![None; limits.len()];
-        let whole = self.solve(damping, &held);
-        let mut step = whole.clone();
-        loop {
-            let long = (0..limits.len()).filter(|&j| held[j].is_none() && step[j].abs() > limits[j]);
-            let long: Vec<usize> = long.collect();
-            if long.is_empty() {
-                break;
-            }
-            long.into_iter().for_each(|j| held[j] = Some(limits[j] * step[j].signum()));
-            step = self.solve(damping, &held);
-        }
-        let unscaled =
-            |step: &[f64]| -> Vec<f64> { step.iter().zip(&self.scale).map(|(s, scale)| s / scale).collect() };
-        if self.promised(&unscaled(&step)) > 0.0 {
-            return unscaled(&step);
-        }
-        let shorter = whole.iter().zip(&limits).fold(1.0, |least: f64, (s, limit)| least.min(limit / s.abs()));
-        unscaled(&whole).into_iter().map(|s| s * shorter).collect()
+        let solved = self.solve(damping, &self.right);
+        solved.iter().zip(&self.scale).map(|(s, scale)| (s / scale).clamp(-LONGEST_STEP, LONGEST_STEP)).collect()
     }
 
     /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
@@ -140,35 +121,22 @@ impl Linear {
         let curvature =
             Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * ((ahead[k] - residuals[k]) / AHEAD - linear[k]));
         let right = slopes.transpose() * curvature;
-        let bent = Linear {
-            gram: self.gram.clone(),
-            right: (0..step.len()).map(|j| -right[j] / self.scale[j]).collect(),
-            scale: self.scale.clone(),
-        };
-        let acceleration = bent.solve(damping, &vec![None; step.len()]);
-        let size = |of: &mut dyn Iterator<Item = f64>| of.map(|s| s * s).sum::<f64>().sqrt();
-        let length = size(&mut step.iter().zip(&self.scale).map(|(s, scale)| s * scale));
-        if size(&mut acceleration.iter().copied()) <= MOST_BENT * length {
+        let right: Vec<f64> = (0..step.len()).map(|j| -right[j] / self.scale[j]).collect();
+        let acceleration = self.solve(damping, &right);
+        let length: f64 = step.iter().zip(&self.scale).map(|(s, scale)| (s * scale).powi(2)).sum();
+        if square(&acceleration) <= MOST_BENT * MOST_BENT * length {
             for ((s, a), scale) in step.iter_mut().zip(acceleration).zip(&self.scale) {
                 *s += (0.5 * a / scale).clamp(-LONGEST_STEP, LONGEST_STEP);
             }
         }
     }
 
-    /// The scaled step, some coordinates of which are held.
-    fn solve(&self, damping: f64, held: &[Option<f64>]) -> Vec<f64> {
-        let free: Vec<usize> = (0..held.len()).filter(|&j| held[j].is_none()).collect();
+    /// The scaled step of a right side.
+    fn solve(&self, damping: f64, right: &[f64]) -> Vec<f64> {
         let entry = |i: usize, j: usize| self.gram[(i, j)] + if i == j { damping.max(DAMPING[0]) } else { 0.0 };
-        let matrix = Mat::from_fn(free.len(), free.len(), |i, j| entry(free[i], free[j]));
-        let right = Col::from_fn(free.len(), |i| {
-            let known = held.iter().enumerate().filter_map(|(j, s)| Some(self.gram[(free[i], j)] * (*s)?));
-            self.right[free[i]] - known.sum::<f64>()
-        });
-        let solved = matrix.partial_piv_lu().solve(&right);
-        let mut step: Vec<f64> = held.iter().map(|s| s.unwrap_or_default()).collect();
-        let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
-        free.iter().enumerate().for_each(|(i, &j)| step[j] = finite(solved[i]));
-        step
+        let matrix = Mat::from_fn(right.len(), right.len(), entry);
+        let solved = matrix.partial_piv_lu().solve(&Col::from_fn(right.len(), |j| right[j]));
+        (0..right.len()).map(|j| if solved[j].is_finite() { solved[j] } else { 0.0 }).collect()
     }
 
     /// The reduction of the sum of squares by a step.

@@ -49,6 +49,7 @@ mod fit;
 mod forward;
 mod identification;
 mod least_squares;
+mod loading;
 mod many;
 mod model;
 mod noise;

@@ -4,9 +4,8 @@ use viscocontact::plot::{COLORS, Chart, Legend, Picture, Quantity, Scale, Style}
 
 use crate::error::{Result, within};
 use crate::fit::Fit;
+use crate::statistics::WITHIN_95;
 
-/// Standard deviations of a normal distribution within which 95 % of the draws are.
-const WITHIN_95: f64 = 1.96;
 /// Points of a curve of the modulus.
 const POINTS: usize = 100;
 
@@ -68,7 +67,7 @@ impl Fit {
 
     /// The contact modulus over time with its band of 95 %, from the shortest sampling interval to the length of the curves.
     pub fn modulus_chart(&self) -> Chart {
-        let [first, last] = self.window();
+        let [first, last] = self.problem.window;
         let times = (0..=POINTS).map(|k| first * (last / first).powf(k as f64 / POINTS as f64));
         let band: Vec<(f64, [f64; 2])> = times.map(|time| (time, self.modulus_band(time))).collect();
         let falls_by_decades = band[0].1[0] > 10.0 * band[POINTS].1[0];

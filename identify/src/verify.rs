@@ -1,7 +1,6 @@
 //! A fit compared with the stepper in space.
 
 use viscocontact::contact::Builder;
-use viscocontact::load::Load;
 
 use crate::error::{Result, within};
 use crate::fit::Fit;
@@ -41,17 +40,12 @@ impl Fit {
     pub fn verify(&self, curve: usize, scene: &Builder) -> Result<Verification> {
         within("index of the curve", curve as f64, curve < self.curves().len(), "below the number of curves")?;
         let experiment = self.curves()[curve].experiment();
-        let stiffness = self.estimate("stiffness").map_or(experiment.stiffness, |estimate| estimate.value);
-        let shift = experiment.tip().approach(0.0) - self.contact_point(curve);
+        let (contact_point, stiffness) = (self.contact_point(curve), self.problem.stiffness(curve, &self.values));
         let mut contact = scene.clone().material(self.material()?).build()?;
         let (times, samples) = (experiment.protocol().times(), self.samples(curve));
         let (mut force, mut before) = (Vec::with_capacity(times.len()), times[0]);
         for (&time, &drive) in times.iter().zip(experiment.protocol().drive()) {
-            let load = match stiffness {
-                f64::INFINITY => Load::approach(drive + shift),
-                stiffness => Load::spring(stiffness, drive + shift),
-            };
-            force.push(contact.step(time - before, load)?.force);
+            force.push(contact.step(time - before, experiment.load(drive - contact_point, stiffness))?.force);
             before = time;
         }
         let greatest = samples.iter().map(|sample| sample.force).fold(0.0, f64::max);

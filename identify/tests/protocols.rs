@@ -78,7 +78,7 @@ fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
         (Protocol::trapezoid(1.0, [0.0, 1.0, 1.0], 0.1), "duration of a line"),
         (Protocol::trapezoid(1.0, [1.0, -1.0, 1.0], 0.1), "duration of a line"),
         (Protocol::trapezoid(1.0, [1.0; 3], 0.0), "interval of samples"),
-        (Protocol::trapezoid(1.0, [1.0; 3], 1.0e-12), "samples of a line"),
+        (Protocol::trapezoid(1.0, [1.0; 3], 1.0e-12), "samples of a piece"),
         (Protocol::ramp_hold_retract(0.0, [0.0, 1.0], 1.0, 0.1), "speed"),
         (Protocol::ramp_hold_retract(1.0, [-1.0, 1.0], 1.0, 0.1), "distance above the surface"),
         (Protocol::staircase(&[1.0, f64::NAN], 1.0, 1.0, 0.1), "drive"),

@@ -13,6 +13,8 @@ use crate::problem::Problem;
 
 /// Correlations that are tried first.
 const TRIED: usize = 40;
+/// Correlations beside the likeliest, at distances of half of 1/√n of atanh φ.
+const AROUND: i32 = 20;
 /// Change of a weight or a correlation at which the noise is found.
 const FOUND: f64 = 1e-3;
 /// Residuals beyond so many standard deviations have no weight (Tukey's biweight, 95 % as efficient as least squares under normal noise).
@@ -35,7 +37,8 @@ impl Identification {
     pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Minimum) -> Result<bool> {
         let mut bare = problem.clone();
         for part in &mut bare.parts {
-            part.weights.fill(1.0);
+            part.scale = 1.0;
+            part.outliers.fill(1.0);
             if self.fits_correlation() {
                 part.whitening = Whitening::Autoregressive(0.0);
             }
@@ -93,14 +96,14 @@ impl Identification {
             let scale = if is_unequal { mean.exp() / deviation } else { 1.0 };
             is_found &= (scale / part.scale).ln().abs() < FOUND;
             part.scale = scale;
-            part.weights = part.outliers.iter().map(|weight| scale * weight).collect();
         }
         is_found
     }
 }
 
-/// The autoregressive coefficient of the greatest restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971): the residuals
-/// are those of the problem that is linearised by the rows of the Jacobian from `first` on.
+/// The autoregressive coefficient φ by the restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971): the residuals are those of
+/// the problem that is linearised by the rows of the Jacobian from `first` on. Parameters of slow curves have deviations in proportion to 1/(1 − φ),
+/// of which φ has the mean under this likelihood: that of the greatest likelihood gives too short intervals where the points are few.
 fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
     let points = residuals.len();
     let columns: Vec<Vec<f64>> = (0..jacobian.ncols())
@@ -133,5 +136,15 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
     if points <= count || square(residuals) == 0.0 {
         return 0.0;
     }
-    least(CORRELATIONS[0], CORRELATIONS[1], TRIED, unlikelihood)
+    let [low, high] = CORRELATIONS.map(f64::atanh);
+    let best = least(low, high, TRIED, |z| unlikelihood(z.tanh()));
+    let (of_best, step) = (unlikelihood(best.tanh()), 0.5 / (points as f64).sqrt());
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for z in (-AROUND..=AROUND).map(|k| best + step * f64::from(k)).filter(|z| (low..=high).contains(z)) {
+        // even in φ: dφ = (1 − φ²) dz
+        let (phi, likelihood) = (z.tanh(), (0.5 * (of_best - unlikelihood(z.tanh()))).exp());
+        let weight = likelihood * (1.0 - phi * phi);
+        (sum, weights) = (sum + weight / (1.0 - phi), weights + weight);
+    }
+    1.0 - weights / sum
 }

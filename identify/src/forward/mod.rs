@@ -8,8 +8,6 @@ mod real;
 mod roots;
 mod tip;
 
-use std::sync::Arc;
-
 use viscocontact::states::ElasticStates;
 
 use crate::error::{Error, Result};
@@ -17,7 +15,7 @@ use crate::series::Prony;
 use cycle::Cycle;
 pub(crate) use growth::Term;
 pub(crate) use real::{Dual, LANES, Real};
-pub(crate) use roots::Roots;
+pub(crate) use roots::{Roots, root};
 use tip::Tip;
 
 /// A drive beyond the contact point \[m\] at times \[s\].
@@ -68,8 +66,9 @@ impl From<Response<f64>> for Sample {
 pub(crate) struct Forward(Tip);
 
 impl Forward {
-    pub(crate) fn new(states: &Arc<ElasticStates>) -> Forward {
-        Forward(Tip::new(states))
+    /// The depth is 0 at the approach `surface`.
+    pub(crate) fn new(states: &ElasticStates, surface: f64) -> Forward {
+        Forward(Tip::new(states, surface))
     }
 
     /// The response to a drive through a spring of `give` 1/k \[m/N\]. `record` is given each sample with the terms of its force.

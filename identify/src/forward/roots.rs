@@ -25,7 +25,7 @@ impl Roots {
         self.replayed = Some(0);
     }
 
-    /// The root of a function that falls between two values, by the Illinois rule; the end that is nearer to a root outside.
+    /// The root of a function that falls between two values, as [`root`].
     pub(super) fn solve<T: Real>(
         &mut self,
         bracket: [T; 2],
@@ -40,6 +40,9 @@ impl Roots {
             }
             None => {
                 let root = root([low, high], tolerance, |at| Ok(value(T::from(at))?.value()))?;
+                if root.is_nan() {
+                    return Err(Stop::NoRoot);
+                }
                 self.found.push(root);
                 root
             }
@@ -54,11 +57,12 @@ impl Roots {
     }
 }
 
-fn root(
+/// The root of a function that falls between two values, by the Illinois rule; the end that is nearer to a root outside, NaN without one.
+pub(crate) fn root<E>(
     [mut low, mut high]: [f64; 2],
     tolerance: f64,
-    mut value: impl FnMut(f64) -> Result<f64, Stop>,
-) -> Result<f64, Stop> {
+    mut value: impl FnMut(f64) -> Result<f64, E>,
+) -> Result<f64, E> {
     let (mut below, mut above) = (value(low)?, value(high)?);
     if below <= 0.0 || above >= 0.0 {
         return Ok(if below <= 0.0 { low } else { high });
@@ -80,5 +84,5 @@ fn root(
         }
         last_side = Some(side);
     }
-    Err(Stop::NoRoot)
+    Ok(f64::NAN)
 }

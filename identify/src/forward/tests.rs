@@ -1,5 +1,7 @@
 //! Tests of the forward model.
 
+use std::sync::Arc;
+
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
@@ -8,7 +10,7 @@ use super::*;
 fn response(tip: &Arc<ElasticStates>, prony: &Prony, times: &[f64], drive: &[f64], give: f64) -> Vec<Sample> {
     let (mut samples, mut roots) = (Vec::new(), Roots::default());
     let push = |response: Response<f64>, _: &[Term<f64>]| samples.push(response.into());
-    Forward::new(tip).respond(prony, Drive { times, drive }, give, 0, &mut roots, push).unwrap();
+    Forward::new(tip, 0.0).respond(prony, Drive { times, drive }, give, 0, &mut roots, push).unwrap();
     samples
 }
 
@@ -176,7 +178,7 @@ fn derivatives_agree_with_differences() {
                 let drive: Vec<f64> = drive.iter().map(|z| z - contact).collect();
                 response(&tip, &prony, &times, &drive, give)
             };
-            let forward = Forward::new(&tip);
+            let forward = Forward::new(&tip, 0.0);
             let mut roots = Roots::default();
             let prony = Prony { moduli: vec![at[0], at[1]], rates: vec![0.0, at[2]] };
             let shifted: Vec<f64> = drive.iter().map(|z| z - at[3]).collect();
