@@ -50,7 +50,7 @@ pub(crate) fn minimise(
             }
             let mut step = model.step(damping);
             let promised = model.promised(&step);
-            if let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
+            if std::env::var("NOBEND").is_err() && let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
                 model.bend(&mut step, damping, &slopes, &r, &ahead);
             }
             let moved = along(&x, &step, 1.0);
@@ -108,10 +108,20 @@ impl Linear {
         }
     }
 
-    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long go as far as they may.
+    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long are damped more.
     fn step(&self, damping: f64) -> Vec<f64> {
-        let solved = self.solve(damping, &self.right);
-        solved.iter().zip(&self.scale).map(|(s, scale)| (s / scale).clamp(-LONGEST_STEP, LONGEST_STEP)).collect()
+        let mut damping = vec![damping.max(DAMPING[0]); self.scale.len()];
+        loop {
+            let solved = self.solve(&damping, &self.right);
+            let step: Vec<f64> = solved.iter().zip(&self.scale).map(|(s, scale)| s / scale).collect();
+            let mut long = step.iter().map(|s| s.abs() > LONGEST_STEP);
+            if long.all(|is_long| !is_long) {
+                return step;
+            }
+            for (damping, step) in damping.iter_mut().zip(&step).filter(|(_, step)| step.abs() > LONGEST_STEP) {
+                *damping = (*damping * (step.abs() / LONGEST_STEP).min(100.0)).max(DAMPING[1]);
+            }
+        }
     }
 
     /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
@@ -122,7 +132,7 @@ impl Linear {
             Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * ((ahead[k] - residuals[k]) / AHEAD - linear[k]));
         let right = slopes.transpose() * curvature;
         let right: Vec<f64> = (0..step.len()).map(|j| -right[j] / self.scale[j]).collect();
-        let acceleration = self.solve(damping, &right);
+        let acceleration = self.solve(&vec![damping.max(DAMPING[0]); step.len()], &right);
         let length: f64 = step.iter().zip(&self.scale).map(|(s, scale)| (s * scale).powi(2)).sum();
         if square(&acceleration) <= MOST_BENT * MOST_BENT * length {
             for ((s, a), scale) in step.iter_mut().zip(acceleration).zip(&self.scale) {
@@ -132,8 +142,8 @@ impl Linear {
     }
 
     /// The scaled step of a right side.
-    fn solve(&self, damping: f64, right: &[f64]) -> Vec<f64> {
-        let entry = |i: usize, j: usize| self.gram[(i, j)] + if i == j { damping.max(DAMPING[0]) } else { 0.0 };
+    fn solve(&self, damping: &[f64], right: &[f64]) -> Vec<f64> {
+        let entry = |i: usize, j: usize| self.gram[(i, j)] + if i == j { damping[i] } else { 0.0 };
         let matrix = Mat::from_fn(right.len(), right.len(), entry);
         let solved = matrix.partial_piv_lu().solve(&Col::from_fn(right.len(), |j| right[j]));
         (0..right.len()).map(|j| if solved[j].is_finite() { solved[j] } else { 0.0 }).collect()

@@ -7,7 +7,7 @@ use faer::Mat;
 
 use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
-use crate::forward::{Drive, Dual, Forward, LANES, Real, Response, Roots, Sample, Term};
+use crate::forward::{Forward, LANES, Real, Response, Roots, Sample, Term};
 use crate::model::{Model, Scale};
 use crate::noise::Whitening;
 use crate::parameters::{Chosen, Kind, Parameter, Property};
@@ -41,7 +41,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    fn new(curve: Curve, whitening: Whitening) -> Part {
+    fn new(index: usize, curve: Curve, whitening: Whitening) -> Part {
         let Protocol { times, drive } = &curve.experiment.protocol;
         let last = times.len() - 1;
         let speed = |k: usize| {
@@ -49,7 +49,7 @@ impl Part {
             (drive[b] - drive[a]) / (times[b] - times[a])
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
-        let forward = Forward::new(&curve.experiment.tip, curve.experiment.surface);
+        let forward = Forward::new(index, &curve.experiment.tip, curve.experiment.surface);
         Part { curve, whitening, scale: 1.0, outliers, forward, speed }
     }
 
@@ -122,7 +122,7 @@ impl Problem {
         let times = || curves.iter().map(|curve| curve.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
-        let part = |(k, curve): (usize, Curve)| Ok(Part::new(curve.clone(), whitening(k, curve.force.len())?));
+        let part = |(k, curve): (usize, Curve)| Ok(Part::new(k, curve.clone(), whitening(k, curve.force.len())?));
         let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
         Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }
@@ -256,22 +256,20 @@ impl Problem {
     }
 
     /// Force of the contact of a curve, and where the tip is, at each sample. `record` is given each with the terms of its force.
-    fn respond<T: Real>(
+    fn respond<const N: usize>(
         &self,
         curve: usize,
-        prony: &Prony<T>,
-        contact_point: T,
-        stiffness: T,
+        prony: &Prony<Real<N>>,
+        contact_point: Real<N>,
+        stiffness: Real<N>,
         roots: &mut Roots,
-        record: impl FnMut(Response<T>, &[Term<T>]),
+        record: impl FnMut(Response<N>, &[Term<N>]),
     ) -> Result<()> {
         let part = &self.parts[curve];
-        let each = if T::DERIVES { LANES + 1 } else { 1 };
-        self.work.fetch_add(each * part.len() * prony.moduli.len(), Ordering::Relaxed);
+        self.work.fetch_add(N.max(1) * part.len() * prony.moduli.len(), Ordering::Relaxed);
         let Protocol { times, drive } = &part.curve.experiment.protocol;
-        let drive: Vec<T> = drive.iter().map(|&z| T::from(z) - contact_point).collect();
-        let give = T::from(1.0) / stiffness;
-        part.forward.respond(prony, Drive { times, drive: &drive }, give, curve, roots, record)
+        let drive: Vec<Real<N>> = drive.iter().map(|&z| Real::from(z) - contact_point).collect();
+        part.forward.respond(prony, times, &drive, Real::from(1.0) / stiffness, roots, record)
     }
 
     /// Response of one curve, with the terms of the force of each sample.
@@ -280,11 +278,12 @@ impl Problem {
         curve: usize,
         values: &[f64],
         prony: &Prony,
-        record: impl FnMut(Response<f64>, &[Term<f64>]),
+        record: impl FnMut(Response<0>, &[Term<0>]),
     ) -> Result<Roots> {
         let mut roots = Roots::default();
-        let (contact_point, stiffness) = (self.contact_point(curve, values), self.stiffness(curve, values));
-        self.respond(curve, prony, contact_point, stiffness, &mut roots, record).map(|()| roots)
+        let [contact_point, stiffness] =
+            [self.contact_point(curve, values), self.stiffness(curve, values)].map(Real::from);
+        self.respond(curve, &prony.into(), contact_point, stiffness, &mut roots, record).map(|()| roots)
     }
 
     /// Response of one curve.
@@ -336,9 +335,11 @@ impl Problem {
     pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
         let values = self.values(coordinates);
         let material = self.free().filter(|parameter| parameter.kind == Kind::Material).count();
+        let moved = |column: usize| [WIDTH, -WIDTH].map(|width| self.moved(coordinates, column, width));
         let count = self.model.parameters().len();
-        let moved = |column: usize, width: f64| self.moved(coordinates, column, width)[..count].to_vec();
-        let (prony, slopes) = self.model.derived(&values[..count], self.window, material, moved)?;
+        let all = std::iter::once(values.clone()).chain((0..material).flat_map(moved));
+        let sums = self.model.sums(&all.map(|values| values[..count].to_vec()).collect::<Vec<_>>(), self.window)?;
+        let prony = &sums[0];
         let mut jacobian = Mat::zeros(self.len(), coordinates.len());
         let mut row = 0;
         for (curve, part) in self.parts.iter().enumerate() {
@@ -357,19 +358,20 @@ impl Problem {
                     None => curved.push((column, parameter)),
                 }
             }
-            let mut roots = self.terms(curve, &values, &prony, |_, _| {})?;
-            for lanes in curved.chunks(LANES) {
+            let mut roots = self.terms(curve, &values, prony, |_, _| {})?;
+            for lanes in curved.chunks(LANES - 1) {
                 let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
-                    Dual::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
+                    Real::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
                 };
-                let of = |values: &[f64], slope: &dyn Fn(&Prony, usize) -> f64| {
-                    let by = |(at, &value): (usize, &f64)| {
-                        dual(value, &|column, _| slopes.get(column).map_or(0.0, |prony| slope(prony, at)))
+                let terms = |of: fn(&Prony) -> &Vec<f64>| -> Vec<Real<LANES>> {
+                    let slope = |at: usize, column: usize| match sums.get(2 * column + 1..2 * column + 3) {
+                        Some([up, down]) => (of(up)[at] - of(down)[at]) / (2.0 * WIDTH),
+                        _ => 0.0,
                     };
-                    values.iter().enumerate().map(by).collect()
+                    let term = |(at, &value)| dual(value, &|column, _| slope(at, column));
+                    of(prony).iter().enumerate().map(term).collect()
                 };
-                let moduli = of(&prony.moduli, &|by, at| by.moduli[at]);
-                let derived = Prony { moduli, rates: of(&prony.rates, &|by, at| by.rates[at]) };
+                let derived = Prony { moduli: terms(|prony| &prony.moduli), rates: terms(|prony| &prony.rates) };
                 let measured = |value: f64, property: Property| {
                     dual(value, &|_, parameter| match parameter.kind {
                         Kind::Measurement(own, _) if own != property => 0.0,
@@ -381,7 +383,7 @@ impl Problem {
                 let shift = measured(self.contact_point(curve, &values), Property::ContactPoint);
                 let spring = measured(self.stiffness(curve, &values), Property::Stiffness);
                 let mut forces = Vec::with_capacity(part.len());
-                let record = |response: Response<Dual>, _: &[Term<Dual>]| forces.push(response.force);
+                let record = |response: Response<LANES>, _: &[Term<LANES>]| forces.push(response.force);
                 self.respond(curve, &derived, shift, spring, &mut roots, record)?;
                 for (lane, &(column, _)) in lanes.iter().enumerate() {
                     put(column, forces.iter().map(|force| force.slope(lane)).collect());

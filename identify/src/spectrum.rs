@@ -177,7 +177,7 @@ fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Mat<f64>> {
         columns.iter_mut().for_each(|column| column.push(Vec::new()));
         problem.terms(curve, values, prony, |_, terms| {
             for ((column, term), modulus) in columns.iter_mut().zip(terms).zip(&prony.moduli) {
-                column[curve].push(term.force / modulus);
+                column[curve].push(term.force.value() / modulus);
             }
         })?;
     }

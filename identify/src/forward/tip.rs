@@ -3,6 +3,7 @@
 use viscocontact::numeric::{hermite, hermite_slope};
 use viscocontact::states::{ElasticState, ElasticStates};
 
+use crate::error::{Error, Result};
 use crate::forward::real::Real;
 
 /// Relative distance of the levels from which a slope is taken.
@@ -20,16 +21,18 @@ const FLAT: f64 = 1.005;
 
 /// Elastic contact of unit modulus at one depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Elastic<T> {
+pub(super) struct Elastic<const N: usize> {
     /// Force over modulus \[m²\].
-    pub(super) force: T,
+    pub(super) force: Real<N>,
     /// Growth of the force with the depth \[m\].
-    pub(super) stiffness: T,
+    pub(super) stiffness: Real<N>,
 }
 
 /// The elastic states of a tip by depth, a power of it below the first node.
 #[derive(Clone, Debug)]
 pub(super) struct Tip {
+    /// Index of its curve, for errors.
+    curve: usize,
     last_depth: f64,
     /// ln of the depth of the first node, and the distance to the next one.
     first: f64,
@@ -40,7 +43,7 @@ pub(super) struct Tip {
 
 impl Tip {
     /// The depth is 0 at the approach `surface`.
-    pub(super) fn new(tip: &ElasticStates, surface: f64) -> Tip {
+    pub(super) fn new(curve: usize, tip: &ElasticStates, surface: f64) -> Tip {
         let (states, depth_of) = (tip.states(), |state: &ElasticState| state.approach - surface);
         let exponent = |state: &ElasticState| state.load_stiffness * depth_of(state) / state.level;
         let last_depth = states.last().map_or(0.0, |last| tip.approach(last.level) - surface);
@@ -64,7 +67,7 @@ impl Tip {
         if let Some(state) = start {
             nodes[0] = [state.level.ln(), exponent(state)];
         }
-        Tip { last_depth, first, step, nodes }
+        Tip { curve, last_depth, first, step, nodes }
     }
 
     /// Depth of the last state \[m\].
@@ -72,11 +75,19 @@ impl Tip {
         self.last_depth
     }
 
-    /// The elastic contact at a depth; `None` beyond the last state.
-    pub(super) fn at<T: Real>(&self, depth: T) -> Option<Elastic<T>> {
+    /// The error of a depth beyond the last state.
+    pub(super) fn beyond(&self, depth: f64) -> Error {
+        Error::BeyondStates { curve: self.curve, depth }
+    }
+
+    /// The elastic contact at a depth.
+    pub(super) fn at<const N: usize>(&self, depth: Real<N>) -> Result<Elastic<N>> {
         let at = depth.value();
         if at <= 0.0 {
-            return Some(self.first());
+            return Ok(self.first());
+        }
+        if at > self.last_depth * (1.0 + NEAR) {
+            return Err(self.beyond(at));
         }
         let place = (at.ln() - self.first) / self.step;
         let k = (place as usize).min(self.nodes.len() - 2);
@@ -88,14 +99,13 @@ impl Tip {
         // the slope of a cubic is a parabola, whose differences are exact
         let bend = if below < 0.0 { 0.0 } else { (slope_at(t + 0.5) - slope_at(t - 0.5)) / self.step };
         let (stiffness, growth) = (force * slope / at, force * (slope * (slope - 1.0) + bend) / (at * at));
-        let is_inside = at <= self.last_depth * (1.0 + NEAR);
-        is_inside.then(|| Elastic { force: depth.mapped(force, stiffness), stiffness: depth.mapped(stiffness, growth) })
+        Ok(Elastic { force: depth.mapped(force, stiffness), stiffness: depth.mapped(stiffness, growth) })
     }
 
     /// The elastic contact at first touch, where only a flat punch or a cell is stiff.
-    pub(super) fn first<T: Real>(&self) -> Elastic<T> {
+    pub(super) fn first<const N: usize>(&self) -> Elastic<N> {
         let [force, exponent] = self.nodes[0];
         let stiffness = if exponent < FLAT { (force - self.first).exp() } else { 0.0 };
-        Elastic { force: T::from(0.0), stiffness: T::from(stiffness) }
+        Elastic { force: Real::from(0.0), stiffness: Real::from(stiffness) }
     }
 }
