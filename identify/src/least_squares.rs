@@ -50,7 +50,7 @@ pub(crate) fn minimise(
             }
             let mut step = model.step(damping);
             let promised = model.promised(&step);
-            if std::env::var("NOBEND").is_err() && let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
+            if let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
                 model.bend(&mut step, damping, &slopes, &r, &ahead);
             }
             let moved = along(&x, &step, 1.0);

@@ -120,7 +120,10 @@ fn outliers_have_no_weight() {
     }
     for (name, truth) in ZENER {
         let [covered, error] = coverage(&robust, name, truth);
-        let ([_, plain], [_, clean]) = (coverage(&plain, name, truth), coverage(&clean, name, truth));
+        let clean_fits = clean.clone();
+        let ([_, plain], [clean_covered, clean]) = (coverage(&plain, name, truth), coverage(&clean, name, truth));
+        let spread = |fits: &[Fit]| fits.iter().map(|f| f.estimate(name).unwrap().deviation).sum::<f64>() / fits.len() as f64;
+        println!("DBG stated robust {:.5} clean {:.5} cover clean {clean_covered:.3}", spread(&robust), spread(&clean_fits));
         println!(
             "{name}: covers {covered:.3}, error {error:.4}, least squares {plain:.4}, without outliers {clean:.4}"
         );

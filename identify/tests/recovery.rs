@@ -96,7 +96,7 @@ fn intervals_between_samples_cost_little() {
     let body = [("E0", 4.0e3), ("Einf", 1.0e3), ("tau", 0.5)];
     let zener = Identification::new(Model::Zener);
     let tips = [
-        ("cone", ElasticStates::cone(0.7).unwrap(), 1e-5),
+        ("cone", ElasticStates::cone(0.7).unwrap(), 1e-6),
         ("punch", ElasticStates::punch(2.0e-6).unwrap(), 1e-6),
         ("sphere", ElasticStates::sphere(5.0e-6).unwrap(), 1e-5),
     ];
@@ -119,7 +119,9 @@ fn intervals_between_samples_cost_little() {
             assert!(count < 1000 || worst < limit, "{name}: {worst:e}");
         }
     }
+    // of second order in the points
     assert_eq!(errors.len(), 9);
+    assert!(errors.chunks(3).all(|of| of[2] < of[0] / 8.0), "{errors:?}");
 }
 
 /// Laws that are no sums of few exponentials, one of them the user's.
@@ -151,45 +153,4 @@ fn laws_of_other_kinds_are_found() {
         }
     }
     assert_eq!(compared, 9);
-}
-
-#[test]
-fn diagnose_intervals() {
-    let mut rng = ChaCha8Rng::seed_from_u64(11);
-    let body = [("E0", 4.0e3), ("Einf", 1.0e3), ("tau", 0.5)];
-    let zener = Identification::new(Model::Zener);
-    let tips = [
-        ("cone", ElasticStates::cone(0.7).unwrap()),
-        ("punch", ElasticStates::punch(2.0e-6).unwrap()),
-        ("sphere", ElasticStates::sphere(5.0e-6).unwrap()),
-    ];
-    for (name, tip) in tips {
-        for count in [250_u32, 500, 1000] {
-            let times: Vec<f64> = (0..=count).map(|k| 3.0 * f64::from(k) / f64::from(count)).collect();
-            let at = |t: f64| 1.0e-6 * (2.0 * t).min(1.0).min(3.0 - t) - 0.1e-6;
-            let drive: Vec<f64> = times.iter().map(|&t| at(t) + 1e-9 * normal(&mut rng)).collect();
-            let protocol = Protocol::new(times.clone(), drive).unwrap();
-            let fine = protocol.resampled(16 * count as usize).unwrap();
-            let experiment = |protocol: Protocol| Experiment::new(protocol, tip.clone()).with_spring(0.05).unwrap();
-            let exact = zener.respond(&experiment(fine), &body).unwrap();
-            let coarse = zener.respond(&experiment(protocol), &body).unwrap();
-            let greatest = exact.iter().fold(0.0, |m: f64, s| m.max(s.force));
-            let errors: Vec<f64> =
-                coarse.iter().zip(exact.iter().step_by(16)).map(|(a, b)| (a.force - b.force) / greatest).collect();
-            let mut order: Vec<usize> = (0..errors.len()).collect();
-            order.sort_by(|&a, &b| errors[b].abs().total_cmp(&errors[a].abs()));
-            let part = |from: f64, to: f64| {
-                let inside: Vec<f64> =
-                    (0..errors.len()).filter(|&k| (from..to).contains(&times[k])).map(|k| errors[k].powi(2)).collect();
-                (inside.iter().sum::<f64>() / inside.len() as f64).sqrt()
-            };
-            println!(
-                "{name} {count}: rms approach {:.1e} hold {:.1e} retract {:.1e}; worst {:?}",
-                part(0.0, 0.5),
-                part(0.5, 2.0),
-                part(2.0, 3.1),
-                order[..8].iter().map(|&k| format!("{:.3}:{:.1e}", times[k], errors[k])).collect::<Vec<_>>()
-            );
-        }
-    }
 }

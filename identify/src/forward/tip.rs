@@ -64,8 +64,8 @@ impl Tip {
             [level.ln(), 2.0 * NEAR * depth / (high - low)]
         };
         let mut nodes: Vec<[f64; 2]> = (0..count).map(node).collect();
-        if let Some(state) = start {
-            nodes[0] = [state.level.ln(), exponent(state)];
+        for (at, state) in [(0, start), (count - 1, states.last())] {
+            nodes[at] = state.map_or(nodes[at], |state| [state.level.ln(), exponent(state)]);
         }
         Tip { curve, last_depth, first, step, nodes }
     }
