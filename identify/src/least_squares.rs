@@ -40,13 +40,13 @@ pub(crate) fn minimise(
     let mut x = start;
     let mut r = residuals(&x)?;
     let mut sum = square(&r);
-    let (mut damping, mut growth, mut is_slow) = (DAMPING[1], 2.0, false);
-    for iteration in 1..=MAX_ITERATIONS {
+    let (mut damping, mut growth) = (DAMPING[1], 2.0);
+    for iterations in 1..=MAX_ITERATIONS {
         let slopes = jacobian(&x)?;
         let model = Linear::new(&slopes, &r);
-        let done = loop {
+        let moved = loop {
             if sum <= exact || model.promised(&model.step(0.0)) <= enough * sum {
-                break true;
+                break None;
             }
             let mut step = model.step(damping);
             let promised = model.promised(&step);
@@ -61,20 +61,20 @@ pub(crate) fn minimise(
                 // at a kink, shorter and shorter steps reduce the sum less and less
                 let reduction = promised.max(sum - reduced);
                 let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
-                is_slow = reduction <= SLOW * sum;
+                let is_last = is_enough || reduction <= SLOW * sum && iterations == MAX_ITERATIONS;
                 damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
                 growth = 2.0;
                 (x, r, sum) = (moved, residuals, reduced);
-                break is_enough;
+                break Some(is_last);
             }
             if promised <= enough * sum {
-                break true;
+                break None;
             }
             (damping, growth) = (damping * growth, growth * 2.0);
         };
-        if done || is_slow && iteration == MAX_ITERATIONS {
-            let jacobian = jacobian(&x)?;
-            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations: iteration });
+        if moved != Some(false) {
+            let jacobian = if moved.is_some() { jacobian(&x)? } else { slopes };
+            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations });
         }
     }
     let reason =

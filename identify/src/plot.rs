@@ -34,17 +34,10 @@ impl Fit {
     /// # Errors
     /// If there is no such curve.
     pub fn force_chart(&self, curve: usize) -> Result<Chart> {
-        let times = self.times(curve)?;
-        let [time, force] = [Quantity::new("time", "s"), Quantity::new("force", "N")];
-        let mut chart = Chart::new("Force", time, force, Legend::UpperRight);
-        let measured = self.curves()[curve].force();
+        let (times, measured) = (self.times(curve)?, self.curves()[curve].force());
+        let mut chart = self.noise_chart(curve, "Force", "force", self.force(curve));
         chart.add("measured", COLORS[0], Style::Dots, pairs(times, measured));
         chart.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, self.force(curve)));
-        let limit = self.noise_limit(curve);
-        for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
-            let band = times.iter().zip(self.force(curve)).map(|(time, force)| (*time, force + side));
-            chart.add(label, COLORS[5], Style::Line, band.collect());
-        }
         Ok(chart)
     }
 
@@ -55,13 +48,8 @@ impl Fit {
     /// If there is no such curve.
     pub fn residual_chart(&self, curve: usize) -> Result<Chart> {
         let times = self.times(curve)?;
-        let [time, force] = [Quantity::new("time", "s"), Quantity::new("measured - fitted force", "N")];
-        let mut chart = Chart::new("Residuals", time, force, Legend::UpperRight);
+        let mut chart = self.noise_chart(curve, "Residuals", "measured - fitted force", &vec![0.0; times.len()]);
         chart.add("", COLORS[0], Style::Dots, pairs(times, self.residuals(curve)));
-        let limit = self.noise_limit(curve);
-        for (label, value) in [("95 % of the noise", limit), ("", -limit)] {
-            chart.add(label, COLORS[1], Style::Line, vec![(times[0], value), (times[times.len() - 1], value)]);
-        }
         Ok(chart)
     }
 
@@ -97,10 +85,16 @@ impl Fit {
         Ok(Picture::beside(&pictures)?)
     }
 
-    /// Limit of 95 % of the noise of a curve: of correlated noise, the whole one.
-    fn noise_limit(&self, curve: usize) -> f64 {
+    /// A chart of forces, with the limits of 95 % of the noise about some of them: of correlated noise, of the whole one.
+    fn noise_chart(&self, curve: usize, title: &str, name: &str, middle: &[f64]) -> Chart {
+        let mut chart = Chart::new(title, Quantity::new("time", "s"), Quantity::new(name, "N"), Legend::UpperRight);
         let phi = self.autoregression_of(curve).unwrap_or_default();
-        WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt()
+        let limit = WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt();
+        for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
+            let moved: Vec<f64> = middle.iter().map(|force| force + side).collect();
+            chart.add(label, COLORS[5], Style::Line, pairs(self.curves()[curve].experiment().protocol().times(), &moved));
+        }
+        chart
     }
 
     fn times(&self, curve: usize) -> Result<&[f64]> {
