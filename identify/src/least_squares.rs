@@ -1,7 +1,7 @@
 //! Non-linear least squares by the method of Levenberg and Marquardt.
 
 use faer::linalg::solvers::Solve;
-use faer::{Col, Mat};
+use faer::{Col, Mat, Side};
 
 use crate::error::{Error, Result};
 
@@ -13,6 +13,8 @@ const AT_KINK: f64 = 1e-9;
 const SLOW: f64 = 1e-6;
 /// Longest step of a coordinate: a factor of e² in a modulus.
 const LONGEST_STEP: f64 = 2.0;
+/// Rounds in which long steps are damped.
+const MAX_DAMPED: usize = 100;
 /// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
 const AHEAD: f64 = 0.1;
 const MOST_BENT: f64 = 0.75;
@@ -82,81 +84,69 @@ pub(crate) fn minimise(
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
 }
 
-fn along(x: &[f64], step: &[f64], share: f64) -> Vec<f64> {
-    x.iter().zip(step).map(|(x, s)| x + share * s).collect()
+fn along(x: &[f64], step: &Col<f64>, share: f64) -> Vec<f64> {
+    x.iter().enumerate().map(|(j, x)| x + share * step[j]).collect()
 }
 
-/// Linearised residuals, in coordinates whose columns have the norm 1.
+/// Linearised residuals: JᵀJ and −Jᵀr.
 struct Linear {
     gram: Mat<f64>,
-    right: Vec<f64>,
-    scale: Vec<f64>,
+    right: Col<f64>,
 }
 
 impl Linear {
     fn new(slopes: &Mat<f64>, residuals: &[f64]) -> Linear {
-        let count = slopes.ncols();
-        let gram = slopes.transpose() * slopes;
-        let right = slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]);
-        // a coordinate that moves nothing stays
-        let norm = |j: usize| if gram[(j, j)] > 0.0 { gram[(j, j)].sqrt() } else { 1.0 };
-        let scale: Vec<f64> = (0..count).map(norm).collect();
-        Linear {
-            gram: Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j])),
-            right: (0..count).map(|j| right[j] / scale[j]).collect(),
-            scale,
+        let mut gram = slopes.transpose() * slopes;
+        for j in 0..gram.nrows() {
+            // a coordinate that moves nothing stays
+            gram[(j, j)] = if gram[(j, j)] > 0.0 { gram[(j, j)] } else { 1.0 };
         }
+        Linear { gram, right: slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]) }
     }
 
     /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long are damped more.
-    fn step(&self, damping: f64) -> Vec<f64> {
-        let mut damping = vec![damping.max(DAMPING[0]); self.scale.len()];
-        loop {
-            let solved = self.solve(&damping, &self.right);
-            let step: Vec<f64> = solved.iter().zip(&self.scale).map(|(s, scale)| s / scale).collect();
-            let mut long = step.iter().map(|s| s.abs() > LONGEST_STEP);
-            if long.all(|is_long| !is_long) {
+    fn step(&self, damping: f64) -> Col<f64> {
+        let count = self.right.nrows();
+        let mut damping = vec![damping; count];
+        for _ in 0..MAX_DAMPED {
+            let step = self.solve(&damping, &self.right);
+            let far: Vec<f64> = (0..count).map(|j| (step[j].abs() / LONGEST_STEP).min(100.0)).collect();
+            if far.iter().all(|far| *far <= 1.0) {
                 return step;
             }
-            for (damping, step) in damping.iter_mut().zip(&step).filter(|(_, step)| step.abs() > LONGEST_STEP) {
-                *damping = (*damping * (step.abs() / LONGEST_STEP).min(100.0)).max(DAMPING[1]);
+            for (damping, far) in damping.iter_mut().zip(far).filter(|(_, far)| *far > 1.0) {
+                *damping = (2.0 * far * *damping).max(DAMPING[1]);
             }
         }
+        Col::zeros(count)
     }
 
     /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
     /// second derivative of the residuals is found from those a little `ahead`. A step whose acceleration is great is left.
-    fn bend(&self, step: &mut [f64], damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
-        let linear = slopes * Col::from_fn(step.len(), |j| step[j]);
+    fn bend(&self, step: &mut Col<f64>, damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
+        let linear = slopes * &*step;
         let curvature =
-            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * ((ahead[k] - residuals[k]) / AHEAD - linear[k]));
-        let right = slopes.transpose() * curvature;
-        let right: Vec<f64> = (0..step.len()).map(|j| -right[j] / self.scale[j]).collect();
-        let acceleration = self.solve(&vec![damping.max(DAMPING[0]); step.len()], &right);
-        let length: f64 = step.iter().zip(&self.scale).map(|(s, scale)| (s * scale).powi(2)).sum();
-        if square(&acceleration) <= MOST_BENT * MOST_BENT * length {
-            for ((s, a), scale) in step.iter_mut().zip(acceleration).zip(&self.scale) {
-                *s += (0.5 * a / scale).clamp(-LONGEST_STEP, LONGEST_STEP);
+            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * (linear[k] - (ahead[k] - residuals[k]) / AHEAD));
+        let acceleration = self.solve(&vec![damping; step.nrows()], &(slopes.transpose() * curvature));
+        let square = |of: &Col<f64>| (0..of.nrows()).map(|j| of[j] * of[j] * self.gram[(j, j)]).sum::<f64>();
+        if square(&acceleration) <= MOST_BENT * MOST_BENT * square(step) {
+            for j in 0..step.nrows() {
+                step[j] += (0.5 * acceleration[j]).clamp(-LONGEST_STEP, LONGEST_STEP);
             }
         }
     }
 
-    /// The scaled step of a right side.
-    fn solve(&self, damping: &[f64], right: &[f64]) -> Vec<f64> {
-        let entry = |i: usize, j: usize| self.gram[(i, j)] + if i == j { damping[i] } else { 0.0 };
-        let matrix = Mat::from_fn(right.len(), right.len(), entry);
-        let solved = matrix.partial_piv_lu().solve(&Col::from_fn(right.len(), |j| right[j]));
-        (0..right.len()).map(|j| if solved[j].is_finite() { solved[j] } else { 0.0 }).collect()
+    /// The damped step of a right side; not a number where rounding hides it.
+    fn solve(&self, damping: &[f64], right: &Col<f64>) -> Col<f64> {
+        let damped = |j: usize| 1.0 + damping[j].max(DAMPING[0]);
+        let entry = |i: usize, j: usize| self.gram[(i, j)] * if i == j { damped(j) } else { 1.0 };
+        let matrix = Mat::from_fn(right.nrows(), right.nrows(), entry);
+        matrix.llt(Side::Lower).map_or(Col::full(right.nrows(), f64::NAN), |factor| factor.solve(right))
     }
 
     /// The reduction of the sum of squares by a step.
-    fn promised(&self, step: &[f64]) -> f64 {
-        let scaled: Vec<f64> = step.iter().zip(&self.scale).map(|(s, scale)| s * scale).collect();
-        let of = |j: usize| {
-            let product: f64 = (0..scaled.len()).map(|i| self.gram[(j, i)] * scaled[i]).sum();
-            scaled[j] * (2.0 * self.right[j] - product)
-        };
-        (0..scaled.len()).map(of).sum()
+    fn promised(&self, step: &Col<f64>) -> f64 {
+        step.transpose() * (faer::Scale(2.0) * &self.right - &self.gram * step)
     }
 }
 

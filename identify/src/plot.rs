@@ -2,7 +2,7 @@
 
 use viscocontact::plot::{COLORS, Chart, Legend, Picture, Quantity, Scale, Style};
 
-use crate::error::{Result, within};
+use crate::error::Result;
 use crate::fit::Fit;
 use crate::statistics::WITHIN_95;
 
@@ -34,7 +34,7 @@ impl Fit {
     /// # Errors
     /// If there is no such curve.
     pub fn force_chart(&self, curve: usize) -> Result<Chart> {
-        let (times, measured) = (self.times(curve)?, self.curves()[curve].force());
+        let (times, measured) = (self.experiment(curve)?.protocol().times(), self.curves()[curve].force());
         let mut chart = self.noise_chart(curve, "Force", "force", self.force(curve));
         chart.add("measured", COLORS[0], Style::Dots, pairs(times, measured));
         chart.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, self.force(curve)));
@@ -47,7 +47,7 @@ impl Fit {
     /// # Errors
     /// If there is no such curve.
     pub fn residual_chart(&self, curve: usize) -> Result<Chart> {
-        let times = self.times(curve)?;
+        let times = self.experiment(curve)?.protocol().times();
         let mut chart = self.noise_chart(curve, "Residuals", "measured - fitted force", &vec![0.0; times.len()]);
         chart.add("", COLORS[0], Style::Dots, pairs(times, self.residuals(curve)));
         Ok(chart)
@@ -95,11 +95,6 @@ impl Fit {
             chart.add(label, COLORS[5], Style::Line, pairs(self.curves()[curve].experiment().protocol().times(), &moved));
         }
         chart
-    }
-
-    fn times(&self, curve: usize) -> Result<&[f64]> {
-        within("index of the curve", curve as f64, curve < self.curves().len(), "below the number of curves")?;
-        Ok(self.curves()[curve].experiment().protocol().times())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use viscocontact::contact::Builder;
 
-use crate::error::{Result, within};
+use crate::error::Result;
 use crate::fit::Fit;
 
 /// The forces of a fit from a contact that is computed cell by cell, see [`Fit::verify`].
@@ -38,8 +38,7 @@ impl Fit {
     /// If there is no such curve; those of [`Builder::build`] and
     /// [`ViscoelasticContact::step`](viscocontact::ViscoelasticContact::step).
     pub fn verify(&self, curve: usize, scene: &Builder) -> Result<Verification> {
-        within("index of the curve", curve as f64, curve < self.curves().len(), "below the number of curves")?;
-        let experiment = self.curves()[curve].experiment();
+        let experiment = self.experiment(curve)?;
         let (contact_point, stiffness) = (self.contact_point(curve), self.problem.stiffness(curve, &self.values));
         let mut contact = scene.clone().material(self.material()?).build()?;
         let (times, samples) = (experiment.protocol().times(), self.samples(curve));

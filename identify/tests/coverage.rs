@@ -67,7 +67,7 @@ fn correlated_noise_of_any_strength_has_true_intervals() {
         for (name, truth) in ZENER {
             let [covered, error] = coverage(&fits, name, truth);
             println!("{count} points, φ {phi} (found {mean:.3}), {name}: covers {covered:.3}, error {error:.4}");
-            // 86 points of this correlation are about five independent ones
+            // 86 points of this correlation are about five independent ones: reported only
             if (count, phi) != (86, 0.9) {
                 assert_covers(covered, name);
             }
@@ -120,12 +120,9 @@ fn outliers_have_no_weight() {
     }
     for (name, truth) in ZENER {
         let [covered, error] = coverage(&robust, name, truth);
-        let clean_fits = clean.clone();
         let ([_, plain], [clean_covered, clean]) = (coverage(&plain, name, truth), coverage(&clean, name, truth));
-        let spread = |fits: &[Fit]| fits.iter().map(|f| f.estimate(name).unwrap().deviation).sum::<f64>() / fits.len() as f64;
-        println!("DBG stated robust {:.5} clean {:.5} cover clean {clean_covered:.3}", spread(&robust), spread(&clean_fits));
         println!(
-            "{name}: covers {covered:.3}, error {error:.4}, least squares {plain:.4}, without outliers {clean:.4}"
+            "{name}: covers {covered:.3}, error {error:.4}, least squares {plain:.4}, without outliers {clean:.4} and {clean_covered:.3}"
         );
         assert_covers(covered, name);
         assert!(error < 1.3 * clean && error < plain, "{name}");
@@ -137,12 +134,12 @@ fn outliers_have_no_weight() {
 fn searches_take_little_work() {
     let models: [(Model, &[f64], usize); 7] = [
         (Model::Zener, &[4.0e3, 1.0e3, 0.5], 1),
-        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 5),
+        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 3),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 5),
-        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 5),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 25),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 8),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 8),
+        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 3),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 15),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 6),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 6),
     ];
     let rng = &mut ChaCha8Rng::seed_from_u64(3);
     for (model, values, millions) in models {

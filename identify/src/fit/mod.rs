@@ -13,7 +13,7 @@ use viscocontact::rheology::Material;
 
 use crate::bounds::Bounds;
 use crate::error::{Error, Result, within};
-use crate::experiment::Curve;
+use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
@@ -93,7 +93,11 @@ impl Fit {
         let scales = problem.scales(coordinates);
         let (weighted, _) = inverse(&free, jacobian, sigma)?;
         let sandwich = &scales * sandwich(&problem, &minimum, &weighted) * scales.transpose();
-        let (inverse, limits) = inverse(&free, &problem.without_outliers().jacobian(coordinates)?, sigma)?;
+        let all = match identification.is_robust() {
+            true => &problem.without_outliers().jacobian(coordinates)?,
+            false => jacobian,
+        };
+        let (inverse, limits) = inverse(&free, all, sigma)?;
         let names = free.iter().map(|parameter| parameter.name.clone()).collect();
         let spread = Bounds::of(names, &scales * inverse * scales.transpose(), sigma);
         let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
@@ -228,6 +232,12 @@ impl Fit {
     /// The curves.
     pub fn curves(&self) -> &[Curve] {
         &self.curves
+    }
+
+    /// The experiment of a curve of this index.
+    pub(crate) fn experiment(&self, curve: usize) -> Result<&Experiment> {
+        within("index of the curve", curve as f64, curve < self.curves.len(), "below the number of curves")?;
+        Ok(self.curves[curve].experiment())
     }
 
     /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
