@@ -81,8 +81,14 @@ pub(crate) enum Property {
 }
 
 impl Property {
-    const ALL: [Property; 6] =
-        [Property::Stiffness, Property::ContactPoint, Property::Offset, Property::Drift, Property::Tilt, Property::Drag];
+    const ALL: [Property; 6] = [
+        Property::Stiffness,
+        Property::ContactPoint,
+        Property::Offset,
+        Property::Drift,
+        Property::Tilt,
+        Property::Drag,
+    ];
 
     pub(crate) fn name(self) -> &'static str {
         ["stiffness", "contact point", "offset", "drift", "tilt", "drag"][self as usize]

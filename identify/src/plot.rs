@@ -92,7 +92,12 @@ impl Fit {
         let limit = WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt();
         for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
             let moved: Vec<f64> = middle.iter().map(|force| force + side).collect();
-            chart.add(label, COLORS[5], Style::Line, pairs(self.curves()[curve].experiment().protocol().times(), &moved));
+            chart.add(
+                label,
+                COLORS[5],
+                Style::Line,
+                pairs(self.curves()[curve].experiment().protocol().times(), &moved),
+            );
         }
         chart
     }

@@ -239,9 +239,7 @@ impl Problem {
 
     /// The value of a property of a curve, if it is a parameter.
     pub(crate) fn value_of(&self, values: &[f64], property: Property, curve: usize) -> Option<f64> {
-        let is_it = |parameter: &Parameter| {
-            matches!(parameter.kind, Kind::Measurement(own, of) if own == property && of.is_none_or(|of| of == curve))
-        };
+        let is_it = |parameter: &Parameter| matches!(parameter.kind, Kind::Measurement(own, of) if own == property && of.is_none_or(|of| of == curve));
         self.parameters.iter().position(is_it).map(|at| values[at])
     }
 
@@ -351,10 +349,9 @@ impl Problem {
             for (column, parameter) in self.free().enumerate() {
                 match parameter.kind.linear() {
                     _ if parameter.kind.curve().is_some_and(|only| only != curve) => {}
-                    Some(property) => put(
-                        column,
-                        (0..part.len()).map(|k| parameter.unit * part.force_over(property, k)).collect(),
-                    ),
+                    Some(property) => {
+                        put(column, (0..part.len()).map(|k| parameter.unit * part.force_over(property, k)).collect())
+                    }
                     None => curved.push((column, parameter)),
                 }
             }

@@ -36,7 +36,8 @@ pub struct Summary {
 }
 
 /// Columns of a table of results.
-const COLUMNS: &str = "model,aicc,parameter,value,unit,deviation,scale of deviation,robust deviation,lower 95 %,upper 95 %,warnings";
+const COLUMNS: &str =
+    "model,aicc,parameter,value,unit,deviation,scale of deviation,robust deviation,lower 95 %,upper 95 %,warnings";
 
 /// The name of the model, without its settings.
 impl fmt::Display for Model {

@@ -137,7 +137,7 @@ fn searches_take_little_work() {
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 3),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 5),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 3),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 15),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 18),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 6),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 6),
     ];

@@ -59,7 +59,8 @@ fn each_curve_has_its_own_spring_contact_point_and_start() -> Result<()> {
     let joint = fitting.fit(&[curve(0, moduli[0])?, curve(1, moduli[0])?])?;
     assert!((found(&joint) / moduli[0] - 1.0).abs() < 1e-6, "{joint}");
     let starts = fitting.parameter("E0", moduli.map(|modulus| Nuisance::FittedFrom(1.2 * modulus)).to_vec());
-    for (fit, modulus) in starts.fit_each(&[curve(0, moduli[0])?, curve(1, moduli[1])?], |_| ()).into_iter().zip(moduli) {
+    for (fit, modulus) in starts.fit_each(&[curve(0, moduli[0])?, curve(1, moduli[1])?], |_| ()).into_iter().zip(moduli)
+    {
         assert!((found(&fit?) / modulus - 1.0).abs() < 1e-6);
     }
     // a list that is too short, and a name of nothing

@@ -63,8 +63,11 @@ impl Curve {
                 (high - low).max(0.0)
             });
             let is_at_low_drive = shallow > 2.0 * deep;
-            let flipped =
-                if is_at_low_drive { DataError::DriveFlipped { shallow, deep } } else { DataError::ForceFlipped { fall } };
+            let flipped = if is_at_low_drive {
+                DataError::DriveFlipped { shallow, deep }
+            } else {
+                DataError::ForceFlipped { fall }
+            };
             return Err(flipped.into());
         }
         let squares: f64 = lowest.iter().map(|force| (force - shallow).powi(2)).sum();

@@ -35,7 +35,13 @@ impl<'a, const N: usize> Columns<'a, N> {
     }
 
     /// A column leaves the tip at a sample.
-    pub(super) fn push(&mut self, sample: usize, extent: Real<N>, surface: Real<N>, state: impl Iterator<Item = Real<N>>) {
+    pub(super) fn push(
+        &mut self,
+        sample: usize,
+        extent: Real<N>,
+        surface: Real<N>,
+        state: impl Iterator<Item = Real<N>>,
+    ) {
         self.columns.push(Column { extent, surface, sample });
         self.states.extend(state);
     }

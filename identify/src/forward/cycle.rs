@@ -13,14 +13,14 @@
 
 mod shrinking;
 
+use crate::error::Result;
+use crate::forward::Response;
 use crate::forward::column::Columns;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::moments::Moments;
 use crate::forward::real::Real;
 use crate::forward::roots::Roots;
 use crate::forward::tip::{Elastic, Tip};
-use crate::error::Result;
-use crate::forward::Response;
 use crate::series::Prony;
 
 /// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
@@ -78,7 +78,13 @@ pub(super) struct Cycle<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Cycle<'a, N> {
-    pub(super) fn new(prony: &'a Prony<Real<N>>, tip: &'a Tip, give: Real<N>, times: &'a [f64], roots: &'a mut Roots) -> Self {
+    pub(super) fn new(
+        prony: &'a Prony<Real<N>>,
+        tip: &'a Tip,
+        give: Real<N>,
+        times: &'a [f64],
+        roots: &'a mut Roots,
+    ) -> Self {
         let (zero, terms) = (Real::from(0.0), vec![Term::default(); prony.moduli.len()]);
         Cycle {
             prony,
@@ -103,11 +109,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
     }
 
     /// Computes a response for each time; `record` is given each with the terms of its force.
-    pub(super) fn follow(
-        &mut self,
-        drive: &[Real<N>],
-        mut record: impl FnMut(Response<N>, &[Term<N>]),
-    ) -> Result<()> {
+    pub(super) fn follow(&mut self, drive: &[Real<N>], mut record: impl FnMut(Response<N>, &[Term<N>])) -> Result<()> {
         for (sample, (&time, &z)) in self.times.iter().zip(drive).enumerate() {
             self.advance(sample, Real::from(time), z)?;
             let (force, depth) = (self.sum(|term| term.force), self.depth);

@@ -54,7 +54,14 @@ impl<const N: usize> Growth<N> {
     }
 
     /// A term at the end of the interval, where the column at the edge has the pressure `edge`.
-    pub(super) fn after(&self, term: Term<N>, modulus: Real<N>, decay: Real<N>, moments: [Real<N>; 3], edge: Real<N>) -> Term<N> {
+    pub(super) fn after(
+        &self,
+        term: Term<N>,
+        modulus: Real<N>,
+        decay: Real<N>,
+        moments: [Real<N>; 3],
+        edge: Real<N>,
+    ) -> Term<N> {
         let times = |factor: Real<N>| moments.map(|moment| factor * moment);
         let (tip, zero) = (decay * term.tip + modulus * self.rise * moments[0], Real::from(0.0));
         if self.fresh {

@@ -184,9 +184,8 @@ fn derivatives_agree_with_differences() {
             let prony = Prony { moduli: vec![at[0], at[1]], rates: vec![0.0, at[2]] };
             let shifted: Vec<Real<0>> = drive.iter().map(|z| Real::from(z - at[3])).collect();
             forward.respond(&(&prony).into(), &times, &shifted, Real::from(give), &mut roots, |_, _| {}).unwrap();
-            let [einf, e1, rate, contact] = [0, 1, 2, 3].map(|lane| {
-                Real::<LANES>::new(at[lane], std::array::from_fn(|k| f64::from(u8::from(k == lane))))
-            });
+            let [einf, e1, rate, contact] = [0, 1, 2, 3]
+                .map(|lane| Real::<LANES>::new(at[lane], std::array::from_fn(|k| f64::from(u8::from(k == lane)))));
             let prony = Prony { moduli: vec![einf, e1], rates: vec![Real::from(0.0), rate] };
             let moved: Vec<Real<LANES>> = drive.iter().map(|&z| Real::from(z) - contact).collect();
             let mut found = Vec::new();
