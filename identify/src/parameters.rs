@@ -81,14 +81,7 @@ pub(crate) enum Property {
 }
 
 impl Property {
-    const ALL: [Property; 6] = [
-        Property::Stiffness,
-        Property::ContactPoint,
-        Property::Offset,
-        Property::Drift,
-        Property::Tilt,
-        Property::Drag,
-    ];
+    const ALL: [Self; 6] = [Self::Stiffness, Self::ContactPoint, Self::Offset, Self::Drift, Self::Tilt, Self::Drag];
 
     pub(crate) fn name(self) -> &'static str {
         ["stiffness", "contact point", "offset", "drift", "tilt", "drag"][self as usize]

@@ -88,16 +88,12 @@ impl Fit {
     /// A chart of forces, with the limits of 95 % of the noise about some of them: of correlated noise, of the whole one.
     fn noise_chart(&self, curve: usize, title: &str, name: &str, middle: &[f64]) -> Chart {
         let mut chart = Chart::new(title, Quantity::new("time", "s"), Quantity::new(name, "N"), Legend::UpperRight);
+        let times = self.curves()[curve].experiment().protocol().times();
         let phi = self.autoregression_of(curve).unwrap_or_default();
         let limit = WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt();
         for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
             let moved: Vec<f64> = middle.iter().map(|force| force + side).collect();
-            chart.add(
-                label,
-                COLORS[5],
-                Style::Line,
-                pairs(self.curves()[curve].experiment().protocol().times(), &moved),
-            );
+            chart.add(label, COLORS[5], Style::Line, pairs(times, &moved));
         }
         chart
     }

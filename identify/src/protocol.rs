@@ -189,13 +189,7 @@ const MOST_SAMPLES: f64 = 1e8;
 
 impl ProtocolBuilder {
     /// `count` equal intervals over a `duration`, with the drive as a function of the share of it, unless a value was refused.
-    fn extend(
-        mut self,
-        checked: Result<f64>,
-        count: f64,
-        duration: f64,
-        drive: impl Fn(f64) -> f64,
-    ) -> ProtocolBuilder {
+    fn extend(mut self, checked: Result<f64>, count: f64, duration: f64, drive: impl Fn(f64) -> f64) -> Self {
         let allowed = "at most 1e8: check the unit of time";
         let checked = checked.and_then(|_| within("samples of a piece", count, count <= MOST_SAMPLES, allowed));
         self.error = self.error.or(checked.err());

@@ -67,7 +67,7 @@ fn correlated_noise_of_any_strength_has_true_intervals() {
         for (name, truth) in ZENER {
             let [covered, error] = coverage(&fits, name, truth);
             println!("{count} points, φ {phi} (found {mean:.3}), {name}: covers {covered:.3}, error {error:.4}");
-            // 86 points of this correlation are about five independent ones: reported only
+            // 86 points of this correlation are about five independent ones
             if (count, phi) != (86, 0.9) {
                 assert_covers(covered, name);
             }

@@ -63,12 +63,8 @@ impl Curve {
                 (high - low).max(0.0)
             });
             let is_at_low_drive = shallow > 2.0 * deep;
-            let flipped = if is_at_low_drive {
-                DataError::DriveFlipped { shallow, deep }
-            } else {
-                DataError::ForceFlipped { fall }
-            };
-            return Err(flipped.into());
+            let drive_flipped = is_at_low_drive.then_some(DataError::DriveFlipped { shallow, deep });
+            return Err(drive_flipped.unwrap_or(DataError::ForceFlipped { fall }).into());
         }
         let squares: f64 = lowest.iter().map(|force| (force - shallow).powi(2)).sum();
         if greatest - shallow <= ABOVE_BASELINE * (squares / lowest.len() as f64).sqrt() {

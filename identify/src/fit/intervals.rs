@@ -27,11 +27,7 @@ impl Fit {
         let unknown = || Error::UnknownParameter { name: name.to_string(), names: names() };
         let deviation = self.estimate(name).ok_or_else(unknown)?.deviation;
         let mut problem = self.problem.clone();
-        let freedom = match self.identification.sigma() {
-            Some(_) => 1e6,
-            None => (problem.len() - self.estimates.len()) as f64,
-        };
-        let threshold = self.sum + self.sigma * self.sigma * fisher(confidence, freedom);
+        let threshold = self.sum + self.sigma * self.sigma * fisher(confidence, self.freedom.max(1.0));
         let index = problem.parameters.iter().position(|parameter| parameter.name == name).ok_or_else(unknown)?;
         let Parameter { scale, unit, .. } = problem.parameters[index];
         // at a limit, a factor of e

@@ -68,6 +68,8 @@ pub struct Fit {
     /// Measured less modelled force, by curve.
     residuals: Vec<Vec<f64>>,
     sigma: f64,
+    /// Degrees of freedom of intervals.
+    freedom: f64,
     sum: f64,
     iterations: usize,
     /// The least sum of squares of a model that this one contains.
@@ -100,7 +102,17 @@ impl Fit {
         let (inverse, limits) = inverse(&free, all, sigma)?;
         let names = free.iter().map(|parameter| parameter.name.clone()).collect();
         let spread = Bounds::of(names, &scales * inverse * scales.transpose(), sigma);
-        let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
+        // of slow residuals so many are independent, and their standard deviation is known as that of half as many (F. E. Satterthwaite, 1946)
+        let independent = |part: &Part| {
+            let phi = part.whitening.correlation().unwrap_or_default();
+            0.5 * part.len() as f64 * (1.0 - phi) / (1.0 + phi)
+        };
+        let freedom = match identification.sigma() {
+            _ if identification.fits_correlation() => problem.parts.iter().map(independent).sum::<f64>().min(freedom),
+            Some(_) => 1e6,
+            None => freedom,
+        };
+        let quantile = student(0.95, freedom.max(1.0));
         let at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
         let estimate = |((k, parameter), at): ((usize, &Parameter), usize)| {
             // a coordinate at its limit has no deviation; its parameter may have that of another
@@ -141,6 +153,7 @@ impl Fit {
             forces,
             residuals,
             sigma,
+            freedom,
             sum,
             iterations,
             contained,

@@ -12,8 +12,6 @@ use crate::problem::Problem;
 
 /// Correlations that are tried first.
 const TRIED: usize = 40;
-/// Correlations beside the likeliest, at distances of half of 1/√n of atanh φ.
-const AROUND: i32 = 20;
 /// Change of a weight or a correlation at which the noise is found.
 const FOUND: f64 = 1e-3;
 /// Residuals beyond so many standard deviations have no weight (Tukey's biweight, 95 % as efficient as least squares under normal noise).
@@ -100,9 +98,8 @@ impl Identification {
     }
 }
 
-/// The autoregressive coefficient φ by the restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971): the residuals are those of
-/// the problem that is linearised by the rows of the Jacobian from `first` on. Parameters of slow curves have deviations in proportion to 1/(1 − φ),
-/// of which φ has the mean under this likelihood: that of the greatest likelihood gives too short intervals where the points are few.
+/// The autoregressive coefficient of the greatest restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971): the residuals
+/// are those of the problem that is linearised by the rows of the Jacobian from `first` on.
 fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
     let points = residuals.len();
     let slopes = (0..jacobian.ncols()).map(|j| (0..points).map(|k| jacobian[(first + k, j)]).collect::<Vec<f64>>());
@@ -128,15 +125,5 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
     if points <= count || square(residuals) == 0.0 {
         return 0.0;
     }
-    let [low, high] = CORRELATIONS.map(f64::atanh);
-    let best = least(low, high, TRIED, |z| unlikelihood(z.tanh()));
-    let (of_best, step) = (unlikelihood(best.tanh()), 0.5 / (points as f64).sqrt());
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for z in (-AROUND..=AROUND).map(|k| best + step * f64::from(k)).filter(|z| (low..=high).contains(z)) {
-        // even in φ: dφ = (1 − φ²) dz
-        let (phi, likelihood) = (z.tanh(), (0.5 * (of_best - unlikelihood(z.tanh()))).exp());
-        let weight = likelihood * (1.0 - phi * phi);
-        (sum, weights) = (sum + weight / (1.0 - phi), weights + weight);
-    }
-    1.0 - weights / sum
+    least(CORRELATIONS[0], CORRELATIONS[1], TRIED, unlikelihood)
 }

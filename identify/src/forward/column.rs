@@ -6,12 +6,12 @@ use crate::series::Prony;
 
 /// A column without pressure.
 #[derive(Clone, Copy, Debug)]
-struct Column<const N: usize> {
-    extent: Real<N>,
+pub(super) struct Column<const N: usize> {
+    pub(super) extent: Real<N>,
     /// Depth of the tip at which it touches again \[m\].
-    surface: Real<N>,
+    pub(super) surface: Real<N>,
     /// Sample of this state.
-    sample: usize,
+    pub(super) sample: usize,
 }
 
 /// Columns that have left the tip and recover without pressure: those that touch again first are the last ones. Between two of them the
@@ -35,14 +35,8 @@ impl<'a, const N: usize> Columns<'a, N> {
     }
 
     /// A column leaves the tip at a sample.
-    pub(super) fn push(
-        &mut self,
-        sample: usize,
-        extent: Real<N>,
-        surface: Real<N>,
-        state: impl Iterator<Item = Real<N>>,
-    ) {
-        self.columns.push(Column { extent, surface, sample });
+    pub(super) fn push(&mut self, column: Column<N>, state: impl Iterator<Item = Real<N>>) {
+        self.columns.push(column);
         self.states.extend(state);
     }
 

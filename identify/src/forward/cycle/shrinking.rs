@@ -2,6 +2,7 @@
 
 use super::{CONVERGED, Cycle, Edge, Node};
 use crate::error::Result;
+use crate::forward::column::Column;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::real::Real;
 
@@ -53,7 +54,8 @@ impl<const N: usize> Cycle<'_, N> {
     /// The contact shrinks to the column without pressure.
     pub(super) fn shrink(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
         let (zero, one) = (Real::from(0.0), Real::from(1.0));
-        self.columns.push(sample - 1, self.edge.extent, self.depth, self.terms.iter().map(|term| term.edge));
+        let last = Column { extent: self.edge.extent, surface: self.depth, sample: sample - 1 };
+        self.columns.push(last, self.terms.iter().map(|term| term.edge));
         let (mut node, mut upper) = (self.edge.node, self.edge.share);
         loop {
             let [pressure, _, rise] = self.pressure(node, zero, time, z)?;
@@ -99,7 +101,8 @@ impl<const N: usize> Cycle<'_, N> {
             let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
             self.moments.decay[i] * self.terms[i].tip + moved - decay * (then.tip - then.edge)
         };
-        self.columns.push(sample, at.extent, self.depth + rise, (0..self.terms.len()).map(state));
+        let column = Column { extent: at.extent, surface: self.depth + rise, sample };
+        self.columns.push(column, (0..self.terms.len()).map(state));
     }
 
     /// The last column has left the tip.
