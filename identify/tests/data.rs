@@ -6,7 +6,7 @@ use viscocontact::TextFormat;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, DataError, Error, Experiment, Protocol, Recording, Result};
 
-use crate::random::{correlated, normal};
+use crate::random::normal;
 
 fn read(text: &str) -> Result<Recording> {
     Recording::from_csv_reader(text.as_bytes(), TextFormat::default())
@@ -136,7 +136,12 @@ fn scatter_white_or_correlated_is_no_contact() -> Result<()> {
     let (protocol, force) = force_curve(&tip)?;
     for (seed, correlation) in (0_u64..).zip([0.0, 0.5, 0.9].into_iter().flat_map(|correlation| [correlation; 50])) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let noise = correlated(force.len(), 1.0e-9, correlation, &mut rng);
+        let mut last = 0.0;
+        let mut noise = || {
+            last = correlation * last + (1.0_f64 - correlation * correlation).sqrt() * normal(&mut rng);
+            1.0e-9 * last
+        };
+        let noise: Vec<f64> = force.iter().map(|_| noise()).collect();
         let outcome = curve(&protocol, &noise, &tip, [1.0; 2])?.check();
         assert!(outcome.is_err(), "seed {seed}, correlation {correlation}");
         if correlation == 0.0 {
