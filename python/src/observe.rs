@@ -27,14 +27,16 @@ impl ViscoelasticContact {
         py.detach(|| contact.stiffness_over_modulus()).or_raise()
     }
 
-    /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "area"; None where there
-    /// is no estimate.
+    /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
+    /// Σ p), "rim_pressure" (of a cell of the rim, over the greatest pressure), "area"; None where there is no estimate.
     fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let contact = self.get()?;
         let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
         let all = PyDict::new(py);
         all.set_item("approach", error.approach)?;
         all.set_item("max_pressure", error.max_pressure)?;
+        all.set_item("pressure_field", error.pressure_field)?;
+        all.set_item("rim_pressure", error.rim_pressure)?;
         all.set_item("area", error.area)?;
         Ok(Some(all))
     }

@@ -52,7 +52,7 @@ const MOST_AT_RIM: f64 = 2.0;
 pub(super) struct Curve {
     states: Arc<ElasticStates>,
     /// Whether the contact is a line, whose half width is proportional to the area.
-    line: bool,
+    pub(super) line: bool,
 }
 
 impl Curve {

@@ -37,8 +37,14 @@ const OF_CURVE: f64 = 0.05;
 const FALL_OVER_TOLERANCE: f64 = 1e2;
 /// The accuracy of a field holds relative to this part of the greatest force at least.
 const LEAST_FORCE: f64 = 0.01;
-/// Attempts to find the level on the curve.
-const MOST_ATTEMPTS: u32 = 4;
+/// Attempts to find the level on the curve, and most elastic contacts that it goes through before it is refined no more.
+const MOST_ATTEMPTS: u32 = 8;
+const MOST_ROWS: usize = 40;
+/// Ratio of neighbouring levels beyond which the curve is refined between them, and the error of a curve through every second contact over its own.
+const FINE_RATIO: f64 = 1.2;
+const OF_SECOND: f64 = 8.0;
+/// An error of the level counts so many times in the pressure, besides its amplification.
+const OF_LEVEL: f64 = 2.0;
 /// States of the curve nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-6;
 /// Levels of the curve beyond its last one, over that.
@@ -51,7 +57,7 @@ const LAST_STEP: f64 = 1e-5;
 
 /// Repeats a run on levels.
 #[derive(Debug, Clone)]
-pub(super) struct Repeated {
+pub(crate) struct Repeated {
     /// The contact at the start of the run.
     origin: StatesContact,
     accuracy: f64,
@@ -60,8 +66,8 @@ pub(super) struct Repeated {
 }
 
 /// A contact on levels at a time, and the times and levels of its steps.
-pub(super) struct Found {
-    pub(super) contact: StatesContact,
+pub(crate) struct Found {
+    pub(crate) contact: StatesContact,
     steps: Vec<(f64, f64)>,
     /// The greatest force so far.
     force: f64,
@@ -69,7 +75,7 @@ pub(super) struct Found {
 
 impl Repeated {
     /// A run from `origin`; and its greatest level.
-    pub(super) fn new(
+    pub(crate) fn new(
         origin: StatesContact,
         history: &dyn LoadHistory,
         until: f64,
@@ -90,7 +96,7 @@ impl Repeated {
     }
 
     /// The contact at a time, after a jump of the load there or before it.
-    pub(super) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
         let (mut ends, mut left, rest) = (self.schedule.clone(), 1.0, 1.0 - self.accuracy.sqrt());
         while left > LAST_STEP {
             left *= rest;
@@ -227,7 +233,7 @@ impl Beside {
             beside.serves &= !shrinks;
             below = Some(next);
         }
-        let origin = undisturbed(course, &beside.curve()?, interpolant, start)?;
+        let origin = undisturbed(course, &beside.curve_through(&beside.rows)?, interpolant, start)?;
         beside.repeated = Repeated::new(origin, course.history, course.until, accuracy)?.0;
         Ok(Some(beside))
     }
@@ -253,23 +259,23 @@ impl Beside {
     }
 
     /// δ(l) through all elastic contacts, with the slopes of parabolas of the logarithms.
-    fn curve(&self) -> Result<Arc<ElasticStates>> {
+    fn curve_through(&self, rows: &[[f64; 3]]) -> Result<Arc<ElasticStates>> {
         let slope = |k: usize| {
             let chord = |k: usize| {
-                let [a, b] = [self.rows[k], self.rows[k + 1]];
+                let [a, b] = [rows[k], rows[k + 1]];
                 let width = (b[0] / a[0]).ln();
                 ((b[1] / a[1]).ln() / width, width)
             };
-            let last = self.rows.len() - 1;
+            let last = rows.len() - 1;
             let ((below, left), (above, right)) = (chord(k.saturating_sub(1).min(last - 1)), chord(k.min(last - 1)));
             (below * right + above * left) / (left + right)
         };
         let row = |k: usize| {
-            let ([level, depth, area], slope) = (self.rows[k], slope(k));
+            let ([level, depth, area], slope) = (rows[k], slope(k));
             (level, self.rest + depth, level / (depth * slope), area)
         };
-        let last = self.rows.len() - 1;
-        let ([level, depth, area], power) = (self.rows[last], slope(last));
+        let last = rows.len() - 1;
+        let ([level, depth, area], power) = (rows[last], slope(last));
         let (ratio, beyond) = (BEYOND.powf(power), BEYOND * level);
         let end = (beyond, self.rest + depth * ratio, beyond / (depth * ratio * power), area * ratio);
         let rows = (0..=last).map(row).chain([end]);
@@ -279,11 +285,24 @@ impl Beside {
         Ok(states)
     }
 
+    /// The run to a time on the curve through some elastic contacts.
+    fn on_curve(&mut self, rows: Vec<[f64; 3]>, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
+        self.repeated.origin.exchange(self.curve_through(&rows)?);
+        self.repeated.at(history, at.0, at.1)
+    }
+
+    /// Adds an elastic contact in the middle of others.
+    fn refine(&mut self) -> Result<()> {
+        let between = |pair: &[[f64; 3]]| (pair[1][0] > FINE_RATIO * pair[0][0]).then(|| (pair[0][0] * pair[1][0]).sqrt());
+        let middles: Vec<f64> = self.rows.windows(2).filter_map(between).collect();
+        middles.into_iter().try_for_each(|level| self.solve(level).map(drop))
+    }
+
     /// The pressure at a time, after a jump of the load there or before it.
     pub(crate) fn pressure(&mut self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<FoundPressure> {
         let mut found = self.repeated.at(history, time, after)?;
         let mut solved: Vec<Solved> = Vec::new();
-        let mut error = 0.0;
+        let (mut error, mut of_level) = (0.0, 0.0);
         for attempt in 1.. {
             let profile = Profile::new(found.contact.tractions());
             let top = found.contact.level();
@@ -299,10 +318,20 @@ impl Beside {
             if self.by_force || attempt == MOST_ATTEMPTS {
                 break;
             }
-            self.repeated.origin.exchange(self.curve()?);
-            found = self.repeated.at(history, time, after)?;
-            let change = (found.contact.level() - top).abs();
-            if change * profile.amplification() <= OF_CURVE * self.repeated.accuracy * top {
+            let second: Vec<[f64; 3]> = self.rows.iter().copied().rev().step_by(2).collect();
+            let coarse = self.on_curve(second.into_iter().rev().collect(), history, (time, after))?.contact.level();
+            found = self.on_curve(self.rows.clone(), history, (time, after))?;
+            let level = found.contact.level();
+            // δp = w(c) δc at the rim, and as much less within
+            let density = profile.amplification(top) * profile.total() / top.max(f64::MIN_POSITIVE);
+            let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
+            let [of_curve, change] = [amplified(level - coarse) / OF_SECOND, amplified(level - top)];
+            of_level = of_curve + change;
+            let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
+            if of_curve > allowed && self.rows.len() < MOST_ROWS {
+                self.refine()?;
+                found = self.on_curve(self.rows.clone(), history, (time, after))?;
+            } else if change <= allowed {
                 break;
             }
         }
@@ -318,6 +347,7 @@ impl Beside {
             let by_half = off / pressure.iter().sum::<f64>() / OF_HALF;
             error = by_half.clamp(error / MOST_OVERSTATED, error);
         }
+        let error = error + of_level;
         Ok(FoundPressure { pressure, error, spent: std::mem::take(&mut self.spent) })
     }
 
@@ -342,7 +372,7 @@ impl Beside {
         let found = self.repeated.at(history, time, false)?;
         let profile = Profile::new(found.contact.tractions());
         let (levels, _) = profile.cuts(found.size(), self.repeated.accuracy);
-        let amplification = if self.by_force { profile.amplification() } else { 1.0 };
+        let amplification = if self.by_force { profile.amplification(found.contact.level()) } else { 1.0 };
         Ok((levels.into_iter().map(|level| found.since(level)).collect(), amplification))
     }
 

@@ -55,10 +55,12 @@ impl Profile {
         self.tops.last().map_or(0.0, |last| last.0)
     }
 
-    /// The density in the last group, times the greatest level, over the total: by how many times an error of the greatest level counts.
-    pub(crate) fn amplification(&self) -> f64 {
-        let [.., (below, sum), (top, total)] = self.tops[..] else { return 1.0 };
-        top * (total - sum) / (total * (top - below))
+    /// The mean density above a level, and at least in the last group, times the greatest level, over the total: by how many times errors of
+    /// the greatest levels count.
+    pub(crate) fn amplification(&self, level: f64) -> f64 {
+        let [.., (last, _), (top, total)] = self.tops[..] else { return 1.0 };
+        let below = last.min(level);
+        top * (total - self.integral(below)) / (total * (top - below))
     }
 
     /// The integral up to a level.
