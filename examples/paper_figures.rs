@@ -228,7 +228,8 @@ fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
         along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0).collect()
     };
     let asked = few[0].pressures.iter().zip(&few[0].errors).next_back();
-    let asked = asked.map(|(pressure, error)| (format!("{} steps, field to 1e-3: {error:.1e}", FEW_STEPS[0]), pressure));
+    let asked =
+        asked.map(|(pressure, error)| (format!("{} steps, field to 1e-3: {error:.1e}", FEW_STEPS[0]), pressure));
     let alone = few[..3].iter().map(|few| (format!("{} steps: {:.1e}", few.steps, few.errors[0]), &few.pressures[0]));
     for ((name, pressure), color) in alone.chain(asked).zip(COLORS) {
         chart.add(name, color, Style::Line, half(pressure));

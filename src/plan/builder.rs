@@ -177,7 +177,12 @@ impl<'a> PlanBuilder<'a> {
         let PlanBuilder { geometry, material, history, until, accuracy, temperature, area, fields, body } = self;
         positive("end of the run", until)?;
         for &time in fields {
-            within("time of a pressure field", time, (0.0..=until).contains(&time), "from the start of the run to its end")?;
+            within(
+                "time of a pressure field",
+                time,
+                (0.0..=until).contains(&time),
+                "from the start of the run to its end",
+            )?;
         }
         let (counts, progress) = (Cell::new((0, 0.0)), RefCell::new(progress));
         let progress = |cells: [usize; 2], convolutions: f64, time: f64| {
@@ -195,8 +200,18 @@ impl<'a> PlanBuilder<'a> {
             temperature.reduced_time(0.0, until)?;
         }
         let fitted = &Builder::material_of_run(material, history, until, temperature, &accuracy.settings())?;
-        let scene =
-            TrialScene { geometry, material: fitted, temperature, history, until, accuracy, progress, body, fields, kernels };
+        let scene = TrialScene {
+            geometry,
+            material: fitted,
+            temperature,
+            history,
+            until,
+            accuracy,
+            progress,
+            body,
+            fields,
+            kernels,
+        };
         let converged = converge(&scene, area)?;
         let size = &converged.size;
         let needed = |laws: &Laws| {

@@ -29,7 +29,12 @@ pub(super) struct FieldOnLevels {
 
 impl FieldOnLevels {
     /// The contact at these times, where the bodies touch.
-    pub(super) fn at(scene: &TrialScene<'_>, curve: &Curve, greatest: f64, times: &[f64]) -> Result<Vec<FieldOnLevels>> {
+    pub(super) fn at(
+        scene: &TrialScene<'_>,
+        curve: &Curve,
+        greatest: f64,
+        times: &[f64],
+    ) -> Result<Vec<FieldOnLevels>> {
         let run = Repeated::new(curve.contact(scene)?, scene.history, scene.until, LEVELS)?.0;
         let field = |&time: &f64| {
             let contact = run.at(scene.history, time, true)?.contact;

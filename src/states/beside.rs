@@ -293,7 +293,8 @@ impl Beside {
 
     /// Adds an elastic contact in the middle of others.
     fn refine(&mut self) -> Result<()> {
-        let between = |pair: &[[f64; 3]]| (pair[1][0] > FINE_RATIO * pair[0][0]).then(|| (pair[0][0] * pair[1][0]).sqrt());
+        let between =
+            |pair: &[[f64; 3]]| (pair[1][0] > FINE_RATIO * pair[0][0]).then(|| (pair[0][0] * pair[1][0]).sqrt());
         let middles: Vec<f64> = self.rows.windows(2).filter_map(between).collect();
         middles.into_iter().try_for_each(|level| self.solve(level).map(drop))
     }

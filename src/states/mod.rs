@@ -58,11 +58,11 @@ mod sweep;
 mod twin;
 
 pub use crate::error::StatesError;
+pub(crate) use beside::Repeated;
 pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
-pub(crate) use beside::Repeated;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
 pub(crate) use reach::{Course, as_elastic, greatest};

@@ -143,8 +143,7 @@ impl Observed {
     fn errors_of_field(&self, fine: &Observed, grid: &Grid) -> [f64; 2] {
         let [n1, n2] = grid.cells();
         let within = |k: usize| (0..16).map(move |part| (4 * (k / n2) + part / 4) * 4 * n2 + 4 * (k % n2) + part % 4);
-        let means: Vec<f64> =
-            (0..n1 * n2).map(|k| within(k).map(|k| fine.pressure[k]).sum::<f64>() / 16.0).collect();
+        let means: Vec<f64> = (0..n1 * n2).map(|k| within(k).map(|k| fine.pressure[k]).sum::<f64>() / 16.0).collect();
         let is_free = |k: usize| self.pressure[k] == 0.0;
         // beside the end of the contact, on either side
         let at_rim = |k: usize| {

@@ -98,11 +98,14 @@ fn planned_fields_are_as_exact_as_asked() {
     let (mut asked, mut told, mut large) = (Ratios::default(), Ratios::default(), 0);
     let scenes = (0..).map(|number| scene(seed.wrapping_add(1 << 30), number));
     let is_plain = |scene: &Scene| scene.aside == 0.0 && matches!(scene.shape, Some(Shape::Ball | Shape::Cone));
-    for (number, scene) in scenes.filter(|scene| scene.ratio <= 30.0 && is_plain(scene)).take(count).enumerate() {
+    for (number, scene) in
+        scenes.filter(|scene| scene.ratio <= 30.0 && is_plain(scene)).take(count as usize).enumerate()
+    {
         let draws = &mut Draws::new(seed.wrapping_mul(31).wrapping_add(number as u64));
         let mut times = [0.0; 2].map(|_| draws.between(0.1, 1.0) * scene.until);
         times.sort_by(f64::total_cmp);
-        let Some(errors) = deliver(&scene, scene.shape.unwrap(), &times).unwrap_or_else(|error| panic!("{}: {error}", scene.name))
+        let Some(errors) =
+            deliver(&scene, scene.shape.unwrap(), &times).unwrap_or_else(|error| panic!("{}: {error}", scene.name))
         else {
             large += 1;
             continue;

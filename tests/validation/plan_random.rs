@@ -183,7 +183,21 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
          {accuracy:?}, area {area}"
     );
     let other = None;
-    Scene { name, shape: Some(shape), geometry, other, material, history, until, by_force, accuracy, area, aside, ratio, kind }
+    Scene {
+        name,
+        shape: Some(shape),
+        geometry,
+        other,
+        material,
+        history,
+        until,
+        by_force,
+        accuracy,
+        area,
+        aside,
+        ratio,
+        kind,
+    }
 }
 
 /// A ball or a punch that is turned while it is pressed.

@@ -178,7 +178,7 @@ fn profiles(
     let (mut contact, until) = (scene.contact(cells, settings)?, 2.0 * scene.tau);
     let load = StepLoad::new(Load::force(scene.force))?;
     let run = contact.follow(&load, Stepping::fixed(until / steps as f64), until);
-    let mut run = run.sample_at(times.iter().map(|time| time * scene.tau))?;
+    let mut run = run.sample_at(times.iter().map(|time| time * scene.tau).collect::<Vec<_>>())?;
     run = if let Some(accuracy) = accuracy { run.fields_to(accuracy)? } else { run };
     let (mut pressures, mut convolutions) = (Vec::new(), 0);
     while let Some(report) = run.next_step()? {
