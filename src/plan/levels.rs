@@ -44,9 +44,8 @@ const ALWAYS_ADDED: usize = 48;
 /// Cells across the widest contact that are tried for a pressure at a growing rim, and a factor on what they are found to lose of it.
 const TRIED_ACROSS: [f64; 9] = [16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0];
 const SAFETY: f64 = 2.0;
-/// Greatest amplification of a pressure at a growing rim. Beyond, the last cells that joined were off by up to nine times the accuracy, also
-/// where the pressure in the middle is a little greater in the end.
-const MOST_AT_RIM: f64 = 2.0;
+/// The pressure of an outermost cell is at most so many times the mean over its width: it is the greatest just before the next cell joins.
+const OVERSHOOT: f64 = 1.6;
 
 /// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {
@@ -195,12 +194,7 @@ impl Curve {
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
             force_amplification: others.map(|state| relative(state.traction * state.level, force)).fold(1.0, f64::max),
             rim: relative(rim, most(|state| state.radius)),
-            cells: if exact.iter().any(|state| state.is_fast_rim() && state.peak >= NEAR * peak) {
-                ErrorLaw { converges: false, ..ErrorLaw::ZERO }
-            } else {
-                let allowed = CELLS_SHARE * scene.accuracy.target();
-                highest.map_or(ErrorLaw::ZERO, |state| state.cells(2.0 * edge, allowed))
-            },
+            cells: cells(&exact, highest, 2.0 * edge, CELLS_SHARE * scene.accuracy.target()),
         })
     }
 
@@ -299,21 +293,24 @@ struct LevelState {
     amplification: f64,
 }
 
-impl LevelState {
-    /// Whether the greatest pressure is at a rim that carries more than cells resolve.
-    fn is_fast_rim(&self) -> bool {
-        self.rings.is_some() && self.amplification > MOST_AT_RIM
+/// What cells lose of the `highest` pressure of a run, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than
+/// is allowed, and whose outermost cells never exceed it. In the middle they lose what they lose of an elastic contact.
+fn cells(all: &[LevelState], highest: Option<&LevelState>, wide: f64, allowed: f64) -> ErrorLaw {
+    let Some(highest) = highest else { return ErrorLaw::ZERO };
+    let of_rim =
+        || all.iter().filter(|state| OVERSHOOT * state.peak > highest.peak).filter_map(|state| state.rings.as_ref());
+    if of_rim().next().is_none() {
+        return ErrorLaw::ZERO;
     }
-
-    /// What cells lose of the greatest pressure, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than is
-    /// allowed. In the middle they lose what they lose of an elastic contact.
-    fn cells(&self, wide: f64, allowed: f64) -> ErrorLaw {
-        let Some(rings) = &self.rings else { return ErrorLaw::ZERO };
-        let loss = |across: f64| SAFETY * (1.0 - rings.peak(wide / across).pressure / self.peak).max(0.0);
-        let laws = TRIED_ACROSS.map(|across| ErrorLaw { error: loss(across), across, ..ErrorLaw::ZERO });
-        let found = laws.into_iter().find(|law| law.error <= allowed);
-        found.unwrap_or(ErrorLaw { converges: false, ..laws[laws.len() - 1] })
-    }
+    let law = |across: f64| {
+        let width = wide / across;
+        let blurred = highest.rings.as_ref().map_or(highest.peak, |rings| rings.peak(width).pressure);
+        let exceeds = of_rim().any(|rings| OVERSHOOT * rings.outermost(width) > highest.peak);
+        let (error, converges) = (SAFETY * (1.0 - blurred / highest.peak).max(0.0), !exceeds);
+        ErrorLaw { error, order: 1.0, across, converges: converges && error <= allowed }
+    };
+    let mut tried = TRIED_ACROSS.into_iter().map(law);
+    tried.find(|law| law.converges).unwrap_or(ErrorLaw { converges: false, ..ErrorLaw::ZERO })
 }
 
 /// A run on levels.

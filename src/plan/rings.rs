@@ -65,6 +65,11 @@ impl Rings {
         self.rings.iter().map(|ring| ring.share * (of_disc(ring.outer) - of_disc(ring.inner))).sum()
     }
 
+    /// The mean pressure over this width of the rim.
+    pub(super) fn outermost(&self, width: f64) -> f64 {
+        self.mean(self.edge - 0.5 * width, width)
+    }
+
     /// The greatest mean pressure over a width: of the places looked at, and of places between the highest and its neighbours.
     pub(super) fn peak(&self, width: f64) -> Peak {
         let at = |place: f64| self.mean(self.edge * (1.0 - RATIO.powf(place)), width);

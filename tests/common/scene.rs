@@ -95,11 +95,11 @@ fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Bo
     ("rough sphere", Box::new(Sum::new(Sphere::new(RADIUS).unwrap(), rough)), depth)
 }
 
-/// A rough plane that touches about a third of its cells, as [`random_shape`].
+/// A rough plane that touches a part of its cells, as [`random_shape`].
 fn rough_plane(draws: &mut Draws, grid: &Grid) -> (&'static str, Box<dyn Geometry>, f64) {
     let height = 1.0e-3 * LENGTH * draws.between(0.5, 2.0);
     let spec = RoughSpec::new(LENGTH, LENGTH / 3.0, Roughness::RmsHeight(height)).with_seed(draws.below(1000) as u64);
-    ("rough plane", Box::new(Rough::new(grid, spec).unwrap()), height * draws.between(1.0, 2.0))
+    ("rough plane", Box::new(Rough::new(grid, spec).unwrap()), height * draws.between(0.3, 0.8))
 }
 
 /// A law whose range is about the depth, and that acts over a zone of so many cells in the end.
