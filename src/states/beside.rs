@@ -148,6 +148,12 @@ impl Found {
         self.contact.force().max(LEAST_FORCE * self.force)
     }
 
+    /// w at the greatest level; 0 apart.
+    fn density(&self) -> f64 {
+        let (profile, level) = (Profile::new(self.contact.tractions()), self.contact.level());
+        if level > 0.0 { profile.amplification(level) * profile.total() / level } else { 0.0 }
+    }
+
     /// The time from which on the contact has been larger than at this level.
     fn since(&self, level: f64) -> f64 {
         let after = self.steps.iter().rposition(|step| step.1 < level * (1.0 - NEAREST));
@@ -320,13 +326,13 @@ impl Beside {
                 break;
             }
             let second: Vec<[f64; 3]> = self.rows.iter().copied().rev().step_by(2).collect();
-            let coarse = self.on_curve(second.into_iter().rev().collect(), history, (time, after))?.contact.level();
+            let coarse = self.on_curve(second.into_iter().rev().collect(), history, (time, after))?;
+            // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
+            let density = found.density().max(coarse.density());
             found = self.on_curve(self.rows.clone(), history, (time, after))?;
-            let level = found.contact.level();
-            // δp = w(c) δc at the rim, and as much less within
-            let density = profile.amplification(top) * profile.total() / top.max(f64::MIN_POSITIVE);
+            let (density, level) = (found.density().max(density), found.contact.level());
             let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
-            let [of_curve, change] = [amplified(level - coarse) / OF_SECOND, amplified(level - top)];
+            let [of_curve, change] = [amplified(level - coarse.contact.level()) / OF_SECOND, amplified(level - top)];
             of_level = of_curve + change;
             let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
             if of_curve > allowed && self.rows.len() < MOST_ROWS {
