@@ -26,6 +26,8 @@ const PARTS: u32 = 512;
 /// Tolerance of the steps that show how long steps of a run may be; its own are parts of these, so many steps at most.
 const COARSE: f64 = 1e-3;
 const PARTS_OF_STEP: usize = 8;
+/// Under a given approach they are shorter: a small force may be what is left of large ones.
+const PARTS_BY_APPROACH: usize = 32;
 
 const MOST_STEPS: usize = 4000;
 /// The shortest step, over the time since the start.
@@ -33,16 +35,21 @@ const SHORTEST: f64 = 1e-7;
 /// Parts of the accuracy: error of the elastic contacts, and of the level on the curve.
 const OF_SOLVER: f64 = 1e-3;
 const OF_CURVE: f64 = 0.05;
+/// Under a given approach bodies that creep by more take elastic contacts of so many times less error, up to the last factor.
+const MODERATE: f64 = 10.0;
+const MOST_TIGHTENED: f64 = 1e3;
 /// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
 const FALL_OVER_TOLERANCE: f64 = 1e2;
 /// The accuracy of a field holds relative to this part of the greatest force at least.
 const LEAST_FORCE: f64 = 0.01;
 /// Attempts to find the level on the curve, and most elastic contacts that it goes through before it is refined no more.
-const MOST_ATTEMPTS: u32 = 8;
-const MOST_ROWS: usize = 40;
-/// Ratio of neighbouring levels beyond which the curve is refined between them, and the error of a curve through every second contact over its own.
-const FINE_RATIO: f64 = 1.2;
-const OF_SECOND: f64 = 8.0;
+const MOST_ATTEMPTS: u32 = 12;
+const MOST_ROWS: usize = 64;
+/// The curve is refined between levels that differ by more, in logarithms, and whose slope turns by this part of the greatest turn; its error is
+/// that of a curve through every second contact over this, as at kinks.
+const FINEST: f64 = 0.02;
+const OF_GREATEST_TURN: f64 = 0.25;
+const OF_SECOND: f64 = 3.0;
 /// An error of the level counts so many times in the pressure, besides its amplification.
 const OF_LEVEL: f64 = 2.0;
 /// States of the curve nearer than this factor of the level are one.
@@ -88,7 +95,10 @@ impl Repeated {
             ends.push(report.time);
         }
         drop(run);
-        let parts = (MOST_STEPS / ends.len()).clamp(1, PARTS_OF_STEP);
+        let is_force = |time: &f64| Ok(matches!(history.checked_at(*time, false)?, Load::Force { .. }));
+        let by_force = ends.iter().map(is_force).collect::<Result<Vec<bool>>>()?.into_iter().all(|is_force| is_force);
+        let most = if by_force { PARTS_OF_STEP } else { PARTS_BY_APPROACH };
+        let parts = (MOST_STEPS / ends.len()).clamp(1, most);
         let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
         let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
@@ -148,10 +158,14 @@ impl Found {
         self.contact.force().max(LEAST_FORCE * self.force)
     }
 
-    /// w at the greatest level; 0 apart.
     fn density(&self) -> f64 {
-        let (profile, level) = (Profile::new(self.contact.tractions()), self.contact.level());
-        if level > 0.0 { profile.amplification(level) * profile.total() / level } else { 0.0 }
+        Profile::new(self.contact.tractions()).density()
+    }
+
+    /// How far the bodies are apart \[m\].
+    fn clearance(&mut self) -> Result<f64> {
+        let time = self.contact.time();
+        Ok(if self.contact.level() > 0.0 { 0.0 } else { self.contact.surface_at(time)? - self.contact.depth() })
     }
 
     /// The time from which on the contact has been larger than at this level.
@@ -170,6 +184,8 @@ pub(super) struct Beside {
     /// Level, depth and area of the elastic contacts that the curve goes through, and whether it matters.
     rows: Vec<[f64; 3]>,
     by_force: bool,
+    /// w of a contact that is made.
+    glass: f64,
     rest: f64,
     allowed_fall: f64,
     /// Elastic contacts solved since the last field, and their convolutions.
@@ -202,7 +218,10 @@ impl Beside {
         if course.material.contact_spectrum()?.is_none() || all.iter().any(is_other) || !by_force && is_free {
             return Ok(None);
         }
-        let tolerance = (OF_SOLVER * accuracy).max(1e-9);
+        let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
+        // what is left of a given approach once the bodies have crept
+        let of_creep = if by_force { 1.0 } else { (creep / MODERATE).clamp(1.0, MOST_TIGHTENED) };
+        let tolerance = (OF_SOLVER * accuracy / of_creep).max(1e-9);
         let mut elastic = ElasticContact::of(contact.of_unit_compliance(tolerance)?);
         let rest = elastic.under(Load::Force { normal: 0.0, tilt })?.approach();
         let mut top = 0.0_f64;
@@ -226,6 +245,7 @@ impl Beside {
             tilt,
             rows: Vec::new(),
             by_force,
+            glass: 1.0 / course.material.contact_compliance(0.0),
             rest,
             allowed_fall: FALL_OVER_TOLERANCE * tolerance,
             spent: [0; 2],
@@ -297,11 +317,20 @@ impl Beside {
         self.repeated.at(history, at.0, at.1)
     }
 
-    /// Adds an elastic contact in the middle of others.
+    /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join.
     fn refine(&mut self) -> Result<()> {
-        let between =
-            |pair: &[[f64; 3]]| (pair[1][0] > FINE_RATIO * pair[0][0]).then(|| (pair[0][0] * pair[1][0]).sqrt());
-        let middles: Vec<f64> = self.rows.windows(2).filter_map(between).collect();
+        let width = |k: usize| (self.rows[k + 1][0] / self.rows[k][0]).ln();
+        let slope = |k: usize| (self.rows[k + 1][1] / self.rows[k][1]).ln() / width(k);
+        let last = self.rows.len() - 2;
+        let turn = |k: usize| {
+            let beside = [k.saturating_sub(1), (k + 1).min(last)].map(|other| (slope(other) - slope(k)).abs());
+            beside[0].max(beside[1]) * width(k) * self.rows[k + 1][1]
+        };
+        let turns: Vec<f64> = (0..=last).map(turn).collect();
+        let most = turns.iter().copied().fold(0.0, f64::max);
+        let middle = |k: usize| (self.rows[k][0] * self.rows[k + 1][0]).sqrt();
+        let refined = |k: &usize| turns[*k] >= OF_GREATEST_TURN * most && width(*k) > FINEST;
+        let middles: Vec<f64> = (0..=last).filter(refined).map(middle).collect();
         middles.into_iter().try_for_each(|level| self.solve(level).map(drop))
     }
 
@@ -325,14 +354,26 @@ impl Beside {
             if self.by_force || attempt == MOST_ATTEMPTS {
                 break;
             }
-            let second: Vec<[f64; 3]> = self.rows.iter().copied().rev().step_by(2).collect();
-            let coarse = self.on_curve(second.into_iter().rev().collect(), history, (time, after))?;
-            // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
-            let density = found.density().max(coarse.density());
+            let last = self.rows.len() - 1;
+            let second =
+                |k: usize| (0..=last).filter(move |row| (row + k).is_multiple_of(2) || *row == 0 || *row == last);
+            let [even, odd] = [0, 1].map(|k| second(k).map(|row| self.rows[row]).collect());
+            let [mut even, mut odd] =
+                [self.on_curve(even, history, (time, after))?, self.on_curve(odd, history, (time, after))?];
             found = self.on_curve(self.rows.clone(), history, (time, after))?;
-            let (density, level) = (found.density().max(density), found.contact.level());
+            // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
+            let mut density = profile.density().max(found.density()).max(even.density()).max(odd.density());
+            let level = found.contact.level();
+            let mut off = (level - even.contact.level()).abs().max((level - odd.contact.level()).abs());
+            if level == 0.0 {
+                // apart by less than what the curves may err by?
+                let [own, even, odd] = [found.clearance()?, even.clearance()?, odd.clearance()?];
+                let nearer = (own - even).abs().max((own - odd).abs()) / OF_SECOND - own;
+                let touched = found.contact.states().level_where(0.0, nearer);
+                (off, density) = (off.max(OF_SECOND * touched), density.max(self.glass));
+            }
             let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
-            let [of_curve, change] = [amplified(level - coarse.contact.level()) / OF_SECOND, amplified(level - top)];
+            let [of_curve, change] = [amplified(off) / OF_SECOND, amplified(level - top)];
             of_level = of_curve + change;
             let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
             if of_curve > allowed && self.rows.len() < MOST_ROWS {

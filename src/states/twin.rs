@@ -63,6 +63,12 @@ impl Profile {
         top * (total - self.integral(below)) / (total * (top - below))
     }
 
+    /// The density in the last group; 0 where there is none.
+    pub(crate) fn density(&self) -> f64 {
+        let top = self.top();
+        if top > 0.0 { self.amplification(top) * self.total() / top } else { 0.0 }
+    }
+
     /// The integral up to a level.
     fn integral(&self, level: f64) -> f64 {
         let k = self.tops.partition_point(|top| top.0 < level);
