@@ -16,8 +16,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use scenes::{
-    CLOSED, FORCE, Merit, OPEN, RADIUS, STEP_COUNTS, TimeStudy, figure_2, figure_3, figure_6, figures_4_and_5, lure,
-    pressed_punch,
+    CLOSED, FEW_STEPS, FORCE, FewSteps, Merit, OPEN, RADIUS, STEP_COUNTS, TimeStudy, figure_2, figure_3, figure_6,
+    figures_4_and_5, figures_in_few_steps, lure, pressed_punch,
 };
 use step_loaded_sphere::StepLoadedSphere;
 use viscocontact::Result;
@@ -47,13 +47,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let cells = if args.quick { 64 } else { 256 };
     let progress = support::progress(5);
     let mut merits = Vec::new();
+    let few = figures_in_few_steps(cells)?;
     for figure in 2..=6 {
-        let (picture, own) = match figure {
+        let (mut picture, own) = match figure {
             2 => eccentric_punch(cells),
             3 => opening(cells),
             6 => steps_in_time(cells),
             _ => pressure_history(figure, cells),
         }?;
+        if figure >= 4 {
+            let few: Vec<&FewSteps> = few.iter().filter(|few| few.figure == figure).collect();
+            picture = Picture::beside(&[picture, few_steps(&few, cells)?])?;
+        }
         picture.save(args.output.join(format!("paper_fig{figure}.png")))?;
         merits.extend(own);
         progress.inc(1);
@@ -66,6 +71,12 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             _ => format!("t = {of} τ"),
         };
         println!("| {figure} | {quantity} | {of} | {value:.2e} | {low} … {high} |");
+    }
+    println!("\nError in time of the profiles (L1) and convolutions, in few steps to 2 τ");
+    println!("| figure | steps | steps alone | fields to 1e-2 | fields to 1e-3 |\n|---|---|---|---|---|");
+    for FewSteps { figure, steps, errors, convolutions, .. } in &few {
+        let columns = errors.iter().zip(convolutions).map(|(error, work)| format!(" {error:.1e}, {work} |"));
+        println!("| {figure} | {steps} |{}", columns.collect::<String>());
     }
     println!("{cells}² cells; pictures are in {}", args.output.display());
     let failed = merits.iter().filter(|merit| !merit.holds()).count();
@@ -204,4 +215,26 @@ fn steps_in_time(cells: usize) -> Drawn {
     };
     let panels = [panel(&studies[0], "the paper's rule")?, panel(&studies[1], "the default rule")?];
     Ok((Picture::beside(&panels)?, studies.iter().flat_map(TimeStudy::orders).collect()))
+}
+
+/// The profile at 2τ in few steps, and in the fewest with the field asked for, on Table 1.
+fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
+    let scene = if few[0].figure == 5 { StepLoadedSphere::zener() } else { StepLoadedSphere::maxwell() };
+    let (units, exact, grid) = (hertz(&scene)?, scene.reference()?, scene.grid(cells)?);
+    let rule = if few[0].figure == 6 { "the paper's rule" } else { "the default rule" };
+    let title = format!("t = 2 τ in few steps, {rule}, and with the field asked for");
+    let mut chart = Chart::new(title, "r / a_H", "p / p_H", Legend::LowerLeft);
+    let half = |pressure: &[f64]| -> Vec<(f64, f64)> {
+        along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0).collect()
+    };
+    let asked = few[0].pressures.iter().zip(&few[0].errors).next_back();
+    let asked =
+        asked.map(|(pressure, error)| (format!("{} steps, field to 1e-3: {error:.1e}", FEW_STEPS[0]), pressure));
+    let alone = few[..3].iter().map(|few| (format!("{} steps: {:.1e}", few.steps, few.errors[0]), &few.pressures[0]));
+    for ((name, pressure), color) in alone.chain(asked).zip(COLORS) {
+        chart.add(name, color, Style::Line, half(pressure));
+    }
+    let dots = thinned(exact_profile(&exact, 2.0 * scene.tau, units).into_iter());
+    chart.add("Table 1 (dots)", Color::BLACK, Style::Dots, dots);
+    chart.draw()
 }

@@ -27,12 +27,18 @@ impl ViscoelasticContact {
         py.detach(|| contact.stiffness_over_modulus()).or_raise()
     }
 
-    /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "area"; None where there
-    /// is no estimate.
+    /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
+    /// Σ p), "rim_pressure" (of a cell of the rim, over the greatest pressure), "area"; None where there is no estimate.
     fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let contact = self.get()?;
         let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
-        Ok(Some(dict! { py; "approach": error.approach, "max_pressure": error.max_pressure, "area": error.area }))
+        Ok(Some(dict! { py;
+            "approach": error.approach,
+            "max_pressure": error.max_pressure,
+            "pressure_field": error.pressure_field,
+            "rim_pressure": error.rim_pressure,
+            "area": error.area,
+        }))
     }
 
     /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].

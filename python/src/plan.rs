@@ -32,6 +32,9 @@ use crate::temperature::TemperatureHistory;
 ///     Of approach, force and, where it is finite, peak pressure, relative to their greatest values; in [1e-6, 0.1].
 /// area : bool
 ///     Whether the contact radius has this accuracy, too, at all times.
+/// fields : list of float
+///     Times [s] at which the pressure field has this accuracy too, in L1 over its load, in a run that is sampled there with
+///     `fields_to=plan.fields_to`.
 /// kernel : function, optional
 ///     Another body than a half-space: a function of a `Grid` that returns its `InfluenceKernel`.
 /// periods : (float or None, float or None)
@@ -58,7 +61,7 @@ pub struct Plan {
 #[pymethods]
 impl Plan {
     #[new]
-    #[pyo3(signature = (shape, material, load, until, *, accuracy=1e-3, area=false, kernel=None, periods=(None, None), line=None, temperature=None, progress=None))]
+    #[pyo3(signature = (shape, material, load, until, *, accuracy=1e-3, area=false, fields=Vec::new(), kernel=None, periods=(None, None), line=None, temperature=None, progress=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -68,6 +71,7 @@ impl Plan {
         until: f64,
         accuracy: f64,
         area: bool,
+        fields: Vec<f64>,
         kernel: Option<Py<PyAny>>,
         periods: (Option<f64>, Option<f64>),
         line: Option<f64>,
@@ -81,7 +85,7 @@ impl Plan {
         let mut listener = Listener::new(progress);
         let plan = py.detach(|| {
             let of_grid = |grid: &viscocontact::Grid| kernel_on(made, grid);
-            let mut plan = vp::Plan::builder(geometry, body, &*history, until).accuracy(accuracy).area(area);
+            let mut plan = vp::Plan::builder(geometry, body, &*history, until).accuracy(accuracy).area(area).fields_at(&fields);
             for (axis, period) in Axis::BOTH.into_iter().zip([periods.0, periods.1]) {
                 if let Some(length) = period {
                     plan = plan.period(axis, length);
@@ -152,6 +156,10 @@ getters! {Plan.plan, of:
     time_error: Option<f64> = of.time_error;
     /// Expected error of the mesh of approach and force, relative to their greatest values.
     mesh_error: f64 = of.mesh_error.approach;
+    /// The accuracy in time of fields, for `follow`; None if no fields were asked for.
+    fields_to: Option<f64> = of.fields;
+    /// Expected error of the mesh of the pressure field, in L1 over its load, at the times asked for or at the end.
+    field_error: f64 = of.mesh_error.pressure_field;
     /// Times at which steps end besides, for `follow`: with them the run has the greatest pressure that is promised [s].
     stops: Vec<f64> = of.stops.clone();
     /// Whether the greatest pressure of the run is promised.

@@ -89,7 +89,9 @@ def test_a_plan():
     table = contact.follow(vc.Load.force(1.0), 2.0, tolerance=plan.tolerance).table()
     exact = vc.GrowingSphere(10e-3, RUBBER, vc.Load.force(1.0)).approach(2.0)
     assert table["approach"][-1] == pytest.approx(exact, rel=1e-2)
-    assert plan.bytes > 0 and "cells" in str(plan)
+    assert plan.bytes > 0 and "cells" in str(plan) and plan.fields_to is None and 0.0 < plan.field_error < 0.2
+    fields = vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=3e-2, fields=[0.5, 2.0])
+    assert 0.0 < fields.fields_to < 3e-2 and fields.field_error < 3e-2 and fields.contact().mesh_error() is None
 
 
 def test_identification():

@@ -570,6 +570,7 @@ class Plan:
         *,
         accuracy: float = 1e-3,
         area: bool = False,
+        fields: Sequence[float] = ...,
         kernel: Callable[[Grid], InfluenceKernel] | None = None,
         periods: tuple[float | None, float | None] = ...,
         line: float | None = None,
@@ -593,6 +594,10 @@ class Plan:
     def time_error(self) -> float | None: ...
     @property
     def mesh_error(self) -> float: ...
+    @property
+    def fields_to(self) -> float | None: ...
+    @property
+    def field_error(self) -> float: ...
     @property
     def stops(self) -> list[float]: ...
     @property

@@ -18,6 +18,10 @@ pub struct MeshError {
     /// Error of the greatest pressure. `None` where the pressure near its greatest value is not a smooth peak: it does not
     /// converge there (the tip of a cone, the edge of a punch), or the cells do not resolve it.
     pub max_pressure: Option<f64>,
+    /// Error of the pressure field, Σ |δp| over Σ p, with p the mean over each cell: nearly all of it is at the rim.
+    pub pressure_field: f64,
+    /// Greatest error of the mean pressure over a cell of the rim, over the greatest pressure.
+    pub rim_pressure: f64,
     /// Error of the contact area.
     pub area: f64,
     /// The part of the approach's error that is due to an infinite pressure at the edge, of first order in the cell width.
@@ -39,6 +43,10 @@ const UNKNOWN: f64 = 0.1;
 /// edge counts as an independent error.
 const SHAPE_IN_APPROACH: f64 = 0.15;
 const SHAPE_IN_AREA: f64 = 0.45;
+/// Errors of the pressure field over the share of the force on the rim, and of the pressure in a cell of the rim over the greatest one there;
+/// and the error of the field over the drops of the pressure from cell to cell within.
+const FIELD_OF_RIM: f64 = 0.6;
+const CELL_OF_RIM: f64 = 0.7;
 /// Error of the end of contact, in cells: where it is unknown, where there is one estimate, and where there are two. Two
 /// estimates add their difference times the last factor.
 const PLACE_UNKNOWN: f64 = 0.14;
@@ -86,6 +94,8 @@ impl MeshError {
         MeshError {
             approach: self.approach.max(other.approach),
             max_pressure: known.reduce(f64::max),
+            pressure_field: self.pressure_field.max(other.pressure_field),
+            rim_pressure: self.rim_pressure.max(other.rim_pressure),
             area: self.area.max(other.area),
             singular: self.singular.max(other.singular),
         }
@@ -178,6 +188,8 @@ impl Pressed<'_> {
         Some(MeshError {
             approach,
             max_pressure: peak.map(|peak| peak + approach),
+            pressure_field: FIELD_OF_RIM * share + approach,
+            rim_pressure: CELL_OF_RIM * rim.highest / highest,
             area: (stiffness.powf(STIFFNESS_IN_AREA) * rim.place + SHAPE_IN_AREA * rim.shape_lengths.sqrt()) / cells,
             singular,
         })

@@ -22,6 +22,9 @@ pub struct Accuracy {
 /// Shares of the target for the error in time and the error of the mesh, as measured (docs/accuracy.md).
 const TIME_SHARE: f64 = 0.36;
 const SPACE_SHARE: f64 = 0.8;
+/// The same of a pressure field.
+const FIELD_TIME_SHARE: f64 = 0.3;
+const FIELD_SPACE_SHARE: f64 = 0.6;
 /// Share of the target for the residual of the solver, relative to the displacement: far below the other shares.
 const SOLVER_SHARE: f64 = 0.01;
 
@@ -83,6 +86,16 @@ impl Accuracy {
     pub fn settings(&self) -> Settings {
         let tolerance = (SOLVER_SHARE * self.target).clamp(1e-12, 1e-3);
         Settings { tolerance, series_tolerance: (0.1 * self.target).clamp(1e-7, 1e-2), ..Settings::default() }
+    }
+
+    /// Accuracy in time of pressure fields for this accuracy.
+    pub(crate) fn fields(&self) -> f64 {
+        (FIELD_TIME_SHARE * self.target).max(1e-5)
+    }
+
+    /// Allowed error of the mesh of pressure fields for this accuracy.
+    pub(crate) fn field_space(&self) -> f64 {
+        FIELD_SPACE_SHARE * self.target
     }
 
     /// Allowed error of the mesh for this accuracy.

@@ -5,6 +5,7 @@ use crate::load::Load;
 use crate::plan::difference::greatest;
 use crate::plan::domain::{ContactSize, Side};
 use crate::plan::error_law::ErrorLaw;
+use crate::plan::fields::{FieldOnLevels, PlannedField};
 use crate::plan::levels::Curve;
 use crate::plan::loads::Loads;
 use crate::plan::meshes::{LEAST_ACROSS, Laws, Meshes, Wanted};
@@ -93,11 +94,14 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
         return converge_on(scene, loads, &steps.run.size, area);
     }
     let (punch, target) = (scene.has_edge(&grid), scene.accuracy);
-    let wanted = Wanted { main: steps.left_for_mesh(target), others: target.space(), area };
+    let (is_asked, end) = (!scene.fields.is_empty(), [scene.until]);
+    let (times, fields) = if is_asked { (scene.fields, target.field_space()) } else { (&end[..], f64::INFINITY) };
+    let wanted = Wanted { main: steps.left_for_mesh(target), others: target.space(), area, fields };
     let Some((curve, trace)) = curve.zip(steps.trace) else {
         // a finer run beside a coarser one
         let (coarse, times) = (steps.run.clone(), steps.run.times());
-        let meshes = Meshes::coarsest(coarse.clone(), punch)
+        let fields = times.iter().map(|time| PlannedField::of_run(&coarse, *time)).collect();
+        let meshes = Meshes { fields, ..Meshes::coarsest(coarse.clone(), punch) }
             .refine(size, &wanted, |grid| Ok(scene.follow(grid, steps.tolerance, &times)?.at_the_times_of(&coarse)))?;
         let laws = meshes.laws();
         return Ok(ConvergedRun::new(steps, &meshes, laws, wanted, size));
@@ -116,9 +120,22 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
     if highest == levels.len() && peak > 0.0 && !is_small {
         levels.push(peak);
     }
+    let fields = match FieldOnLevels::at(scene, &curve, trace.levels[1], times) {
+        Err(error) if is_asked => return Err(error),
+        found => found.unwrap_or_default(),
+    };
+    let fields = fields.into_iter().map(|field| {
+        let off = |k: &usize| (field.level / levels[*k]).ln().abs();
+        let nearest = (0..levels.len()).min_by(|one, other| off(one).total_cmp(&off(other)));
+        let state = nearest.filter(|nearest| !is_asked || off(nearest) < SAME_LEVEL).unwrap_or(levels.len());
+        levels.extend((state == levels.len()).then_some(field.level));
+        PlannedField::on_levels(state, field, punch)
+    });
+    let fields = fields.collect();
     let states: Vec<Load> = levels.into_iter().map(load).collect();
     let coarsest = Meshes {
         highest: Some(highest),
+        fields,
         rim: trace.rim,
         // the levels of a punch are alike: their errors are in proportion to themselves, and so is the error of the run
         force_amplification: if punch { 1.0 } else { trace.force_amplification },
@@ -170,7 +187,7 @@ fn curve(scene: &TrialScene<'_>, largest: &[Load], grid: crate::Grid) -> Result<
 /// Convergence of the greatest pressure of an elastic contact on a separate domain.
 fn small_contact(scene: &TrialScene<'_>, load: Load, whole: &ContactSize) -> Result<Option<ErrorLaw>> {
     let (loads, size) = ([load], ContactSize::of(scene, &[load])?);
-    let wanted = Wanted { main: f64::INFINITY, others: scene.accuracy.space(), area: false };
+    let wanted = Wanted { main: f64::INFINITY, others: scene.accuracy.space(), area: false, fields: f64::INFINITY };
     size.on_growing_domain(|size| {
         let base = scene.elastic(size.grid(LEAST_ACROSS)?, &loads)?;
         // a tip

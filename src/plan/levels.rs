@@ -37,6 +37,9 @@ const CELLS_SHARE: f64 = 0.4;
 /// they may add.
 const MOST_ROUNDS: usize = 12;
 const HALVED: usize = 3;
+/// Where a round leaves more than this part of the error, the greatest pressure is found anew in parts of its steps, so many times at most.
+const STAGNANT: f64 = 0.7;
+const MOST_REFERENCES: usize = 3;
 /// Steps that end under a pressure greater than this part of the greatest of the run stay where they are, with the steps before.
 const NEAR: f64 = 0.8;
 const MOST_ADDED: usize = 2;
@@ -44,15 +47,14 @@ const ALWAYS_ADDED: usize = 48;
 /// Cells across the widest contact that are tried for a pressure at a growing rim, and a factor on what they are found to lose of it.
 const TRIED_ACROSS: [f64; 9] = [16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0];
 const SAFETY: f64 = 2.0;
-/// Greatest amplification of a pressure at a growing rim. Beyond, the last cells that joined were off by up to nine times the accuracy, also
-/// where the pressure in the middle is a little greater in the end.
-const MOST_AT_RIM: f64 = 2.0;
+/// The pressure of an outermost cell is at most so many times the mean over its width: it is the greatest just before the next cell joins.
+const OVERSHOOT: f64 = 1.6;
 
 /// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {
     states: Arc<ElasticStates>,
     /// Whether the contact is a line, whose half width is proportional to the area.
-    line: bool,
+    pub(super) line: bool,
 }
 
 impl Curve {
@@ -152,6 +154,7 @@ impl Curve {
             force: contact.force(),
             radius: self.radius(level),
             peak: peak.pressure,
+            place: peak.place,
             rings: if peak.is_central { None } else { Some(rings) },
             traction,
             amplification: relative(traction * elastic, peak.pressure),
@@ -160,9 +163,8 @@ impl Curve {
 
     /// Error in time of a trial run, and what its pressures are made of.
     pub(super) fn trace(&self, scene: &TrialScene<'_>, run: &Run) -> Result<Trace> {
-        let parts = (MAX_PARTS / run.steps.len().max(1)).clamp(MIN_PARTS, PARTS);
         let legs = run.legs();
-        let [taken, exact] = [1, parts as u32].map(|parts| self.follow(scene, &legs, parts));
+        let [taken, exact] = [1, parts_of(legs.len())].map(|parts| self.follow(scene, &legs, parts));
         let (taken, exact) = (taken?, exact?);
         // greatest values hold between the ends of steps, too
         let most = |of: fn(&LevelState) -> f64| exact.iter().map(|state| of(state).abs()).fold(0.0, f64::max);
@@ -186,7 +188,7 @@ impl Curve {
         let others = exact.iter().filter(|state| !state.is_by_force);
         Ok(Trace {
             error,
-            highest: [highest.map_or(0.0, |state| state.time), peak],
+            highest: highest_of(&exact),
             level: highest.map_or(0.0, |state| state.level),
             levels: [
                 ends().map(|state| state.level).filter(|level| *level > 0.0).fold(f64::INFINITY, f64::min),
@@ -195,29 +197,30 @@ impl Curve {
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
             force_amplification: others.map(|state| relative(state.traction * state.level, force)).fold(1.0, f64::max),
             rim: relative(rim, most(|state| state.radius)),
-            cells: if exact.iter().any(|state| state.is_fast_rim() && state.peak >= NEAR * peak) {
-                ErrorLaw { converges: false, ..ErrorLaw::ZERO }
-            } else {
-                let allowed = CELLS_SHARE * scene.accuracy.target();
-                highest.map_or(ErrorLaw::ZERO, |state| state.cells(2.0 * edge, allowed))
-            },
+            cells: cells(&exact, highest, 2.0 * edge, CELLS_SHARE * scene.accuracy.target()),
         })
     }
 
     /// Times at which the steps of a run end besides, so that its greatest pressure is right, and what is left of its error: a rim that
     /// joins in a long step carries too much. Steps before the greatest pressure are halved, and before every pressure that exceeds it.
     pub(super) fn stops(&self, scene: &TrialScene<'_>, run: &Run, trace: &Trace) -> Result<(Vec<f64>, f64)> {
-        let (mut legs, mut stops, [time, peak]) = (run.legs(), Vec::new(), trace.highest);
+        let (mut legs, mut stops, [mut time, mut peak]) = (run.legs(), Vec::new(), trace.highest);
         let (allowed, most) =
             (STEPS_SHARE * scene.accuracy.target(), (1 + MOST_ADDED) * run.steps.len() + ALWAYS_ADDED);
-        let mut error = trace.error.pressure;
+        let (mut error, mut references) = (trace.error.pressure, 0);
         for round in 0..MOST_ROUNDS {
             if error <= allowed || legs.len() > most {
                 break;
             }
             let taken = self.follow(scene, &legs, 1)?;
             let highest = taken.iter().map(|state| state.peak).fold(0.0, f64::max);
-            error = relative((highest - peak).abs(), peak);
+            let before = std::mem::replace(&mut error, relative((highest - peak).abs(), peak));
+            if round > 1 && error > STAGNANT * before.max(allowed) && references < MOST_REFERENCES {
+                // the parts of the first steps were too long themselves
+                [time, peak] = highest_of(&self.follow(scene, &legs, parts_of(legs.len()))?);
+                error = relative((highest - peak).abs(), peak);
+                references += 1;
+            }
             let exceeds = |k: &usize| taken[*k].peak > (1.0 + allowed) * peak;
             let mut ends: Vec<usize> = (0..legs.len()).filter(exceeds).collect();
             let mut new = Vec::new();
@@ -226,9 +229,12 @@ impl Curve {
                 ends.extend(legs.iter().position(|leg| leg.end >= time));
             }
             for end in ends {
-                // older steps are what is left, once the last ones are short
-                let before = legs[..=end].iter().rev().filter(|leg| leg.dt > 0.0).take(HALVED + round);
-                new.extend(before.map(|leg| leg.end - 0.5 * leg.dt));
+                let before = legs[..=end].iter().rev().filter(|leg| leg.dt > 0.0).take(HALVED);
+                // the steps in which what bounds the greatest pressure joined: their traction is one, and what follows stands out
+                let inside = |k: &usize| self.edge(taken[*k].level) < taken[end].place;
+                let joined = (0..end).rev().find(inside).map_or(0, |k| k + 1);
+                let around = legs[joined.saturating_sub(1)..].iter().take(HALVED).filter(|leg| leg.dt > 0.0);
+                new.extend(before.chain(around).map(|leg| leg.end - 0.5 * leg.dt));
             }
             new.sort_by(f64::total_cmp);
             new.dedup();
@@ -249,6 +255,17 @@ impl Curve {
         stops.dedup();
         Ok((stops, error))
     }
+}
+
+/// Number of parts of each of so many steps.
+fn parts_of(steps: usize) -> u32 {
+    (MAX_PARTS / steps.max(1)).clamp(MIN_PARTS, PARTS) as u32
+}
+
+/// Time and size of the greatest pressure.
+fn highest_of(states: &[LevelState]) -> [f64; 2] {
+    let first = states.iter().map(|state| [state.time, state.peak]).reduce(|a, b| if b[1] > a[1] { b } else { a });
+    first.unwrap_or_default()
 }
 
 /// A step: its end, its length and the load there.
@@ -292,6 +309,8 @@ struct LevelState {
     radius: f64,
     /// The greatest pressure, in a unit of its own, and where it is not in the middle the groups that it is made of.
     peak: f64,
+    /// Its distance from the middle, as an edge of levels.
+    place: f64,
     rings: Option<Rings>,
     /// Greatest w of a level.
     traction: f64,
@@ -299,21 +318,24 @@ struct LevelState {
     amplification: f64,
 }
 
-impl LevelState {
-    /// Whether the greatest pressure is at a rim that carries more than cells resolve.
-    fn is_fast_rim(&self) -> bool {
-        self.rings.is_some() && self.amplification > MOST_AT_RIM
+/// What cells lose of the `highest` pressure of a run, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than
+/// is allowed, and whose outermost cells never exceed it. In the middle they lose what they lose of an elastic contact.
+fn cells(all: &[LevelState], highest: Option<&LevelState>, wide: f64, allowed: f64) -> ErrorLaw {
+    let Some(highest) = highest else { return ErrorLaw::ZERO };
+    let of_rim =
+        || all.iter().filter(|state| OVERSHOOT * state.peak > highest.peak).filter_map(|state| state.rings.as_ref());
+    if of_rim().next().is_none() {
+        return ErrorLaw::ZERO;
     }
-
-    /// What cells lose of the greatest pressure, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than is
-    /// allowed. In the middle they lose what they lose of an elastic contact.
-    fn cells(&self, wide: f64, allowed: f64) -> ErrorLaw {
-        let Some(rings) = &self.rings else { return ErrorLaw::ZERO };
-        let loss = |across: f64| SAFETY * (1.0 - rings.peak(wide / across).pressure / self.peak).max(0.0);
-        let laws = TRIED_ACROSS.map(|across| ErrorLaw { error: loss(across), across, ..ErrorLaw::ZERO });
-        let found = laws.into_iter().find(|law| law.error <= allowed);
-        found.unwrap_or(ErrorLaw { converges: false, ..laws[laws.len() - 1] })
-    }
+    let law = |across: f64| {
+        let width = wide / across;
+        let blurred = highest.rings.as_ref().map_or(highest.peak, |rings| rings.peak(width).pressure);
+        let exceeds = of_rim().any(|rings| OVERSHOOT * rings.outermost(width) > highest.peak);
+        let (error, converges) = (SAFETY * (1.0 - blurred / highest.peak).max(0.0), !exceeds);
+        ErrorLaw { error, order: 1.0, across, converges: converges && error <= allowed }
+    };
+    let mut tried = TRIED_ACROSS.into_iter().map(law);
+    tried.find(|law| law.converges).unwrap_or(ErrorLaw { converges: false, ..ErrorLaw::ZERO })
 }
 
 /// A run on levels.

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::plan::difference::{Differences, greatest, relative};
 use crate::plan::domain::ContactSize;
 use crate::plan::error_law::{ErrorLaw, ORDERS};
+use crate::plan::fields::PlannedField;
 use crate::plan::scene::{Run, StepState};
 
 /// Cells across the widest contact on the coarsest mesh, where the steps are found, and on the finest that a plan computes, unless it
@@ -20,6 +21,9 @@ const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Greatest difference of the greatest pressure that counts as second order, over the estimate from the neighbours of
 /// the peak. A difference of second order is three times the error on the finer mesh.
 const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
+/// Least and greatest order of the error of a pressure field, at singular edges and at smooth rims, and the order at the rim itself.
+const FIELD_ORDERS: [f64; 2] = [0.5, 1.5];
+const RIM_ORDER: f64 = 0.5;
 /// Upper limit of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
 
@@ -29,6 +33,8 @@ pub(super) struct Wanted {
     pub(super) main: f64,
     pub(super) others: f64,
     pub(super) area: bool,
+    /// Of pressure fields; infinite where none are asked for.
+    pub(super) fields: f64,
 }
 
 /// How the errors of a run fall with its mesh.
@@ -44,6 +50,9 @@ pub(super) struct Laws {
     pub(super) at_rim: ErrorLaw,
     /// Convergence of the contact radius at any time.
     pub(super) radius: ErrorLaw,
+    /// Convergence of pressure fields, and of the pressure at their rims.
+    pub(super) field: ErrorLaw,
+    pub(super) field_rim: ErrorLaw,
 }
 
 impl Laws {
@@ -53,7 +62,8 @@ impl Laws {
         let of_rim = Some(self.at_rim.across).filter(|_| self.pressure.converges);
         let others = [Some(self.pressure).filter(|law| law.converges), wanted.area.then_some(self.radius)];
         let others = others.into_iter().flatten().map(|law| law.across_for(wanted.others));
-        others.chain(of_rim).chain(mains).fold(0.0, f64::max)
+        let of_fields = self.field.across_for(wanted.fields);
+        others.chain(of_rim).chain(mains).fold(of_fields, f64::max)
     }
 
     /// Without a promise of the greatest pressure.
@@ -72,6 +82,9 @@ pub(super) struct Meshes {
     pub(super) finest: Run,
     /// Index of the state with the greatest pressure, if it is known.
     pub(super) highest: Option<usize>,
+    /// Pressure fields, and their errors on each mesh but the coarsest.
+    pub(super) fields: Vec<PlannedField>,
+    pub(super) field_errors: Vec<[f64; 2]>,
     /// Error of the contact radius due to creep at the rim, on the coarsest mesh.
     pub(super) rim: f64,
     /// Errors of approach and force, and of the greatest pressure, over the errors of the states; `None` where no state has it.
@@ -86,10 +99,13 @@ impl Meshes {
     pub(super) fn coarsest(finest: Run, punch: bool) -> Meshes {
         let (across, differences, highest) = (LEAST_ACROSS, Vec::new(), None);
         let (force_amplification, pressure_amplification, rim, work_order) = (1.0, Some(1.0), 0.0, 0.0);
+        let (fields, field_errors) = (Vec::new(), Vec::new());
         Meshes {
             punch,
             across,
             differences,
+            fields,
+            field_errors,
             finest,
             highest,
             rim,
@@ -116,6 +132,8 @@ impl Meshes {
             let growth = relative(finer.convolutions, self.finest.convolutions);
             self.work_order = growth.max(1.0).log2().min(MAX_WORK_ORDER);
             self.finest = finer;
+            let of_fields = self.fields.iter().map(|field| field.errors(&self.finest, self.across));
+            self.field_errors.extend(of_fields.reduce(|one, other| [0, 1].map(|which| one[which].max(other[which]))));
             let laws = self.laws();
             let reach = if self.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
             let sides = size.cells(laws.without_pressure().across_for(wanted));
@@ -136,7 +154,17 @@ impl Meshes {
             pressure_over_time: ErrorLaw::smooth(&self.each(|differences| differences.pressure_over_time), self.across),
             at_rim: ErrorLaw::ZERO,
             radius: ErrorLaw { error: radius.error.max(self.rim * LEAST_ACROSS / self.across), ..radius },
+            field: self.field(0, FIELD_ORDERS),
+            field_rim: self.field(1, [RIM_ORDER; 2]),
         }
+    }
+
+    /// Convergence of an error of the fields, by the errors on the last two meshes.
+    fn field(&self, which: usize, [least, most]: [f64; 2]) -> ErrorLaw {
+        let [.., error] = self.field_errors[..] else { return ErrorLaw::ZERO };
+        let before = self.field_errors.iter().rev().nth(1).map_or(0.0, |before| before[which]);
+        let order = (before / error[which]).log2().clamp(least, most);
+        ErrorLaw { error: error[which], order, across: self.across, converges: true }
     }
 
     /// The differences of one quantity, from the coarsest mesh to the finest.

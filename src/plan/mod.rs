@@ -6,6 +6,7 @@ mod convergence;
 mod difference;
 mod domain;
 mod error_law;
+mod fields;
 mod levels;
 mod loads;
 mod meshes;
@@ -40,7 +41,8 @@ use crate::run::Stepping;
 /// Errors of at most twice the accuracy, relative to the greatest value of the run, of
 /// * approach and force at all times,
 /// * the greatest pressure of the run, if it converges and the coarse meshes resolve its peak ([`Plan::pressure_converges`]),
-/// * with [`PlanBuilder::area`], the contact radius wherever the contact is at least 8 cells across.
+/// * with [`PlanBuilder::area`], the contact radius wherever the contact is at least 8 cells across,
+/// * with [`PlanBuilder::fields_at`], the pressure field at these times, in L1 over its load.
 ///
 /// Other errors are estimated, not promised: [`Plan::mesh_error`] estimates the error of the area,
 /// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve
@@ -89,6 +91,9 @@ pub struct Plan {
     pub stops: Vec<f64>,
     /// The accuracy.
     pub accuracy: Accuracy,
+    /// What [`Run::fields_to`](crate::run::Run::fields_to) takes of a run that is sampled at the times of [`PlanBuilder::fields_at`]; `None` if
+    /// no fields were asked for.
+    pub fields: Option<f64>,
     /// Expected extent of the contact from the middle of the grid, along x1 and x2 \[m\].
     pub reach: [f64; 2],
     /// Approximate number of steps of the run.
@@ -101,7 +106,8 @@ pub struct Plan {
     /// the steps on elastic states, or from a run with shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
     pub time_error: Option<f64>,
     /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
-    /// at all times, and of the greatest pressure of the run, if it converges.
+    /// at all times, of the greatest pressure of the run, if it converges, and of the pressure field and its rim at the times of
+    /// [`PlanBuilder::fields_at`], or else at the end; 1 where it is not known.
     pub mesh_error: MeshError,
     /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
     /// greatest of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which

@@ -25,6 +25,8 @@ pub(super) struct Rings {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Peak {
     pub(super) pressure: f64,
+    /// Distance from the middle.
+    pub(super) place: f64,
     pub(super) is_central: bool,
 }
 
@@ -65,9 +67,15 @@ impl Rings {
         self.rings.iter().map(|ring| ring.share * (of_disc(ring.outer) - of_disc(ring.inner))).sum()
     }
 
+    /// The mean pressure over this width of the rim.
+    pub(super) fn outermost(&self, width: f64) -> f64 {
+        self.mean(self.edge - 0.5 * width, width)
+    }
+
     /// The greatest mean pressure over a width: of the places looked at, and of places between the highest and its neighbours.
     pub(super) fn peak(&self, width: f64) -> Peak {
-        let at = |place: f64| self.mean(self.edge * (1.0 - RATIO.powf(place)), width);
+        let distance = |place: f64| self.edge * (1.0 - RATIO.powf(place));
+        let at = |place: f64| self.mean(distance(place), width);
         let (mut highest, mut pressure) = (0.0, at(0.0));
         for parts in [1.0, FINER] {
             let (middle, reach) = (highest, if parts == 1.0 { PLACES } else { FINER - 1.0 });
@@ -78,7 +86,7 @@ impl Rings {
                 part += 1.0;
             }
         }
-        Peak { pressure, is_central: highest == 0.0 }
+        Peak { pressure, place: distance(highest), is_central: highest == 0.0 }
     }
 }
 

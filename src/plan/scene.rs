@@ -31,6 +31,8 @@ pub(super) struct TrialScene<'a> {
     /// time 0; its error ends the planning.
     pub(super) progress: &'a dyn Fn([usize; 2], f64, f64) -> Result<()>,
     pub(super) body: Body<'a>,
+    /// Times at which the pressure is asked for.
+    pub(super) fields: &'a [f64],
     /// Kernels made so far.
     pub(super) kernels: &'a RefCell<Vec<Arc<InfluenceKernel>>>,
 }
@@ -49,6 +51,8 @@ pub(super) struct StepState {
     pub(super) peak: Option<f64>,
     /// First-order share of the error of the mesh, due to singular edges and estimated from the rim.
     pub(super) singular: f64,
+    /// Errors of the pressure field and of its rim; `None` without an estimate.
+    pub(super) field: Option<[f64; 2]>,
     /// Whether the contact is enough cells wide for radius and pressure to be resolved.
     pub(super) resolved: bool,
 }
@@ -75,6 +79,7 @@ impl Run {
 
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
         let mesh = contact.mesh_error().unwrap_or_default();
+        let field = mesh.map(|error| [error.pressure_field, error.rim_pressure]);
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
         let at = contact.load().tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
@@ -87,6 +92,7 @@ impl Run {
             pressure: contact.max_pressure(),
             peak: mesh.and_then(|error| error.max_pressure),
             singular: mesh.map_or(0.0, |error| error.singular),
+            field,
             resolved: !report.warnings.contains(Warnings::FEW_CELLS),
         });
         if let Some(extent) = contact.extent_of_contact() {

@@ -26,6 +26,8 @@ const PARTS: u32 = 512;
 /// Tolerance of the steps that show how long steps of a run may be; its own are parts of these, so many steps at most.
 const COARSE: f64 = 1e-3;
 const PARTS_OF_STEP: usize = 8;
+/// Under a given approach they are shorter: a small force may be what is left of large ones.
+const PARTS_BY_APPROACH: usize = 32;
 
 const MOST_STEPS: usize = 4000;
 /// The shortest step, over the time since the start.
@@ -33,12 +35,23 @@ const SHORTEST: f64 = 1e-7;
 /// Parts of the accuracy: error of the elastic contacts, and of the level on the curve.
 const OF_SOLVER: f64 = 1e-3;
 const OF_CURVE: f64 = 0.05;
+/// Under a given approach bodies that creep by more take elastic contacts of so many times less error, up to the last factor.
+const MODERATE: f64 = 10.0;
+const MOST_TIGHTENED: f64 = 1e3;
 /// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
 const FALL_OVER_TOLERANCE: f64 = 1e2;
 /// The accuracy of a field holds relative to this part of the greatest force at least.
 const LEAST_FORCE: f64 = 0.01;
-/// Attempts to find the level on the curve.
-const MOST_ATTEMPTS: u32 = 4;
+/// Attempts to find the level on the curve, and most elastic contacts that it goes through before it is refined no more.
+const MOST_ATTEMPTS: u32 = 12;
+const MOST_ROWS: usize = 64;
+/// The curve is refined between levels that differ by more, in logarithms, and whose slope turns by this part of the greatest turn; its error is
+/// that of a curve through every second contact over this, as at kinks.
+const FINEST: f64 = 0.02;
+const OF_GREATEST_TURN: f64 = 0.25;
+const OF_SECOND: f64 = 3.0;
+/// An error of the level counts so many times in the pressure, besides its amplification.
+const OF_LEVEL: f64 = 2.0;
 /// States of the curve nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-6;
 /// Levels of the curve beyond its last one, over that.
@@ -51,7 +64,7 @@ const LAST_STEP: f64 = 1e-5;
 
 /// Repeats a run on levels.
 #[derive(Debug, Clone)]
-pub(super) struct Repeated {
+pub(crate) struct Repeated {
     /// The contact at the start of the run.
     origin: StatesContact,
     accuracy: f64,
@@ -60,8 +73,8 @@ pub(super) struct Repeated {
 }
 
 /// A contact on levels at a time, and the times and levels of its steps.
-pub(super) struct Found {
-    pub(super) contact: StatesContact,
+pub(crate) struct Found {
+    pub(crate) contact: StatesContact,
     steps: Vec<(f64, f64)>,
     /// The greatest force so far.
     force: f64,
@@ -69,7 +82,7 @@ pub(super) struct Found {
 
 impl Repeated {
     /// A run from `origin`; and its greatest level.
-    pub(super) fn new(
+    pub(crate) fn new(
         origin: StatesContact,
         history: &dyn LoadHistory,
         until: f64,
@@ -82,7 +95,10 @@ impl Repeated {
             ends.push(report.time);
         }
         drop(run);
-        let parts = (MOST_STEPS / ends.len()).clamp(1, PARTS_OF_STEP);
+        let is_force = |time: &f64| Ok(matches!(history.checked_at(*time, false)?, Load::Force { .. }));
+        let by_force = ends.iter().map(is_force).collect::<Result<Vec<bool>>>()?.into_iter().all(|is_force| is_force);
+        let most = if by_force { PARTS_OF_STEP } else { PARTS_BY_APPROACH };
+        let parts = (MOST_STEPS / ends.len()).clamp(1, most);
         let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
         let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
@@ -90,7 +106,7 @@ impl Repeated {
     }
 
     /// The contact at a time, after a jump of the load there or before it.
-    pub(super) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
         let (mut ends, mut left, rest) = (self.schedule.clone(), 1.0, 1.0 - self.accuracy.sqrt());
         while left > LAST_STEP {
             left *= rest;
@@ -142,6 +158,16 @@ impl Found {
         self.contact.force().max(LEAST_FORCE * self.force)
     }
 
+    fn density(&self) -> f64 {
+        Profile::new(self.contact.tractions()).density()
+    }
+
+    /// How far the bodies are apart \[m\].
+    fn clearance(&mut self) -> Result<f64> {
+        let time = self.contact.time();
+        Ok(if self.contact.level() > 0.0 { 0.0 } else { self.contact.surface_at(time)? - self.contact.depth() })
+    }
+
     /// The time from which on the contact has been larger than at this level.
     fn since(&self, level: f64) -> f64 {
         let after = self.steps.iter().rposition(|step| step.1 < level * (1.0 - NEAREST));
@@ -158,6 +184,8 @@ pub(super) struct Beside {
     /// Level, depth and area of the elastic contacts that the curve goes through, and whether it matters.
     rows: Vec<[f64; 3]>,
     by_force: bool,
+    /// w of a contact that is made.
+    glass: f64,
     rest: f64,
     allowed_fall: f64,
     /// Elastic contacts solved since the last field, and their convolutions.
@@ -190,7 +218,10 @@ impl Beside {
         if course.material.contact_spectrum()?.is_none() || all.iter().any(is_other) || !by_force && is_free {
             return Ok(None);
         }
-        let tolerance = (OF_SOLVER * accuracy).max(1e-9);
+        let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
+        // what is left of a given approach once the bodies have crept
+        let of_creep = if by_force { 1.0 } else { (creep / MODERATE).clamp(1.0, MOST_TIGHTENED) };
+        let tolerance = (OF_SOLVER * accuracy / of_creep).max(1e-9);
         let mut elastic = ElasticContact::of(contact.of_unit_compliance(tolerance)?);
         let rest = elastic.under(Load::Force { normal: 0.0, tilt })?.approach();
         let mut top = 0.0_f64;
@@ -214,6 +245,7 @@ impl Beside {
             tilt,
             rows: Vec::new(),
             by_force,
+            glass: 1.0 / course.material.contact_compliance(0.0),
             rest,
             allowed_fall: FALL_OVER_TOLERANCE * tolerance,
             spent: [0; 2],
@@ -227,7 +259,7 @@ impl Beside {
             beside.serves &= !shrinks;
             below = Some(next);
         }
-        let origin = undisturbed(course, &beside.curve()?, interpolant, start)?;
+        let origin = undisturbed(course, &beside.curve_through(&beside.rows)?, interpolant, start)?;
         beside.repeated = Repeated::new(origin, course.history, course.until, accuracy)?.0;
         Ok(Some(beside))
     }
@@ -253,23 +285,23 @@ impl Beside {
     }
 
     /// δ(l) through all elastic contacts, with the slopes of parabolas of the logarithms.
-    fn curve(&self) -> Result<Arc<ElasticStates>> {
+    fn curve_through(&self, rows: &[[f64; 3]]) -> Result<Arc<ElasticStates>> {
         let slope = |k: usize| {
             let chord = |k: usize| {
-                let [a, b] = [self.rows[k], self.rows[k + 1]];
+                let [a, b] = [rows[k], rows[k + 1]];
                 let width = (b[0] / a[0]).ln();
                 ((b[1] / a[1]).ln() / width, width)
             };
-            let last = self.rows.len() - 1;
+            let last = rows.len() - 1;
             let ((below, left), (above, right)) = (chord(k.saturating_sub(1).min(last - 1)), chord(k.min(last - 1)));
             (below * right + above * left) / (left + right)
         };
         let row = |k: usize| {
-            let ([level, depth, area], slope) = (self.rows[k], slope(k));
+            let ([level, depth, area], slope) = (rows[k], slope(k));
             (level, self.rest + depth, level / (depth * slope), area)
         };
-        let last = self.rows.len() - 1;
-        let ([level, depth, area], power) = (self.rows[last], slope(last));
+        let last = rows.len() - 1;
+        let ([level, depth, area], power) = (rows[last], slope(last));
         let (ratio, beyond) = (BEYOND.powf(power), BEYOND * level);
         let end = (beyond, self.rest + depth * ratio, beyond / (depth * ratio * power), area * ratio);
         let rows = (0..=last).map(row).chain([end]);
@@ -279,11 +311,34 @@ impl Beside {
         Ok(states)
     }
 
+    /// The run to a time on the curve through some elastic contacts.
+    fn on_curve(&mut self, rows: Vec<[f64; 3]>, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
+        self.repeated.origin.exchange(self.curve_through(&rows)?);
+        self.repeated.at(history, at.0, at.1)
+    }
+
+    /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join.
+    fn refine(&mut self) -> Result<()> {
+        let width = |k: usize| (self.rows[k + 1][0] / self.rows[k][0]).ln();
+        let slope = |k: usize| (self.rows[k + 1][1] / self.rows[k][1]).ln() / width(k);
+        let last = self.rows.len() - 2;
+        let turn = |k: usize| {
+            let beside = [k.saturating_sub(1), (k + 1).min(last)].map(|other| (slope(other) - slope(k)).abs());
+            beside[0].max(beside[1]) * width(k) * self.rows[k + 1][1]
+        };
+        let turns: Vec<f64> = (0..=last).map(turn).collect();
+        let most = turns.iter().copied().fold(0.0, f64::max);
+        let middle = |k: usize| (self.rows[k][0] * self.rows[k + 1][0]).sqrt();
+        let refined = |k: &usize| turns[*k] >= OF_GREATEST_TURN * most && width(*k) > FINEST;
+        let middles: Vec<f64> = (0..=last).filter(refined).map(middle).collect();
+        middles.into_iter().try_for_each(|level| self.solve(level).map(drop))
+    }
+
     /// The pressure at a time, after a jump of the load there or before it.
     pub(crate) fn pressure(&mut self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<FoundPressure> {
         let mut found = self.repeated.at(history, time, after)?;
         let mut solved: Vec<Solved> = Vec::new();
-        let mut error = 0.0;
+        let (mut error, mut of_level) = (0.0, 0.0);
         for attempt in 1.. {
             let profile = Profile::new(found.contact.tractions());
             let top = found.contact.level();
@@ -299,10 +354,32 @@ impl Beside {
             if self.by_force || attempt == MOST_ATTEMPTS {
                 break;
             }
-            self.repeated.origin.exchange(self.curve()?);
-            found = self.repeated.at(history, time, after)?;
-            let change = (found.contact.level() - top).abs();
-            if change * profile.amplification() <= OF_CURVE * self.repeated.accuracy * top {
+            let last = self.rows.len() - 1;
+            let second =
+                |k: usize| (0..=last).filter(move |row| (row + k).is_multiple_of(2) || *row == 0 || *row == last);
+            let [even, odd] = [0, 1].map(|k| second(k).map(|row| self.rows[row]).collect());
+            let [mut even, mut odd] =
+                [self.on_curve(even, history, (time, after))?, self.on_curve(odd, history, (time, after))?];
+            found = self.on_curve(self.rows.clone(), history, (time, after))?;
+            // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
+            let mut density = profile.density().max(found.density()).max(even.density()).max(odd.density());
+            let level = found.contact.level();
+            let mut off = (level - even.contact.level()).abs().max((level - odd.contact.level()).abs());
+            if level == 0.0 {
+                // apart by less than what the curves may err by?
+                let [own, even, odd] = [found.clearance()?, even.clearance()?, odd.clearance()?];
+                let nearer = (own - even).abs().max((own - odd).abs()) / OF_SECOND - own;
+                let touched = found.contact.states().level_where(0.0, nearer);
+                (off, density) = (off.max(OF_SECOND * touched), density.max(self.glass));
+            }
+            let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
+            let [of_curve, change] = [amplified(off) / OF_SECOND, amplified(level - top)];
+            of_level = of_curve + change;
+            let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
+            if of_curve > allowed && self.rows.len() < MOST_ROWS {
+                self.refine()?;
+                found = self.on_curve(self.rows.clone(), history, (time, after))?;
+            } else if change <= allowed {
                 break;
             }
         }
@@ -318,6 +395,7 @@ impl Beside {
             let by_half = off / pressure.iter().sum::<f64>() / OF_HALF;
             error = by_half.clamp(error / MOST_OVERSTATED, error);
         }
+        let error = error + of_level;
         Ok(FoundPressure { pressure, error, spent: std::mem::take(&mut self.spent) })
     }
 
@@ -342,7 +420,7 @@ impl Beside {
         let found = self.repeated.at(history, time, false)?;
         let profile = Profile::new(found.contact.tractions());
         let (levels, _) = profile.cuts(found.size(), self.repeated.accuracy);
-        let amplification = if self.by_force { profile.amplification() } else { 1.0 };
+        let amplification = if self.by_force { profile.amplification(found.contact.level()) } else { 1.0 };
         Ok((levels.into_iter().map(|level| found.since(level)).collect(), amplification))
     }
 

@@ -58,6 +58,7 @@ mod sweep;
 mod twin;
 
 pub use crate::error::StatesError;
+pub(crate) use beside::Repeated;
 pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
@@ -67,3 +68,4 @@ pub use reach::Reach;
 pub(crate) use reach::{Course, as_elastic, greatest};
 pub use run::StatesRun;
 pub use sweep::Sweep;
+pub(crate) use twin::Profile;

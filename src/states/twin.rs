@@ -55,10 +55,18 @@ impl Profile {
         self.tops.last().map_or(0.0, |last| last.0)
     }
 
-    /// The density in the last group, times the greatest level, over the total: by how many times an error of the greatest level counts.
-    pub(crate) fn amplification(&self) -> f64 {
-        let [.., (below, sum), (top, total)] = self.tops[..] else { return 1.0 };
-        top * (total - sum) / (total * (top - below))
+    /// The mean density above a level, and at least in the last group, times the greatest level, over the total: by how many times errors of
+    /// the greatest levels count.
+    pub(crate) fn amplification(&self, level: f64) -> f64 {
+        let [.., (last, _), (top, total)] = self.tops[..] else { return 1.0 };
+        let below = last.min(level);
+        top * (total - self.integral(below)) / (total * (top - below))
+    }
+
+    /// The density in the last group; 0 where there is none.
+    pub(crate) fn density(&self) -> f64 {
+        let top = self.top();
+        if top > 0.0 { self.amplification(top) * self.total() / top } else { 0.0 }
     }
 
     /// The integral up to a level.

@@ -22,13 +22,16 @@ pub struct Features {
     pub by_spring: bool,
     /// Whether the surfaces attract each other.
     pub attracts: bool,
+    /// Whether a rough surface touches a periodic body, which no returning load does.
+    pub periodic: bool,
 }
 
 impl Features {
-    pub const ANY: Features = Features { returns: false, by_spring: false, attracts: false };
-    pub const SPRING: Features = Features { returns: false, by_spring: true, attracts: false };
-    pub const RETURNING: Features = Features { returns: true, by_spring: false, attracts: false };
-    pub const RETURNING_BY_SPRING: Features = Features { returns: true, by_spring: true, attracts: false };
+    pub const ANY: Features = Features { returns: false, by_spring: false, attracts: false, periodic: false };
+    pub const SPRING: Features = Features { by_spring: true, ..Features::ANY };
+    pub const RETURNING: Features = Features { returns: true, ..Features::ANY };
+    pub const RETURNING_BY_SPRING: Features = Features { returns: true, ..Features::SPRING };
+    pub const PERIODIC: Features = Features { periodic: true, ..Features::ANY };
 
     /// The same of surfaces that attract each other.
     pub const fn attracted(self) -> Features {
@@ -92,6 +95,13 @@ fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Bo
     ("rough sphere", Box::new(Sum::new(Sphere::new(RADIUS).unwrap(), rough)), depth)
 }
 
+/// A rough plane that touches a part of its cells, as [`random_shape`].
+fn rough_plane(draws: &mut Draws, grid: &Grid) -> (&'static str, Box<dyn Geometry>, f64) {
+    let height = 1.0e-3 * LENGTH * draws.between(0.5, 2.0);
+    let spec = RoughSpec::new(LENGTH, LENGTH / 3.0, Roughness::RmsHeight(height)).with_seed(draws.below(1000) as u64);
+    ("rough plane", Box::new(Rough::new(grid, spec).unwrap()), height * draws.between(0.3, 0.8))
+}
+
 /// A law whose range is about the depth, and that acts over a zone of so many cells in the end.
 fn random_law(draws: &mut Draws, scene: &Scene, depth: f64) -> Arc<dyn Attraction> {
     let [side, other] = scene.grid.spacing();
@@ -107,7 +117,7 @@ fn random_law(draws: &mut Draws, scene: &Scene, depth: f64) -> Arc<dyn Attractio
 impl Scene {
     /// The scene of this number in the series of this seed.
     pub fn draw(seed: u64, number: u64, features: Features) -> Scene {
-        let Features { returns, by_spring, attracts } = features;
+        let Features { returns, by_spring, attracts, periodic } = features;
         let series = seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(if returns { 1 << 40 } else { 0 });
         let draws = &mut Draws::new(series);
         let is_wide = by_spring && !returns && draws.chance(0.15);
@@ -119,6 +129,7 @@ impl Scene {
         let grid = random_grid(draws);
         let reach = random_reach(draws);
         let (shape, geometry, depth) = match returns && draws.below(6) == 0 {
+            _ if periodic => rough_plane(draws, &grid),
             true => rough_sphere(draws, &grid, reach),
             false => random_shape(draws, reach),
         };
@@ -128,6 +139,7 @@ impl Scene {
                 let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
                 (" on a layer", InfluenceKernel::layer(&grid, layer).unwrap())
             }
+            None if periodic => ("", InfluenceKernel::periodic(&grid).unwrap()),
             None => ("", InfluenceKernel::half_space(&grid).unwrap()),
         };
         let mut scene = Scene::unloaded(body, geometry, grid, kernel);

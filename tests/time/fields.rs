@@ -5,7 +5,7 @@ use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 use viscocontact::states::{Reach, Sweep};
 
-use crate::common::{Draws, Features, Scene, figures, from_environment};
+use crate::common::{Draws, Features, Scene, Temporary, builder_of, figures, from_environment};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -27,7 +27,10 @@ fn fine_times(scene: &Scene, asked: &[f64], ratio: f64) -> Vec<f64> {
     knots.retain(|time| (0.0..=until).contains(time));
     knots.sort_by(f64::total_cmp);
     knots.dedup_by(|a, b| *a - *b < 1e-9 * until);
-    let mut times: Vec<f64> = (1..400).map(|k| until * f64::from(k) / 400.0).collect();
+    // an error of the level counts as many times as the bodies creep
+    let fine = if scene.body.creep_ratio() > 100.0 { 4 } else { 1 };
+    let (count, ratio) = (400 * fine, ratio.powf(1.0 / f64::from(fine)));
+    let mut times: Vec<f64> = (1..count).map(|k| until * f64::from(k) / f64::from(count)).collect();
     for pair in knots.windows(2) {
         let mut off = 1e-6 * (pair[1] - pair[0]);
         while off < 0.5 * (pair[1] - pair[0]) {
@@ -74,10 +77,13 @@ fn quantiles(name: &str, values: &[f64]) -> String {
     format!("{name}: {} values, 1/10/50/90/99/max {:.2?}", values.len(), [0.01, 0.1, 0.5, 0.9, 0.99, 1.0].map(at))
 }
 
-/// L1 over what was asked, the estimate over the truth, elastic contacts.
+/// L1 over what was asked, L2 over the field and the greatest error over the greatest pressure likewise, the estimate over the truth, and
+/// elastic contacts.
 #[derive(Default)]
 struct Population {
     over: Vec<f64>,
+    squares: Vec<f64>,
+    most: Vec<f64>,
     told: Vec<f64>,
     contacts: Vec<f64>,
     apart: usize,
@@ -86,8 +92,11 @@ struct Population {
 /// Random scenes, three random times each; bodies that creep up to 100-fold, and 1000-fold.
 fn population(seed: u64, scenes: u64, accuracy: f64) -> [Population; 2] {
     let mut all = [Population::default(), Population::default()];
-    for number in 0..scenes {
-        let features = [Features::ANY, Features::ANY, Features::SPRING, Features::RETURNING][number as usize % 4];
+    let first = from_environment("FIELD_FIRST", 0);
+    for number in first..first + scenes {
+        let kinds = [Features::ANY, Features::PERIODIC, Features::SPRING, Features::RETURNING];
+        // every other fourth is periodic
+        let features = kinds[if number % 8 == 1 { 0 } else { number as usize % 4 }];
         let scene = Scene::draw(seed, number, features);
         let (mut draws, ratio) = (Draws::new(seed.wrapping_mul(7919).wrapping_add(number)), scene.body.creep_ratio());
         let mut asked: Vec<f64> = (0..3).map(|_| draws.between(0.02, 1.0) * scene.body.until).collect();
@@ -110,8 +119,15 @@ fn population(seed: u64, scenes: u64, accuracy: f64) -> [Population; 2] {
                     some.apart += 1;
                     continue;
                 }
-                let pairs = exact.pressure.iter().zip(sample.contact().pressure());
-                let over = pairs.map(|(a, b)| (a - b).abs()).sum::<f64>() * area / size / accuracy;
+                let off: Vec<f64> =
+                    exact.pressure.iter().zip(sample.contact().pressure()).map(|(a, b)| (a - b).abs()).collect();
+                let over = off.iter().sum::<f64>() * area / size / accuracy;
+                let greatest = |field: &[f64]| field.iter().copied().fold(0.0, f64::max);
+                let squares = |field: &[f64]| field.iter().map(|p| p * p).sum::<f64>().sqrt();
+                if size == exact.pressure.iter().sum::<f64>() * area {
+                    some.squares.push(squares(&off) / squares(&exact.pressure) / accuracy);
+                    some.most.push(greatest(&off) / greatest(&exact.pressure) / accuracy);
+                }
                 let (told, name) = (report.error.unwrap() / accuracy, &scene.name);
                 if over > 1.5 {
                     println!("{over:.2} told {told:.2} at {:.3e}: {name}", exact.time);
@@ -135,6 +151,8 @@ fn fields_of_runs_are_as_exact_as_asked() {
         for (some, creep) in all.iter().zip(["up to 100-fold", "up to 1000-fold"]) {
             println!("accuracy {accuracy:.0e}, creep {creep}, {} apart", some.apart);
             println!("{}", quantiles("  L1 over asked", &some.over));
+            println!("{}", quantiles("  L2 over asked", &some.squares));
+            println!("{}", quantiles("  greatest over asked", &some.most));
             println!("{}", quantiles("  estimate over truth", &some.told));
             println!("{}", quantiles("  elastic contacts", &some.contacts));
         }
@@ -142,11 +160,12 @@ fn fields_of_runs_are_as_exact_as_asked() {
         assert!(100 * beyond <= all[0].over.len(), "{beyond} fields are beyond twice what was asked");
         let mut contacts = all[0].contacts.clone();
         contacts.sort_by(f64::total_cmp);
-        assert!(contacts.len() as u64 > scenes && contacts[contacts.len() / 2] <= most);
+        // a few scenes have no median to speak of
+        assert!(scenes < 8 || contacts.len() as u64 > scenes && contacts[contacts.len() / 2] <= most);
     }
 }
 
-/// Contacts on elastic states: few levels and kept pressures against all groups of the same contact.
+/// Contacts on elastic states: few levels and kept pressures against a contact in space in the same steps.
 #[test]
 fn fields_of_states_are_as_exact_as_asked() {
     for accuracy in [1e-2, 1e-3] {
@@ -163,16 +182,20 @@ fn fields_of_states_are_as_exact_as_asked() {
             let material = Material::incompressible(GeneralizedMaxwell::new(draws.between(0.2, 1.0), &terms).unwrap());
             let (top, by_force) = (states.approach(0.015), draws.chance(0.5));
             let most = 0.01 / material.contact_compliance(2.0);
-            let mut contact = StatesContact::new(&states, &material).unwrap();
+            let mut contact = StatesContact::new(&states, &material).unwrap().with_linear_steps();
+            let settings = settings.with_time_rule(TimeRule::ExponentialLinear);
+            let builder = builder_of(&rough, contact.states().grid().unwrap().clone(), material.clone());
+            let mut stepper = builder.settings(settings).build().unwrap();
             for step in 1..=200 {
                 let t = 0.01 * f64::from(step);
                 let part = (0.2 + 0.5 * t - 0.35 * (2.0 * t).sin()).clamp(0.05, 1.0);
                 let load = if by_force { Load::force(part * most) } else { Load::approach(part * top) };
                 contact.step(0.01, load).unwrap();
+                stepper.step(0.01, load).unwrap();
                 if step % 50 != 0 || contact.is_separated() {
                     continue;
                 }
-                let exact = contact.fields(0.0).unwrap().pressure;
+                let exact = stepper.pressure();
                 let off = |field: &[f64]| {
                     let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).abs()).sum();
                     sum / exact.iter().sum::<f64>() / accuracy
@@ -215,6 +238,58 @@ fn fields_leave_the_steps_as_they_are() {
     assert_eq!(forces.len(), 4, "{sums:?}");
     for (force, expected) in forces.iter().zip([0.25, 0.4, 0.2, 0.0]) {
         assert!((force - expected).abs() <= 1e-6, "{forces:?}");
+    }
+}
+
+/// What follows a run is given the field: the stress below the surface has its accuracy. A run that goes on from a file has the same fields.
+#[test]
+#[cfg(feature = "checkpoint")]
+fn fields_are_given_to_what_follows_and_found_again_after_a_resumption() {
+    let history = Ramp::new(Load::force(0.05), Load::force(0.5), 0.5).unwrap();
+    let (times, file) = ([0.3, 0.8, 1.9], Temporary::file("fields"));
+    let points = [[0.0, 0.0, 0.1e-3], [0.5e-3, 0.0, 0.1e-3], [0.7e-3, 0.2e-3, 0.2e-3]];
+    let from = |steps: usize, resumes: bool, stepping: Stepping, accuracy: Option<f64>| {
+        let (mut contact, mut found) = (ball(), Vec::new());
+        if resumes {
+            contact.resume(&*file).unwrap();
+        }
+        let run = contact.follow(&history, stepping, 2.0).sample_at(times).unwrap();
+        let mut run = match accuracy {
+            Some(accuracy) => run.fields_to(accuracy).unwrap(),
+            None => run,
+        };
+        if !resumes && steps < usize::MAX {
+            run = run.autosave_to(&*file, std::time::Duration::ZERO);
+        }
+        for _ in 0..steps {
+            if run.next_step().unwrap().is_none() {
+                break;
+            }
+            for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
+                let stress = sample.contact().stress().unwrap().at(&points).unwrap();
+                let mises: Vec<f64> = stress.iter().map(|stress| stress.von_mises()).collect();
+                found.push((sample.contact().pressure().to_vec(), mises, sample.contact().time()));
+            }
+        }
+        found
+    };
+    let (coarse, all) = (Stepping::adaptive(1e-2), usize::MAX);
+    let [exact, alone, whole] = [(Stepping::fixed(5e-4), None), (coarse, None), (coarse, Some(1e-3))]
+        .map(|(stepping, accuracy)| from(all, false, stepping, accuracy));
+    let worst = |found: &[(Vec<f64>, Vec<f64>, f64)]| {
+        let off = |(found, exact): (&f64, &f64)| (found / exact - 1.0).abs();
+        let pairs = found.iter().zip(&exact).flat_map(|(found, exact)| found.1.iter().zip(&exact.1));
+        pairs.map(off).fold(0.0, f64::max)
+    };
+    println!("stress off by {:.1e}, by {:.1e} without fields", worst(&whole), worst(&alone));
+    assert!(whole.len() == 3 && worst(&whole) < 2e-3 && worst(&alone) > 2.0 * worst(&whole));
+    let mut parts = from(4, false, coarse, Some(1e-3));
+    assert!(!parts.is_empty() && parts.len() < 3, "{}", parts.len());
+    parts.extend(from(all, true, coarse, Some(1e-3)));
+    assert_eq!(parts.len(), 3);
+    for (part, whole) in parts.iter().zip(&whole) {
+        let off: f64 = part.0.iter().zip(&whole.0).map(|(a, b)| (a - b).abs()).sum();
+        assert!(part.2 == whole.2 && off <= 1e-5 * whole.0.iter().sum::<f64>(), "{off:e}");
     }
 }
 

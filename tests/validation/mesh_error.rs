@@ -131,8 +131,33 @@ fn random_loading(draws: &mut Draws, periodic: bool) -> Loading {
     Loading { creep: Some(ratio), duration, shares: (0..=steps).map(share).collect(), by_force, point, edge }
 }
 
-/// Approach (force where the approach is given), greatest pressure and area, with their estimated errors.
-type HistoryColumn = ([f64; 3], Option<MeshError>);
+/// Approach (force where the approach is given), greatest pressure and area, the pressure, and the estimated errors.
+struct Observed {
+    values: [f64; 3],
+    pressure: Vec<f64>,
+    estimate: Option<MeshError>,
+}
+
+impl Observed {
+    /// Errors of the pressure field, in L1, and of the pressure in a cell of the rim, against means over four times four cells.
+    fn errors_of_field(&self, fine: &Observed, grid: &Grid) -> [f64; 2] {
+        let [n1, n2] = grid.cells();
+        let within = |k: usize| (0..16).map(move |part| (4 * (k / n2) + part / 4) * 4 * n2 + 4 * (k % n2) + part % 4);
+        let means: Vec<f64> = (0..n1 * n2).map(|k| within(k).map(|k| fine.pressure[k]).sum::<f64>() / 16.0).collect();
+        let is_free = |k: usize| self.pressure[k] == 0.0;
+        // beside the end of the contact, on either side
+        let at_rim = |k: usize| {
+            let beside = [k.wrapping_sub(n2), k + n2, k.wrapping_sub(1), k + 1];
+            beside.into_iter().any(|other| other < n1 * n2 && is_free(other) != is_free(k))
+        };
+        let (mut sum, mut most) = (0.0, 0.0_f64);
+        for (k, mean) in means.iter().enumerate() {
+            let off = (self.pressure[k] - mean).abs();
+            (sum, most) = (sum + off, most.max(if at_rim(k) { off } else { 0.0 }));
+        }
+        [sum / means.iter().sum::<f64>(), most / means.iter().copied().fold(0.0, f64::max)]
+    }
+}
 
 impl Shape {
     fn contact(&self, grid: &Grid, creep: Option<f64>, edge: Edge) -> Result<ViscoelasticContact, Error> {
@@ -148,7 +173,7 @@ impl Shape {
         builder.material(material).settings(settings).build()
     }
 
-    fn observe(&self, grid: &Grid, loading: &Loading, full: f64) -> Result<HistoryColumn, Error> {
+    fn observe(&self, grid: &Grid, loading: &Loading, full: f64) -> Result<Observed, Error> {
         let mut contact = self.contact(grid, loading.creep, loading.edge)?;
         let mut dt = 0.0;
         for share in &loading.shares {
@@ -161,11 +186,12 @@ impl Shape {
             dt = loading.duration / (loading.shares.len() - 1).max(1) as f64;
         }
         let main = if loading.by_force { contact.approach() } else { contact.force() };
-        Ok(([main, contact.max_pressure(), contact.contact_area()], contact.mesh_error()?))
+        let values = [main, contact.max_pressure(), contact.contact_area()];
+        Ok(Observed { values, pressure: contact.pressure().to_vec(), estimate: contact.mesh_error()? })
     }
 
     /// The scene on both meshes, under a load that both bear.
-    fn observe_both(&self, grid: &Grid, loading: &Loading) -> Option<[HistoryColumn; 2]> {
+    fn observe_both(&self, grid: &Grid, loading: &Loading) -> Option<[Observed; 2]> {
         let fine = Grid::new(grid.cells().map(|cells| 4 * cells), grid.lengths()).unwrap();
         let mut depth = self.depth;
         for _ in 0..12 {
@@ -180,7 +206,7 @@ impl Shape {
                 Ok([self.observe(grid, loading, full)?, self.observe(&fine, loading, full)?])
             };
             match both() {
-                Ok(both) if both.iter().all(|(values, _)| values.iter().all(|&value| value > 0.0)) => {
+                Ok(both) if both.iter().all(|seen| seen.values.iter().all(|&value| value > 0.0)) => {
                     return Some(both);
                 }
                 Err(
@@ -199,7 +225,7 @@ impl Shape {
 #[test]
 fn true_errors_of_the_mesh_are_at_most_three_times_the_estimated_ones() {
     let (seed, count) = (from_environment("MESH_SEED", 1), from_environment("MESH_SCENES", 60));
-    let (mut all, mut unknown): ([Ratios; 3], [u64; 3]) = Default::default();
+    let (mut all, mut unknown): ([Ratios; 5], [u64; 5]) = Default::default();
     let mut scenes = 0;
     for number in 0..count {
         let draws = &mut Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
@@ -209,15 +235,19 @@ fn true_errors_of_the_mesh_are_at_most_three_times_the_estimated_ones() {
         let grid = Grid::new([cells, (cells as f64 * wide) as usize], [LENGTH, LENGTH * long]).unwrap();
         let shape = random_shape(draws, &grid);
         let loading = random_loading(draws, shape.periodic);
-        let Some([(values, estimate), (truth, _)]) = shape.observe_both(&grid, &loading) else { continue };
+        let Some([seen, truth]) = shape.observe_both(&grid, &loading) else { continue };
         scenes += 1;
+        let (estimate, [field, rim]) = (seen.estimate, seen.errors_of_field(&truth, &grid));
+        let [main, pressure, area] = [0, 1, 2].map(|which| (seen.values[which] / truth.values[which] - 1.0).abs());
         let stated = [
             estimate.map(|estimate| estimate.approach),
             estimate.and_then(|estimate| estimate.max_pressure),
             estimate.map(|estimate| estimate.area),
+            estimate.map(|estimate| estimate.pressure_field),
+            estimate.map(|estimate| estimate.rim_pressure),
         ];
-        for (which, quantity) in ["approach or force", "greatest pressure", "area"].into_iter().enumerate() {
-            let error = (values[which] / truth[which] - 1.0).abs();
+        let names = ["approach or force", "greatest pressure", "area", "pressure field", "pressure at the rim"];
+        for (which, (quantity, error)) in names.into_iter().zip([main, pressure, area, field, rim]).enumerate() {
             let Some(stated) = stated[which] else {
                 unknown[which] += 1;
                 continue;

@@ -10,6 +10,7 @@ mod mesh_error;
 mod oscillation;
 mod paper_figures;
 mod plan;
+mod plan_fields;
 mod plan_kernels;
 mod plan_random;
 mod plane;

@@ -1,7 +1,9 @@
 //! The figures of the source paper, as the example `paper_figures` draws them.
 
+use crate::common::figures::figure;
 use crate::common::paper_figures::{
-    CLOSED, Merit, OPEN, TIMES, figure_2, figure_3, figure_6, figures_4_and_5, pressed_punch,
+    ASKED, CLOSED, FEW_STEPS, Merit, OPEN, TIMES, figure_2, figure_3, figure_6, figures_4_and_5, figures_in_few_steps,
+    pressed_punch,
 };
 
 fn assert_merit(merit: Merit) {
@@ -43,4 +45,22 @@ fn figure_6_shows_first_order_and_second_or_more() {
         println!("{:?}: {:?}", study.rule, study.errors);
         study.orders().into_iter().for_each(assert_merit);
     }
+}
+
+/// Steps alone leave the rim as long steps met it; fields asked for are as exact as asked after any number of steps.
+#[test]
+fn figures_4_to_6_in_few_steps_with_fields_asked_for() {
+    let mut table = String::from("| | steps | steps alone | fields to 1e-2 | fields to 1e-3 |\n|---|---|---|---|---|");
+    for few in figures_in_few_steps(96).unwrap() {
+        for (error, asked) in few.errors[1..].iter().zip(ASKED) {
+            assert!(*error <= asked, "Figure {}, {} steps: {error:.1e}", few.figure, few.steps);
+        }
+        let cells = few.errors.iter().zip(&few.convolutions).map(|(error, work)| format!("{error:.1e}, {work} | "));
+        let name = ["4: Maxwell", "5: Zener", "6: Maxwell at 2τ, the paper's rule"][few.figure as usize - 4];
+        let name = if few.steps == FEW_STEPS[0] { name } else { "" };
+        table += &format!("\n| {name} | {} | {}", few.steps, cells.collect::<String>());
+    }
+    let table: Vec<&str> = table.lines().map(str::trim_end).collect();
+    println!("{}", table.join("\n"));
+    figure("the paper's figures in few steps", &table.join("\n")).unwrap();
 }

@@ -80,7 +80,7 @@ fn scene(seed: u64, number: u64) -> Scene {
         "{seed}:{number} {kind} (layer {thickness:.2}), creep ×{ratio:.1} in {time:.2}, {history_name} of {by}, {accuracy:?}"
     );
     let (other, shape, until, kind, area) = (Some(Other { kernel, period, line }), None, 1.0, 0, false);
-    Scene { name, shape, geometry, other, material, history, until, by_force, accuracy, area, ratio, kind }
+    Scene { name, shape, geometry, other, material, history, until, by_force, accuracy, area, aside: 0.0, ratio, kind }
 }
 
 #[test]

@@ -41,7 +41,7 @@ impl Shape {
 
     /// States in closed form, and what multiplies its approach, its pressure and its contact radius. Ellipses of contact
     /// keep their shape: they behave as the sphere whose contact radius is their semi-axis a.
-    fn states(self) -> (Arc<ElasticStates>, [f64; 3]) {
+    pub(super) fn states(self) -> (Arc<ElasticStates>, [f64; 3]) {
         match self {
             Shape::Ball => (ElasticStates::sphere(RADIUS).unwrap(), [1.0; 3]),
             Shape::Cone => (ElasticStates::cone(SLOPE).unwrap(), [1.0; 3]),
@@ -57,7 +57,7 @@ impl Shape {
     }
 
     /// Pressure at the distance `r` from the axis of the elastic contact of unit compliance.
-    fn pressure(self, elastic: &ElasticStates, level: f64, r: f64) -> f64 {
+    pub(super) fn pressure(self, elastic: &ElasticStates, level: f64, r: f64) -> f64 {
         let a = 0.5 * elastic.stiffness(level);
         match self {
             _ if r >= a => 0.0,
@@ -106,6 +106,8 @@ pub(super) struct Scene {
     pub(super) accuracy: Accuracy,
     /// Whether the area is promised, too.
     pub(super) area: bool,
+    /// How far the shape is aside of the load \[m\].
+    pub(super) aside: f64,
     /// Creep ratio, and kind of the history.
     pub(super) ratio: f64,
     pub(super) kind: usize,
@@ -132,7 +134,7 @@ fn body(draws: &mut Draws, ratio: f64, until: f64) -> (&'static str, Material) {
     (name, Material::incompressible(creep.unwrap()))
 }
 
-fn scene(seed: u64, number: u64) -> Scene {
+pub(super) fn scene(seed: u64, number: u64) -> Scene {
     let draws = &mut Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
     let shape = match draws.below(4) {
         0 => Shape::Ball,
@@ -181,7 +183,21 @@ fn scene(seed: u64, number: u64) -> Scene {
          {accuracy:?}, area {area}"
     );
     let other = None;
-    Scene { name, shape: Some(shape), geometry, other, material, history, until, by_force, accuracy, area, ratio, kind }
+    Scene {
+        name,
+        shape: Some(shape),
+        geometry,
+        other,
+        material,
+        history,
+        until,
+        by_force,
+        accuracy,
+        area,
+        aside,
+        ratio,
+        kind,
+    }
 }
 
 /// A ball or a punch that is turned while it is pressed.
@@ -204,8 +220,8 @@ fn tilting(seed: u64, number: u64) -> Scene {
     let (history, name) =
         (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, {body} ×{ratio:.1}"));
     let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
-    let (shape, until, area, kind) = (None, 1.0, draws.chance(0.3), 1);
-    Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, ratio, kind }
+    let (shape, until, area, aside, kind) = (None, 1.0, draws.chance(0.3), 0.0, 1);
+    Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio, kind }
 }
 
 /// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the

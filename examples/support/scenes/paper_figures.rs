@@ -24,6 +24,11 @@ pub const TIMES: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
 pub const STEP_COUNTS: [usize; 5] = [10, 20, 40, 80, 160];
 const REFERENCE_STEPS: usize = 1280;
 
+/// Numbers of steps to 2τ of Figures 4 to 6 with fields asked for, the accuracies asked for, and the steps of the reference.
+pub const FEW_STEPS: [usize; 4] = [4, 8, 16, 100];
+pub const ASKED: [f64; 2] = [1e-2, 1e-3];
+const MANY_STEPS: usize = 400;
+
 /// A figure of merit, and the range in which it must be.
 #[derive(Debug, Clone, Copy)]
 pub struct Merit {
@@ -148,4 +153,72 @@ impl TimeStudy {
             Merit { figure: 6, quantity, of: 2.0, value: order(which), range }
         })
     }
+}
+
+/// A figure in few steps: Figures 4 and 5 by the default rule, the latest profile of Figure 4 by the paper's rule as Figure 6.
+pub struct FewSteps {
+    pub figure: u32,
+    pub steps: usize,
+    /// The pressure at 2τ of the steps alone, and with fields to each accuracy asked for.
+    pub pressures: Vec<Vec<f64>>,
+    /// Greatest error in time of the profiles, Σ |p − p′| / Σ p′, with p′ on the same cells in many steps by the default rule.
+    pub errors: Vec<f64>,
+    /// Convolutions of the run, with those of the fields.
+    pub convolutions: Vec<usize>,
+}
+
+/// The pressures at some times of the step-loaded sphere, in so many steps, with fields to an accuracy; and the convolutions.
+fn profiles(
+    scene: &StepLoadedSphere,
+    settings: Settings,
+    (cells, steps): (usize, usize),
+    times: &[f64],
+    accuracy: Option<f64>,
+) -> Result<(Vec<Vec<f64>>, usize)> {
+    let (mut contact, until) = (scene.contact(cells, settings)?, 2.0 * scene.tau);
+    let load = StepLoad::new(Load::force(scene.force))?;
+    let run = contact.follow(&load, Stepping::fixed(until / steps as f64), until);
+    let mut run = run.sample_at(times.iter().map(|time| time * scene.tau).collect::<Vec<_>>())?;
+    run = if let Some(accuracy) = accuracy { run.fields_to(accuracy)? } else { run };
+    let (mut pressures, mut convolutions) = (Vec::new(), 0);
+    while let Some(report) = run.next_step()? {
+        convolutions += report.convolutions;
+        for sample in run.samples() {
+            let sample = sample?;
+            if sample.is_asked_for() {
+                pressures.push(sample.contact().pressure().to_vec());
+                convolutions += sample.field().map_or(0, |field| field.convolutions);
+            }
+        }
+    }
+    Ok((pressures, convolutions))
+}
+
+/// Figures 4 to 6 in few steps, alone and with fields asked for.
+pub fn figures_in_few_steps(cells: usize) -> Result<Vec<FewSteps>> {
+    let mut all = Vec::new();
+    for figure in [4, 5, 6] {
+        let scene = if figure == 5 { StepLoadedSphere::zener() } else { StepLoadedSphere::maxwell() };
+        let (rule, times) =
+            if figure == 6 { (TimeRule::Rectangle, &TIMES[3..]) } else { (TimeRule::Exponential, &TIMES[1..]) };
+        let settings = Settings::default().with_tolerance(1e-8);
+        let exact = profiles(&scene, settings, (cells, MANY_STEPS), times, None)?.0;
+        for steps in FEW_STEPS {
+            let mut few =
+                FewSteps { figure, steps, pressures: Vec::new(), errors: Vec::new(), convolutions: Vec::new() };
+            for accuracy in [None].into_iter().chain(ASKED.map(Some)) {
+                let settings = settings.with_time_rule(rule);
+                let (mut found, convolutions) = profiles(&scene, settings, (cells, steps), times, accuracy)?;
+                let error = |(found, exact): (&Vec<f64>, &Vec<f64>)| {
+                    let off = found.iter().zip(exact).map(|(found, exact)| (found - exact).abs());
+                    off.sum::<f64>() / exact.iter().sum::<f64>()
+                };
+                few.errors.push(found.iter().zip(&exact).map(error).fold(0.0, f64::max));
+                few.pressures.extend(found.pop());
+                few.convolutions.push(convolutions);
+            }
+            all.push(few);
+        }
+    }
+    Ok(all)
 }
