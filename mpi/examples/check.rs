@@ -73,8 +73,9 @@ fn succeed(what: &str, place: Option<&str>, ranks: Option<Arc<dyn Ranks>>) -> Re
 /// Two frames of a contact, with all fields.
 fn write_files(folder: &Path, ranks: Option<Arc<dyn Ranks>>) -> Result<(), Error> {
     let mut contact = sphere(ranks)?;
-    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &Metadata::new("check"), &contact, &Field::ALL, Earlier::Refuse)?;
-    let mut vtk = FrameSeries::create(folder.join("vtk"), Format::Vtk, &Metadata::new("check"), &contact, &Field::ALL, Earlier::Refuse)?;
+    let (scene, refuse) = (Metadata::new("check"), Earlier::Refuse);
+    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &scene, &contact, &Field::ALL, refuse)?;
+    let mut vtk = FrameSeries::create(folder.join("vtk"), Format::Vtk, &scene, &contact, &Field::ALL, refuse)?;
     for dt in [0.0, 0.3] {
         contact.step(dt, Load::force(1.0))?;
         npz.record(&contact)?;
