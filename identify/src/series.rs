@@ -203,14 +203,15 @@ fn nearest_sums(rates: &[f64], laws: &[Relaxation], [first, last]: [f64; 2]) -> 
 
 /// ∫ f dt from 0 to a time, where f may be steep at 0: by the rule of H. Takahasi & M. Mori (1974).
 fn integral(f: impl Fn(f64) -> f64, end: f64) -> f64 {
-    let step = 0.15;
+    // a law may fall within a thousandth of the time, where neighbouring nodes differ by less than a factor of e
+    let step = 0.075;
     let node = |k: i32| {
         let s = step * f64::from(k);
         let x = 1.0 / (1.0 + (PI * s.sinh()).exp());
         let weight = PI * s.cosh() * x * (1.0 - x);
         if weight > 0.0 { weight * f(x * end) } else { 0.0 }
     };
-    (-20..=30).map(node).sum::<f64>() * step * end
+    (-40..=60).map(node).sum::<f64>() * step * end
 }
 
 /// The spectrum of E_α(−t^α) over y = ln(rate), of area 1: sin(πα)/2π/(cosh αy + cos πα) (Gorenflo & Mainardi 1997). With
