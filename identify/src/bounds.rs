@@ -49,21 +49,17 @@ impl Bounds {
     }
 }
 
-/// (JᵀJ)⁻¹, by a matrix of unit diagonal, to which `ridge` is added: so that a combination of parameters on which the data do not depend has a
+/// (JᵀJ)⁻¹, with a diagonal that is greater by the fraction `ridge`: so that a combination of parameters on which the data do not depend has a
 /// great deviation.
 pub(crate) fn inverse_gram(jacobian: &Mat<f64>, ridge: f64) -> Result<Mat<f64>> {
-    let gram = jacobian.transpose() * jacobian;
-    let count = gram.nrows();
-    let scale: Vec<f64> = (0..count).map(|j| gram[(j, j)].sqrt()).collect();
-    let singular = || {
-        let reason = "the data do not depend on a parameter, or only on a combination of several: fix one of them";
-        Error::NotConverged { iterations: 0, reason }
-    };
-    if scale.iter().any(|s| *s == 0.0 || !s.is_finite()) {
-        return Err(singular());
+    let mut gram = jacobian.transpose() * jacobian;
+    let reason = "the data do not depend on a parameter, or only on a combination of several: fix one of them";
+    let singular = || Error::NotConverged { iterations: 0, reason };
+    for j in 0..gram.nrows() {
+        gram[(j, j)] *= 1.0 + ridge;
+        if gram[(j, j)] == 0.0 || !gram[(j, j)].is_finite() {
+            return Err(singular());
+        }
     }
-    let scaled =
-        Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j]) + if i == j { ridge } else { 0.0 });
-    let inverse = scaled.llt(Side::Lower).map_err(|_| singular())?.inverse();
-    Ok(Mat::from_fn(count, count, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
+    Ok(gram.llt(Side::Lower).map_err(|_| singular())?.inverse())
 }

@@ -110,6 +110,10 @@ impl Linear {
         let mut damping = vec![damping; count];
         for _ in 0..MAX_DAMPED {
             let step = self.solve(&damping, &self.right);
+            if step.norm_l2().is_nan() {
+                damping.iter_mut().for_each(|damping| *damping = 10.0 * damping.max(DAMPING[0]));
+                continue;
+            }
             let far: Vec<f64> = (0..count).map(|j| (step[j].abs() / LONGEST_STEP).min(100.0)).collect();
             if far.iter().all(|far| *far <= 1.0) {
                 return step;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use viscocontact::numeric::non_negative_least_squares;
-use viscocontact::rheology::{GeneralizedMaxwell, Material};
+use viscocontact::rheology::{Elastic, GeneralizedMaxwell, Material};
 use viscocontact::states::ElasticStates;
 
 use crate::error::{Error, Result, within};
@@ -66,17 +66,14 @@ impl Prony {
     pub(crate) fn material(&self, poisson: f64) -> Result<Material> {
         // E* = 2G/(1 − ν)
         let (shear, positive) = (0.5 * (1.0 - poisson), self.positive());
-        let pairs = || positive.moduli.iter().zip(&positive.rates).filter(|(modulus, _)| **modulus > 0.0);
-        let equilibrium: f64 = pairs().filter(|(_, rate)| **rate == 0.0).map(|(e, _)| e).sum();
-        let relaxing = pairs().filter(|(_, rate)| **rate > 0.0);
-        let terms: Vec<(f64, f64)> = relaxing.map(|(e, rate)| (shear * e, 1.0 / rate)).collect();
-        if terms.is_empty() {
-            return Ok(Material::constant_poisson(
-                viscocontact::rheology::Elastic::new(shear * equilibrium)?,
-                poisson,
-            )?);
-        }
-        Ok(Material::constant_poisson(GeneralizedMaxwell::new(shear * equilibrium, &terms)?, poisson)?)
+        let pairs = positive.moduli.iter().zip(&positive.rates).filter(|(modulus, _)| **modulus > 0.0);
+        let (equilibria, relaxing): (Vec<_>, Vec<_>) = pairs.partition(|(_, rate)| **rate == 0.0);
+        let equilibrium = shear * equilibria.iter().map(|(modulus, _)| *modulus).sum::<f64>();
+        let terms: Vec<(f64, f64)> = relaxing.iter().map(|(e, rate)| (shear * *e, 1.0 / *rate)).collect();
+        Ok(match terms.is_empty() {
+            true => Material::constant_poisson(Elastic::new(equilibrium)?, poisson)?,
+            false => Material::constant_poisson(GeneralizedMaxwell::new(equilibrium, &terms)?, poisson)?,
+        })
     }
 
     /// The material on elastic states: with the Poisson's ratio that they state, else incompressible.
@@ -141,25 +138,19 @@ impl Model {
 
     /// E(t) of a model that is no sum of a few exponentials, between the times that some rates show.
     fn law(&self, parameters: &[f64], rates: &[f64]) -> Relaxation {
-        match (*self, parameters) {
-            (Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff }, &[e1, alpha, ref rest @ ..]) => {
-                let einf = rest.first().copied().unwrap_or_default();
-                Box::new(move |t| einf + e1 * (t + cutoff).powf(-alpha))
+        let of = parameters.to_vec();
+        match *self {
+            Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff } => {
+                let einf = of.get(2).copied().unwrap_or_default();
+                Box::new(move |t| einf + of[0] * (t + cutoff).powf(-of[1]))
             }
-            (Model::Stretched, &[e0, einf, tau, beta]) => {
-                Box::new(move |t| einf + (e0 - einf) * (-(t / tau).powf(beta)).exp())
+            Model::Stretched => Box::new(move |t| of[1] + (of[0] - of[1]) * (-(t / of[2]).powf(of[3])).exp()),
+            Model::FractionalZener => {
+                let spectrum = fractional_spectrum(of[3], [rates[0], rates[rates.len() - 1]].map(|rate| rate * of[2]));
+                let relaxed = move |t: f64| if t == 0.0 { 1.0 } else { spectrum.modulus(t) };
+                Box::new(move |t| of[1] + (of[0] - of[1]) * relaxed(t / of[2]))
             }
-            (Model::FractionalZener, &[e0, einf, tau, alpha]) => {
-                let spectrum = fractional_spectrum(alpha, [rates[0] * tau, rates[rates.len() - 1] * tau]);
-                Box::new(move |t| {
-                    let relaxed = if t == 0.0 { 1.0 } else { spectrum.modulus(t / tau) };
-                    einf + (e0 - einf) * relaxed
-                })
-            }
-            (Model::Custom(law), parameters) => {
-                let parameters = parameters.to_vec();
-                Box::new(move |t| (law.modulus)(&parameters, t))
-            }
+            Model::Custom(law) => Box::new(move |t| (law.modulus)(&of, t)),
             _ => Box::new(|_| f64::NAN),
         }
     }
@@ -212,14 +203,15 @@ fn nearest_sums(rates: &[f64], laws: &[Relaxation], [first, last]: [f64; 2]) -> 
 
 /// ∫ f dt from 0 to a time, where f may be steep at 0: by the rule of H. Takahasi & M. Mori (1974).
 fn integral(f: impl Fn(f64) -> f64, end: f64) -> f64 {
-    let step = 0.15;
+    // a law may fall within a thousandth of the time, where neighbouring nodes differ by less than a factor of e
+    let step = 0.075;
     let node = |k: i32| {
         let s = step * f64::from(k);
         let x = 1.0 / (1.0 + (PI * s.sinh()).exp());
         let weight = PI * s.cosh() * x * (1.0 - x);
         if weight > 0.0 { weight * f(x * end) } else { 0.0 }
     };
-    (-20..=30).map(node).sum::<f64>() * step * end
+    (-40..=60).map(node).sum::<f64>() * step * end
 }
 
 /// The spectrum of E_α(−t^α) over y = ln(rate), of area 1: sin(πα)/2π/(cosh αy + cos πα) (Gorenflo & Mainardi 1997). With

@@ -67,27 +67,18 @@ pub(super) fn sandwich(problem: &Problem, minimum: &Minimum, inverse: &Mat<f64>)
     let mut middle = Mat::<f64>::zeros(count, count);
     let mut first = 0;
     for len in problem.parts.iter().map(Part::len) {
-        let residuals = &minimum.residuals[first..first + len];
-        let row = |k: usize| minimum.jacobian.row(first + k);
-        let factor = |k: usize| {
-            let leverage = row(k) * inverse * row(k).transpose();
-            residuals[k] / (1.0 - leverage).max(0.1)
-        };
-        let factors: Vec<f64> = (0..len).map(factor).collect();
-        let score = |k: usize, j: usize| minimum.jacobian[(first + k, j)] * factors[k];
+        let (residuals, slopes) = (&minimum.residuals[first..first + len], minimum.jacobian.subrows(first, len));
+        let leverage = |k: usize| slopes.row(k) * inverse * slopes.row(k).transpose();
+        let factors: Vec<f64> = (0..len).map(|k| residuals[k] / (1.0 - leverage(k)).max(0.1)).collect();
+        let scores = Mat::from_fn(len, count, |k, j| slopes[(k, j)] * factors[k]);
         let product: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let rho = if square(residuals) > 0.0 { product / square(residuals) } else { 0.0 };
         let lags = 1.1447 * (4.0 * rho * rho / (1.0 - rho * rho).powi(2) * len as f64).cbrt();
         let lags = (lags.ceil() as usize).min(len / 3);
         for lag in 0..=lags {
             let weight = (1.0 - lag as f64 / (lags + 1) as f64) * if lag == 0 { 0.5 } else { 1.0 };
-            for i in 0..count {
-                for j in 0..count {
-                    let sum: f64 = (lag..len).map(|k| score(k, i) * score(k - lag, j)).sum();
-                    middle[(i, j)] += weight * sum;
-                    middle[(j, i)] += weight * sum;
-                }
-            }
+            let product = scores.subrows(lag, len - lag).transpose() * scores.subrows(0, len - lag);
+            middle += faer::Scale(weight) * (&product + product.transpose());
         }
         first += len;
     }
