@@ -17,7 +17,7 @@ use viscocontact::Result;
 use viscocontact::analytic::Hertz;
 use viscocontact::geometry::Form;
 use viscocontact::geometry::Sum;
-use viscocontact::output::{CsvHistory, Metadata};
+use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
@@ -152,7 +152,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     let table = args.output.join("history.csv");
     let scene = Metadata::new("Rough ball on rubber").note("radius", format!("{} m", args.radius));
     let mut history =
-        CsvHistory::create_or_replace(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"])?;
+        CsvHistory::create(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"], Earlier::Replace)?;
 
     println!("\npolyisobutylene under {} mN", args.load * 1e3);
     println!(

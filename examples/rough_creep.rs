@@ -25,7 +25,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use viscocontact::Result;
-use viscocontact::output::{CsvHistory, Metadata};
+use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
@@ -315,16 +315,23 @@ struct Files {
 impl Files {
     fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
         Ok(Files {
-            history: CsvHistory::create_or_replace(args.output.join("history.csv"), scene, contact, &[])?,
+            history: CsvHistory::create(args.output.join("history.csv"), scene, contact, &[], Earlier::Replace)?,
             frames: {
-                use viscocontact::output::{Field, Format, FrameSeries};
+                use viscocontact::output::{Earlier, Field, Format, FrameSeries};
                 let formats = [
                     #[cfg(feature = "npy")]
                     (Format::Npz, "npz"),
                     (Format::Vtk, "vtk"),
                 ];
                 let series = formats.map(|(format, folder)| {
-                    FrameSeries::create_or_replace(args.output.join(folder), format, scene, Field::of(contact))
+                    FrameSeries::create(
+                        args.output.join(folder),
+                        format,
+                        scene,
+                        contact,
+                        Field::of(contact),
+                        Earlier::Replace,
+                    )
                 });
                 series.into_iter().collect::<Result<_>>()?
             },

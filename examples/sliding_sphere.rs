@@ -163,9 +163,9 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     map.title = format!("A sphere slides to the right, friction {friction:.3}");
     map.save(output.join("pressure.png"))?;
     {
-        use viscocontact::output::{Field, Format, FrameSeries, Metadata};
+        use viscocontact::output::{Earlier, Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, Field::of(&contact))?
+        FrameSeries::create(output.join("vtk"), Format::Vtk, &scene, &contact, Field::of(&contact), Earlier::Replace)?
             .record(&contact)?;
     }
     Ok(())
@@ -193,7 +193,7 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
     let scene = viscocontact::output::Metadata::new("Sphere sliding there and back");
     let history = output.join("there_and_back.csv");
     let columns = ["position [m]", "lateral force [N]", "power [W]"];
-    let mut table = viscocontact::output::CsvHistory::create_or_replace(&history, &scene, &contact, &columns)?;
+    let mut table = viscocontact::output::CsvHistory::create(&history, &scene, &contact, &columns, Earlier::Replace)?;
     let (mut friction, mut sinking) = (Vec::new(), Vec::new());
     // two steps a cell while it moves; at rest they may grow
     let step = 0.5 * side / velocity;

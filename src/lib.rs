@@ -195,8 +195,7 @@ pub mod prelude {
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
-    pub use crate::output::CsvHistory;
-    pub use crate::output::{Field, FrameSeries, Metadata};
+    pub use crate::output::{CsvHistory, Earlier, Field, FrameSeries, Metadata};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use viscocontact::geometry::Sum;
-use viscocontact::output::{CsvHistory, Metadata};
+use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Style};
 use viscocontact::prelude::*;
 
@@ -97,11 +97,12 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let (mut positions, mut velocities) = (vec![0.0; args.grains], vec![0.0; args.grains]);
     let mut forces = vec![0.0; args.grains + 1];
     let (mut spent, mut longest) = (0.0, 0.0_f64);
-    let mut table = CsvHistory::create_or_replace(
+    let mut table = CsvHistory::create(
         args.output.join("lowest.csv"),
         &Metadata::new("The lowest contact of a column of grains"),
         &contacts[0],
         &[],
+        Earlier::Replace,
     )?;
     let mut curves = vec![Vec::new(); args.grains];
     let progress = support::progress(args.steps as u64);

@@ -19,28 +19,33 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    pub(crate) fn new(problem: &Problem, values: &[f64], jacobian: &Mat<f64>, sigma: f64) -> Result<Bounds> {
-        let names: Vec<String> = problem.free().map(|parameter| parameter.name.clone()).collect();
-        let inverse = inverse_gram(jacobian, 0.0)?;
-        let scales = problem.scales(values);
-        let covariance = &scales * inverse * scales.transpose();
+    pub(crate) fn new(problem: &Problem, coordinates: &[f64], sigma: f64) -> Result<Bounds> {
+        let (names, scales) = (problem.free().map(|of| of.name.clone()).collect(), problem.scales(coordinates));
+        let inverse = inverse_gram(&problem.jacobian(coordinates)?, 0.0)?;
+        Ok(Bounds::of(names, &scales * inverse * scales.transpose(), sigma))
+    }
+
+    /// From the covariance over σ².
+    pub(crate) fn of(names: Vec<String>, covariance: Mat<f64>, sigma: f64) -> Bounds {
         let row = |i: usize| (0..names.len()).map(|j| sigma * sigma * covariance[(i, j)]).collect();
-        let covariance = (0..names.len()).map(row).collect();
-        Ok(Bounds { names, covariance })
+        Bounds { covariance: (0..names.len()).map(row).collect(), names }
     }
 
     /// Least standard deviation of a parameter: of its logarithm for moduli, times and stiffness, of ln(α/(1 − α)) for exponents, and
     /// in its unit for the others.
     pub fn deviation(&self, name: &str) -> Option<f64> {
-        let at = self.names.iter().position(|other| other == name)?;
-        Some(self.covariance[at][at].sqrt())
+        self.of_both(name, name).map(f64::sqrt)
     }
 
     /// Correlation of two parameters.
     pub fn correlation(&self, one: &str, other: &str) -> Option<f64> {
+        Some(self.of_both(one, other)? / (self.deviation(one)? * self.deviation(other)?))
+    }
+
+    /// Covariance of two parameters.
+    pub(crate) fn of_both(&self, one: &str, other: &str) -> Option<f64> {
         let at = |name: &str| self.names.iter().position(|other| other == name);
-        let (i, j) = (at(one)?, at(other)?);
-        Some(self.covariance[i][j] / (self.covariance[i][i] * self.covariance[j][j]).sqrt())
+        Some(self.covariance[at(one)?][at(other)?])
     }
 }
 

@@ -1,9 +1,7 @@
 //! Drainage that looks like creep: relaxation times at two sizes of the contact.
 
 use crate::error::{Result, positive};
-
-/// Standard deviations of a normal distribution within which 95 % of the draws are.
-const WITHIN_95: f64 = 1.959963984540054;
+use crate::statistics::WITHIN_95;
 
 /// A relaxation time that was identified at one size of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

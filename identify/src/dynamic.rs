@@ -49,14 +49,6 @@ impl ComplexModulus {
     }
 }
 
-/// A complex amplitude Y of y = Re(Y e^(iωt)), with mean, residual and covariance of (Re Y, Im Y).
-struct Harmonic {
-    amplitude: Complex<f64>,
-    mean: f64,
-    residual: f64,
-    covariance: [[f64; 2]; 2],
-}
-
 impl Curve {
     /// The complex modulus E*(iω) = F̂/(S δ̂) of an oscillation of the drive at `frequency` \[Hz\] in a `window` of times \[s\],
     /// about a hold at some depth; `contact_point` is the drive at which the tip touches first \[m\].
@@ -95,27 +87,23 @@ impl Curve {
         let per_period = inside.len() as f64 / periods;
         within("points of a period in the window", per_period, per_period >= LEAST_PER_PERIOD, ">= 4")?;
         let times = &times[inside.clone()];
-        let force = harmonic(times, &self.force()[inside.clone()], frequency)?;
-        let drive = harmonic(times, &self.experiment().protocol().drive()[inside], frequency)?;
-        let (spring, tip) = (self.experiment.stiffness, &self.experiment.tip);
-        let deflection = force.amplitude / spring;
-        let amplitude = drive.amplitude - deflection;
-        let depth = positive("mean depth in the window", drive.mean - contact_point - force.mean / spring)?;
+        let (force, mean_force, residual, inverse) = harmonic(times, &self.force()[inside.clone()], frequency)?;
+        let (drive, mean_drive, ..) = harmonic(times, &self.experiment().protocol().drive()[inside], frequency)?;
+        let spring = self.experiment.stiffness;
+        let amplitude = drive - force / spring;
+        let depth = positive("mean depth in the window", mean_drive - contact_point - mean_force / spring)?;
         let swing = within(
             "amplitude of the depth",
             amplitude.norm(),
             amplitude.norm() > 1e-9 * depth && amplitude.norm() < depth,
             "above 1e-9 of the mean depth, and below it",
         )?;
-        let level = |depth: f64| match tip.level_at(tip.approach(0.0) + depth) {
-            level if level.is_nan() => Err(Error::BeyondStates { curve: 0, depth }),
-            level => Ok(level),
-        };
+        let level = |depth: f64| self.experiment.level_within(depth);
         let stiffness = (level(depth + swing)? - level(depth - swing)?) / (2.0 * swing);
-        let modulus = force.amplitude / (stiffness * amplitude);
+        let modulus = force / (stiffness * amplitude);
         // dE*/dF̂ of E* = F̂/(S (ẑ − F̂/k)): an analytic function
-        let slope = drive.amplitude / (stiffness * amplitude * amplitude);
-        let [[xx, xy], [_, yy]] = force.covariance;
+        let slope = drive / (stiffness * amplitude * amplitude);
+        let [xx, xy, yy] = [(0, 0), (0, 1), (1, 1)].map(|at| residual * residual * inverse[at]);
         let error = |[x, y]: [f64; 2]| (x * x * xx + 2.0 * x * y * xy + y * y * yy).max(0.0).sqrt();
         Ok(ComplexModulus {
             frequency,
@@ -126,13 +114,14 @@ impl Curve {
             depth,
             amplitude: swing,
             stiffness,
-            residual: force.residual,
+            residual,
         })
     }
 }
 
-/// Fits values at some times by Re(Y e^(iωt)), a constant and a slope.
-fn harmonic(times: &[f64], values: &[f64], frequency: f64) -> Result<Harmonic> {
+/// Fits values at some times by Re(Y e^(iωt)), a constant and a slope: Y, the mean, the standard deviation of what is left, and the covariance of
+/// Re Y, Im Y and the others over its square.
+fn harmonic(times: &[f64], values: &[f64], frequency: f64) -> Result<(Complex<f64>, f64, f64, Mat<f64>)> {
     let (count, half) = (times.len(), 0.5 * (times[times.len() - 1] - times[0]));
     let middle = times[0] + half;
     let rows = Mat::from_fn(count, COLUMNS, |row, column| {
@@ -150,7 +139,5 @@ fn harmonic(times: &[f64], values: &[f64], frequency: f64) -> Result<Harmonic> {
     let factor = normal.llt(Side::Lower).map_err(|_| singular)?;
     let solution = factor.solve(rows.transpose() * &value);
     let residual = (value - &rows * &solution).norm_l2() / (count.saturating_sub(COLUMNS).max(1) as f64).sqrt();
-    let inverse = factor.inverse();
-    let covariance = [0, 1].map(|i| [0, 1].map(|j| residual * residual * inverse[(i, j)]));
-    Ok(Harmonic { amplitude: Complex::new(solution[0], solution[1]), mean: solution[2], residual, covariance })
+    Ok((Complex::new(solution[0], solution[1]), solution[2], residual, factor.inverse()))
 }

@@ -18,7 +18,7 @@ pub enum Error {
     },
 
     /// Two columns of a curve differ in length.
-    #[error("{field}: {len} values given, {expected} needed, one for each time")]
+    #[error("{field}: {len} values given, {expected} needed")]
     WrongLength {
         /// Which column.
         field: &'static str,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use viscocontact::load::{Load, PiecewiseLinear};
 use viscocontact::states::ElasticStates;
 
-use crate::error::{Result, positive, same_length, within};
+use crate::error::{Error, Result, positive, same_length, within};
 use crate::protocol::Protocol;
 
 /// A drive and the tip it presses onto the sample: everything that is known before the force is measured.
@@ -15,6 +15,8 @@ pub struct Experiment {
     pub(crate) tip: Arc<ElasticStates>,
     /// Stiffness of the spring between base and tip \[N/m\]; infinite where the drive is the depth.
     pub(crate) stiffness: f64,
+    /// Approach of the tip at its first touch, where the depth is 0 \[m\].
+    pub(crate) surface: f64,
 }
 
 impl Experiment {
@@ -23,7 +25,21 @@ impl Experiment {
     /// The elastic states of the tip are closed forms ([`ElasticStates::sphere`], `cone`, `punch`, `power`), a sweep over
     /// any tip on any layer, or a table.
     pub fn new(protocol: Protocol, tip: Arc<ElasticStates>) -> Experiment {
-        Experiment { protocol, tip, stiffness: f64::INFINITY }
+        let surface = tip.approach(0.0);
+        Experiment { protocol, tip, stiffness: f64::INFINITY, surface }
+    }
+
+    /// The depth of a swept tip counts from its first touch at this `approach` \[m\], 0 for a shape whose least gap is 0, and not from where its
+    /// first cell touched: the gap at the nearest centre of a cell, dx²/4R of a sphere on cells of side dx. Contacts of few cells are a power of
+    /// the depth then. It matters where the contact point is known: one that is fitted takes the difference.
+    ///
+    /// # Errors
+    /// If the approach is not finite, or above the first touch of a cell.
+    pub fn with_surface(mut self, approach: f64) -> Result<Experiment> {
+        let first = self.tip.approach(0.0);
+        self.surface =
+            within("approach at first touch", approach, approach <= first, "at most that of the first cell")?;
+        Ok(self)
     }
 
     /// The drive is the position of a base, and the tip hangs on a spring of this `stiffness` \[N/m\]: the cantilever of an
@@ -58,14 +74,29 @@ impl Experiment {
     /// # Errors
     /// None for a protocol that exists; those of [`PiecewiseLinear::new`].
     pub fn load_history(&self) -> Result<PiecewiseLinear> {
-        let rest = self.tip.approach(0.0);
-        let load = |drive: f64| match self.stiffness {
-            f64::INFINITY => Load::approach(rest + drive),
-            stiffness => Load::spring(stiffness, rest + drive),
-        };
         let (times, drive) = (self.protocol.times(), self.protocol.drive());
-        let table: Vec<_> = times.iter().zip(drive).map(|(&time, &drive)| (time, load(drive))).collect();
+        let pairs = times.iter().zip(drive);
+        let table: Vec<_> = pairs.map(|(&time, &drive)| (time, self.load(drive, self.stiffness))).collect();
         Ok(PiecewiseLinear::new(&table)?)
+    }
+
+    /// The load of a drive, through a spring.
+    pub(crate) fn load(&self, drive: f64, stiffness: f64) -> Load {
+        match stiffness {
+            f64::INFINITY => Load::approach(self.surface + drive),
+            stiffness => Load::spring(stiffness, self.surface + drive),
+        }
+    }
+
+    /// The level of the elastic states at a depth \[m²\]: 0 without contact, NaN beyond the last state.
+    pub(crate) fn level(&self, depth: f64) -> f64 {
+        self.tip.level_at(self.surface + depth)
+    }
+
+    /// The level at a depth that the states reach.
+    pub(crate) fn level_within(&self, depth: f64) -> Result<f64> {
+        let level = self.level(depth);
+        if level.is_nan() { Err(Error::BeyondStates { curve: 0, depth }) } else { Ok(level) }
     }
 
     /// The elastic states of the tip.
@@ -79,7 +110,8 @@ impl PartialEq for Curve {
     fn eq(&self, other: &Curve) -> bool {
         let (a, b) = (&self.experiment, &other.experiment);
         let same_tip = Arc::ptr_eq(&a.tip, &b.tip) || a.tip.states() == b.tip.states();
-        self.force == other.force && a.protocol == b.protocol && a.stiffness == b.stiffness && same_tip
+        let same_setup = (a.stiffness, a.surface) == (b.stiffness, b.surface);
+        self.force == other.force && a.protocol == b.protocol && same_setup && same_tip
     }
 }
 

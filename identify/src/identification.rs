@@ -6,15 +6,15 @@ use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
-use crate::noise::{CurveNoise, Noise, Whitening};
-use crate::parameters::{Chosen, Kind, Nuisance, PerCurve, Size, parameters};
-use crate::problem::{Part, Problem};
+use crate::noise::{Noise, Whitening};
+use crate::parameters::{Chosen, Kind, Nuisance, Parameter, PerCurve, Property};
+use crate::problem::Problem;
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
 /// All curves of one fit have the same material. The contact point is the drive at which the tip first touches. Each curve has its own contact
-/// point, offset, drift, tilt and drag; the stiffness of the spring is common. All are known to be 0 unless stated (and the stiffness the stiffness
-/// of the experiment).
+/// point, offset, drift, tilt and drag; the stiffness of the spring is common unless it is given for each. All are known to be 0 unless stated (and
+/// the stiffness the stiffness of the experiment).
 ///
 /// ```
 /// use viscocontact_identify::{Curve, Experiment, Identification, Model, Nuisance, Protocol};
@@ -47,40 +47,51 @@ impl Identification {
         Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false }
     }
 
-    /// Drive at first touch \[m\].
-    pub fn contact_point(mut self, contact_point: impl Into<PerCurve>) -> Identification {
-        self.chosen.contact_point = contact_point.into();
+    /// A parameter by its name, of the material or of the measurement. A list has one for each curve: of the material, for each curve of
+    /// [`Identification::fit_each`].
+    pub fn parameter(mut self, name: &str, each: impl Into<PerCurve>) -> Identification {
+        self.chosen.0.push((name.into(), each.into()));
         self
+    }
+
+    /// Fixes a parameter of the material.
+    pub fn fix(self, name: &str, value: f64) -> Identification {
+        self.parameter(name, Nuisance::Fixed(value))
+    }
+
+    /// Starts the search for a parameter of the material here.
+    pub fn start(self, name: &str, value: f64) -> Identification {
+        self.parameter(name, Nuisance::FittedFrom(value))
+    }
+
+    /// Drive at first touch \[m\].
+    pub fn contact_point(self, contact_point: impl Into<PerCurve>) -> Identification {
+        self.parameter(Property::ContactPoint.name(), contact_point)
     }
 
     /// Force without contact \[N\].
-    pub fn offset(mut self, offset: impl Into<PerCurve>) -> Identification {
-        self.chosen.offset = offset.into();
-        self
+    pub fn offset(self, offset: impl Into<PerCurve>) -> Identification {
+        self.parameter(Property::Offset.name(), offset)
     }
 
     /// Growth of the force without contact \[N/s\].
-    pub fn drift(mut self, drift: impl Into<PerCurve>) -> Identification {
-        self.chosen.drift = drift.into();
-        self
+    pub fn drift(self, drift: impl Into<PerCurve>) -> Identification {
+        self.parameter(Property::Drift.name(), drift)
     }
 
     /// Growth of the force without contact with the drive \[N/m\]: interference of the light on the cantilever, or an actuator that is not straight.
-    pub fn tilt(mut self, tilt: impl Into<PerCurve>) -> Identification {
-        self.chosen.tilt = tilt.into();
-        self
+    pub fn tilt(self, tilt: impl Into<PerCurve>) -> Identification {
+        self.parameter(Property::Tilt.name(), tilt)
     }
 
     /// Force over the speed of the drive \[N s/m\]: a cantilever in a liquid.
-    pub fn drag(mut self, drag: impl Into<PerCurve>) -> Identification {
-        self.chosen.drag = drag.into();
-        self
+    pub fn drag(self, drag: impl Into<PerCurve>) -> Identification {
+        self.parameter(Property::Drag.name(), drag)
     }
 
-    /// Stiffness of the spring \[N/m\], in place of the stiffness of the experiments.
-    pub fn stiffness(mut self, stiffness: Nuisance) -> Identification {
-        self.chosen.stiffness = Some(stiffness);
-        self
+    /// Stiffness of the spring \[N/m\], in place of the stiffness of the experiments: of all curves together, or a list of their springs.
+    pub fn stiffness(self, stiffness: impl Into<PerCurve>) -> Identification {
+        self.parameter(Property::Stiffness.name(), stiffness)
     }
 
     /// The noise of the forces.
@@ -107,21 +118,16 @@ impl Identification {
         self.robust
     }
 
-    /// Fixes a parameter of the material.
-    pub fn fix(mut self, name: &str, value: f64) -> Identification {
-        self.chosen.material.push((name.to_string(), value, true));
-        self
-    }
-
-    /// Starts the search for a parameter of the material here.
-    pub fn start(mut self, name: &str, value: f64) -> Identification {
-        self.chosen.material.push((name.to_string(), value, false));
-        self
-    }
-
     /// The model.
     pub fn model(&self) -> Model {
         self.model
+    }
+
+    /// The same for one of several curves alone.
+    pub(crate) fn of_curve(&self, curve: usize) -> Identification {
+        let mut alone = self.clone();
+        alone.chosen.0.iter_mut().for_each(|(_, each)| *each = each.of(curve));
+        alone
     }
 
     /// Force and depth at each sample of an experiment, for parameters of the material by name. The contact point is 0 unless it is
@@ -130,7 +136,7 @@ impl Identification {
     /// # Errors
     /// If a parameter is missing or not allowed, or the tip goes beyond its last elastic state.
     pub fn respond(&self, experiment: &Experiment, values: &[(&str, f64)]) -> Result<Vec<Sample>> {
-        let problem = self.problem([(experiment, None)].into_iter())?;
+        let problem = self.planned(std::slice::from_ref(experiment))?;
         let values = self.given(&problem, values)?;
         let prony = problem.prony(&values)?;
         problem.samples(0, &values, &prony)
@@ -160,38 +166,9 @@ impl Identification {
             let reason = "bounds need the correlation of the noise: take Noise::AutoregressiveWith";
             return Err(Error::NotConverged { iterations: 0, reason });
         }
-        let problem = self.problem(experiments.iter().map(|experiment| (experiment, None)))?;
+        let problem = self.planned(experiments)?;
         let values = self.given(&problem, values)?;
-        let jacobian = problem.jacobian(&problem.coordinates(&values))?;
-        Bounds::new(&problem, &values, &jacobian, sigma)
-    }
-
-    /// The problem of fitted curves with the noise of the fit: whitening, scale and weights of each curve.
-    pub(crate) fn refit_problem(&self, curves: &[Curve], noise: &[CurveNoise]) -> Result<Problem> {
-        let mut problem = self.problem(curves.iter().map(|curve| (&curve.experiment, Some(&curve.force))))?;
-        for (part, noise) in problem.parts.iter_mut().zip(noise) {
-            if let Some(phi) = noise.correlation {
-                part.whitening = Whitening::Autoregressive(phi);
-            }
-            part.scale = noise.scale;
-            part.outliers.clone_from(&noise.outliers);
-            part.weights = noise.outliers.iter().map(|weight| noise.scale * weight).collect();
-        }
-        Ok(problem)
-    }
-
-    /// The value of a known property of a curve.
-    pub(crate) fn known(&self, kind: Kind) -> f64 {
-        let chosen = &self.chosen;
-        let nuisance = match kind {
-            Kind::ContactPoint(curve) => chosen.contact_point.of(curve),
-            Kind::Offset(curve) => chosen.offset.of(curve),
-            Kind::Drift(curve) => chosen.drift.of(curve),
-            Kind::Tilt(curve) => chosen.tilt.of(curve),
-            Kind::Drag(curve) => chosen.drag.of(curve),
-            Kind::Material(_) | Kind::Stiffness => return 0.0,
-        };
-        if let Nuisance::Fixed(value) = nuisance { value } else { 0.0 }
+        Bounds::new(&problem, &problem.coordinates(&values), sigma)
     }
 
     pub(crate) fn sigma(&self) -> Option<f64> {
@@ -213,47 +190,32 @@ impl Identification {
         minimise(coordinates, [problem.rounding(), problem.enough], |x| problem.residuals(x), |x| problem.jacobian(x))
     }
 
-    /// The problem of some curves, which may have no data yet.
-    pub(crate) fn problem<'a>(
-        &self,
-        curves: impl Iterator<Item = (&'a Experiment, Option<&'a Vec<f64>>)>,
-    ) -> Result<Problem> {
+    /// The problem of some curves.
+    pub(crate) fn problem(&self, curves: Vec<Curve>) -> Result<Problem> {
         if let Some(sigma) = self.sigma {
             positive("standard deviation of the noise", sigma)?;
         }
-        let (mut parts, mut sizes) = (Vec::new(), Vec::new());
-        for (curve, (experiment, force)) in curves.enumerate() {
-            let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
-            let data = force.cloned().unwrap_or_else(|| vec![0.0; times.len()]);
-            let ends = |values: &[f64]| {
-                values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)])
-            };
-            let range = |[low, high]: [f64; 2]| if high > low { high - low } else { 1.0 };
-            let time = times[times.len() - 1] - times[0];
-            sizes.push(Size { depth: range(ends(drive)), drive: ends(drive), force: range(ends(&data)), time });
-            let whitening = Whitening::of(&self.noise, curve, times.len())?;
-            parts.push(Part::new(experiment, data, whitening));
-        }
-        if parts.is_empty() {
-            return Err(Error::TooFewPoints { points: 0, parameters: self.model.parameters().len() });
-        }
-        let parameters = parameters(self.model, &self.chosen, &sizes)?;
-        Ok(Problem::new(self.model, parts, parameters))
+        Problem::new(self.model, &self.chosen, curves, |curve, len| Whitening::of(&self.noise, curve, len))
+    }
+
+    /// The problem of experiments that have no data yet.
+    fn planned(&self, experiments: &[Experiment]) -> Result<Problem> {
+        let no_force = |of: &Experiment| Curve { experiment: of.clone(), force: vec![0.0; of.protocol.times.len()] };
+        self.problem(experiments.iter().map(no_force).collect())
     }
 
     /// Values of all parameters from the material's by name.
     fn given(&self, problem: &Problem, named: &[(&str, f64)]) -> Result<Vec<f64>> {
-        let names = || problem.model.parameters().join(", ");
+        let unknown = |name: String| Error::UnknownParameter { name, names: problem.model.parameters().join(", ") };
         if let Some((name, _)) = named.iter().find(|(name, _)| problem.parameters.iter().all(|p| p.name != *name)) {
-            return Err(Error::UnknownParameter { name: (*name).to_string(), names: names() });
+            return Err(unknown((*name).to_string()));
         }
-        let value = |parameter: &crate::parameters::Parameter| {
+        let value = |parameter: &Parameter| {
             let named = named.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
-            let given = named.or(parameter.given);
-            match (given, parameter.kind) {
+            match (named.or(parameter.given), parameter.kind) {
                 (Some(value), _) => Ok(value),
-                (None, Kind::Material(_) | Kind::Stiffness) => {
-                    Err(Error::UnknownParameter { name: format!("{} without a value", parameter.name), names: names() })
+                (None, Kind::Material | Kind::Measurement(Property::Stiffness, _)) => {
+                    Err(unknown(format!("{} without a value", parameter.name)))
                 }
                 (None, _) => Ok(0.0),
             }

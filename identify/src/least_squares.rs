@@ -1,7 +1,7 @@
 //! Non-linear least squares by the method of Levenberg and Marquardt.
 
 use faer::linalg::solvers::Solve;
-use faer::{Col, Mat};
+use faer::{Col, Mat, Side};
 
 use crate::error::{Error, Result};
 
@@ -13,6 +13,8 @@ const AT_KINK: f64 = 1e-9;
 const SLOW: f64 = 1e-6;
 /// Longest step of a coordinate: a factor of e² in a modulus.
 const LONGEST_STEP: f64 = 2.0;
+/// Rounds in which long steps are damped.
+const MAX_DAMPED: usize = 100;
 /// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
 const AHEAD: f64 = 0.1;
 const MOST_BENT: f64 = 0.75;
@@ -40,13 +42,13 @@ pub(crate) fn minimise(
     let mut x = start;
     let mut r = residuals(&x)?;
     let mut sum = square(&r);
-    let (mut damping, mut growth, mut is_slow) = (DAMPING[1], 2.0, false);
-    for iteration in 1..=MAX_ITERATIONS {
+    let (mut damping, mut growth) = (DAMPING[1], 2.0);
+    for iterations in 1..=MAX_ITERATIONS {
         let slopes = jacobian(&x)?;
         let model = Linear::new(&slopes, &r);
-        let done = loop {
+        let moved = loop {
             if sum <= exact || model.promised(&model.step(0.0)) <= enough * sum {
-                break true;
+                break None;
             }
             let mut step = model.step(damping);
             let promised = model.promised(&step);
@@ -61,20 +63,20 @@ pub(crate) fn minimise(
                 // at a kink, shorter and shorter steps reduce the sum less and less
                 let reduction = promised.max(sum - reduced);
                 let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
-                is_slow = reduction <= SLOW * sum;
+                let is_last = is_enough || reduction <= SLOW * sum && iterations == MAX_ITERATIONS;
                 damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
                 growth = 2.0;
                 (x, r, sum) = (moved, residuals, reduced);
-                break is_enough;
+                break Some(is_last);
             }
             if promised <= enough * sum {
-                break true;
+                break None;
             }
             (damping, growth) = (damping * growth, growth * 2.0);
         };
-        if done || is_slow && iteration == MAX_ITERATIONS {
-            let jacobian = jacobian(&x)?;
-            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations: iteration });
+        if moved != Some(false) {
+            let jacobian = if moved.is_some() { jacobian(&x)? } else { slopes };
+            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations });
         }
     }
     let reason =
@@ -82,103 +84,69 @@ pub(crate) fn minimise(
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
 }
 
-fn along(x: &[f64], step: &[f64], share: f64) -> Vec<f64> {
-    x.iter().zip(step).map(|(x, s)| x + share * s).collect()
+fn along(x: &[f64], step: &Col<f64>, share: f64) -> Vec<f64> {
+    x.iter().enumerate().map(|(j, x)| x + share * step[j]).collect()
 }
 
-/// Linearised residuals, in coordinates whose columns have the norm 1.
+/// Linearised residuals: JᵀJ and −Jᵀr.
 struct Linear {
     gram: Mat<f64>,
-    right: Vec<f64>,
-    scale: Vec<f64>,
+    right: Col<f64>,
 }
 
 impl Linear {
     fn new(slopes: &Mat<f64>, residuals: &[f64]) -> Linear {
-        let count = slopes.ncols();
-        let gram = slopes.transpose() * slopes;
-        let right = slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]);
-        // a coordinate that moves nothing stays
-        let norm = |j: usize| if gram[(j, j)] > 0.0 { gram[(j, j)].sqrt() } else { 1.0 };
-        let scale: Vec<f64> = (0..count).map(norm).collect();
-        Linear {
-            gram: Mat::from_fn(count, count, |i, j| gram[(i, j)] / (scale[i] * scale[j])),
-            right: (0..count).map(|j| right[j] / scale[j]).collect(),
-            scale,
+        let mut gram = slopes.transpose() * slopes;
+        for j in 0..gram.nrows() {
+            // a coordinate that moves nothing stays
+            gram[(j, j)] = if gram[(j, j)] > 0.0 { gram[(j, j)] } else { 1.0 };
         }
+        Linear { gram, right: slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]) }
     }
 
-    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long go as far as they may, and the
-    /// others are found again; if the sum of squares would not fall so, the whole step is shortened.
-    fn step(&self, damping: f64) -> Vec<f64> {
-        let limits: Vec<f64> = self.scale.iter().map(|scale| LONGEST_STEP * scale).collect();
-        let mut held: Vec<Option<f64>> = vec![None; limits.len()];
-        let whole = self.solve(damping, &held);
-        let mut step = whole.clone();
-        loop {
-            let long = (0..limits.len()).filter(|&j| held[j].is_none() && step[j].abs() > limits[j]);
-            let long: Vec<usize> = long.collect();
-            if long.is_empty() {
-                break;
+    /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long are damped more.
+    fn step(&self, damping: f64) -> Col<f64> {
+        let count = self.right.nrows();
+        let mut damping = vec![damping; count];
+        for _ in 0..MAX_DAMPED {
+            let step = self.solve(&damping, &self.right);
+            let far: Vec<f64> = (0..count).map(|j| (step[j].abs() / LONGEST_STEP).min(100.0)).collect();
+            if far.iter().all(|far| *far <= 1.0) {
+                return step;
             }
-            long.into_iter().for_each(|j| held[j] = Some(limits[j] * step[j].signum()));
-            step = self.solve(damping, &held);
+            for (damping, far) in damping.iter_mut().zip(far).filter(|(_, far)| *far > 1.0) {
+                *damping = (2.0 * far * *damping).max(DAMPING[1]);
+            }
         }
-        let unscaled =
-            |step: &[f64]| -> Vec<f64> { step.iter().zip(&self.scale).map(|(s, scale)| s / scale).collect() };
-        if self.promised(&unscaled(&step)) > 0.0 {
-            return unscaled(&step);
-        }
-        let shorter = whole.iter().zip(&limits).fold(1.0, |least: f64, (s, limit)| least.min(limit / s.abs()));
-        unscaled(&whole).into_iter().map(|s| s * shorter).collect()
+        Col::zeros(count)
     }
 
     /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
     /// second derivative of the residuals is found from those a little `ahead`. A step whose acceleration is great is left.
-    fn bend(&self, step: &mut [f64], damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
-        let linear = slopes * Col::from_fn(step.len(), |j| step[j]);
+    fn bend(&self, step: &mut Col<f64>, damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
+        let linear = slopes * &*step;
         let curvature =
-            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * ((ahead[k] - residuals[k]) / AHEAD - linear[k]));
-        let right = slopes.transpose() * curvature;
-        let bent = Linear {
-            gram: self.gram.clone(),
-            right: (0..step.len()).map(|j| -right[j] / self.scale[j]).collect(),
-            scale: self.scale.clone(),
-        };
-        let acceleration = bent.solve(damping, &vec![None; step.len()]);
-        let size = |of: &mut dyn Iterator<Item = f64>| of.map(|s| s * s).sum::<f64>().sqrt();
-        let length = size(&mut step.iter().zip(&self.scale).map(|(s, scale)| s * scale));
-        if size(&mut acceleration.iter().copied()) <= MOST_BENT * length {
-            for ((s, a), scale) in step.iter_mut().zip(acceleration).zip(&self.scale) {
-                *s += (0.5 * a / scale).clamp(-LONGEST_STEP, LONGEST_STEP);
+            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * (linear[k] - (ahead[k] - residuals[k]) / AHEAD));
+        let acceleration = self.solve(&vec![damping; step.nrows()], &(slopes.transpose() * curvature));
+        let square = |of: &Col<f64>| (0..of.nrows()).map(|j| of[j] * of[j] * self.gram[(j, j)]).sum::<f64>();
+        if square(&acceleration) <= MOST_BENT * MOST_BENT * square(step) {
+            for j in 0..step.nrows() {
+                step[j] += (0.5 * acceleration[j]).clamp(-LONGEST_STEP, LONGEST_STEP);
             }
         }
     }
 
-    /// The scaled step, some coordinates of which are held.
-    fn solve(&self, damping: f64, held: &[Option<f64>]) -> Vec<f64> {
-        let free: Vec<usize> = (0..held.len()).filter(|&j| held[j].is_none()).collect();
-        let entry = |i: usize, j: usize| self.gram[(i, j)] + if i == j { damping.max(DAMPING[0]) } else { 0.0 };
-        let matrix = Mat::from_fn(free.len(), free.len(), |i, j| entry(free[i], free[j]));
-        let right = Col::from_fn(free.len(), |i| {
-            let known = held.iter().enumerate().filter_map(|(j, s)| Some(self.gram[(free[i], j)] * (*s)?));
-            self.right[free[i]] - known.sum::<f64>()
-        });
-        let solved = matrix.partial_piv_lu().solve(&right);
-        let mut step: Vec<f64> = held.iter().map(|s| s.unwrap_or_default()).collect();
-        let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
-        free.iter().enumerate().for_each(|(i, &j)| step[j] = finite(solved[i]));
-        step
+    /// The damped step of a right side; not a number where rounding hides it.
+    fn solve(&self, damping: &[f64], right: &Col<f64>) -> Col<f64> {
+        let damped = |j: usize| 1.0 + damping[j].max(DAMPING[0]);
+        let entry = |i: usize, j: usize| self.gram[(i, j)] * if i == j { damped(j) } else { 1.0 };
+        let matrix = Mat::from_fn(right.nrows(), right.nrows(), entry);
+        matrix.llt(Side::Lower).map_or(Col::full(right.nrows(), f64::NAN), |factor| factor.solve(right))
     }
 
     /// The reduction of the sum of squares by a step.
-    fn promised(&self, step: &[f64]) -> f64 {
-        let scaled: Vec<f64> = step.iter().zip(&self.scale).map(|(s, scale)| s * scale).collect();
-        let of = |j: usize| {
-            let product: f64 = (0..scaled.len()).map(|i| self.gram[(j, i)] * scaled[i]).sum();
-            scaled[j] * (2.0 * self.right[j] - product)
-        };
-        (0..scaled.len()).map(of).sum()
+    fn promised(&self, step: &Col<f64>) -> f64 {
+        step.transpose() * (faer::Scale(2.0) * &self.right - &self.gram * step)
     }
 }
 

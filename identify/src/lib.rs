@@ -21,7 +21,7 @@
 //! | creep or drainage of a pore fluid | [`TimeAtSize::scaling`] |
 //! | the usual formulas, for comparison | [`usual`] |
 //!
-//! The [`guide`] has a program for each of these.
+//! The [`guide`] has programs from curves to materials, and what can go wrong in each.
 //!
 //! # Conventions
 //!
@@ -49,6 +49,7 @@ mod fit;
 mod forward;
 mod identification;
 mod least_squares;
+mod loading;
 mod many;
 mod model;
 mod noise;

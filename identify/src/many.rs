@@ -10,7 +10,8 @@ use crate::identification::Identification;
 
 impl Identification {
     /// Fits each curve alone, as the curves of a force map: the results are in the order of the curves. With the feature `rayon` the
-    /// curves are shared between the threads of the present pool. `done` is called after each fit, for a progress bar.
+    /// curves are shared between the threads of the present pool. `done` is called after each fit, for a progress bar. A list of contact points,
+    /// springs, or starts of the material has one for each curve ([`Identification::parameter`]).
     ///
     /// ```
     /// use std::sync::atomic::{AtomicUsize, Ordering};
@@ -34,14 +35,14 @@ impl Identification {
     /// # Errors
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
-        let fit = |curve: &Curve| {
-            let fit = self.fit(std::slice::from_ref(curve));
+        let fit = |(index, curve): (usize, &Curve)| {
+            let fit = self.of_curve(index).fit(std::slice::from_ref(curve));
             done(&fit);
             fit
         };
         #[cfg(feature = "rayon")]
-        return curves.par_iter().map(fit).collect();
+        return curves.par_iter().enumerate().map(fit).collect();
         #[cfg(not(feature = "rayon"))]
-        curves.iter().map(fit).collect()
+        curves.iter().enumerate().map(fit).collect()
     }
 }

@@ -23,17 +23,6 @@ pub enum Noise {
     Covariance(Vec<Vec<f64>>),
 }
 
-/// The noise of one curve, as a fit found it.
-#[derive(Clone, Debug)]
-pub(crate) struct CurveNoise {
-    /// The autoregressive coefficient.
-    pub(crate) correlation: Option<f64>,
-    /// σ of the fit over σ of this curve.
-    pub(crate) scale: f64,
-    /// Weights of the residuals: below 1 for outliers.
-    pub(crate) outliers: Vec<f64>,
-}
-
 /// Makes the noise of one curve white: r ↦ L⁻¹ r where L Lᵀ is the covariance, up to a factor.
 #[derive(Clone, Debug)]
 pub(crate) enum Whitening {

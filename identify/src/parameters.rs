@@ -1,9 +1,11 @@
 //! The parameters of a fit: of the material, and of the measurement.
 
 use crate::error::{Error, Result, same_length, within};
+use crate::experiment::Curve;
 use crate::model::{Model, Scale};
+use crate::statistics::range;
 
-/// A property of the measurement that may be known or fitted.
+/// A parameter that may be known or fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Nuisance {
@@ -15,7 +17,7 @@ pub enum Nuisance {
     FittedFrom(f64),
 }
 
-/// A property of the measurement, of all curves alike or of each curve for itself.
+/// A parameter of all curves alike or of each curve for itself.
 ///
 /// ```
 /// use viscocontact_identify::{Identification, Model, Nuisance};
@@ -41,13 +43,14 @@ impl From<Vec<Nuisance>> for PerCurve {
 }
 
 impl PerCurve {
-    /// The property of a curve.
-    pub(crate) fn of(&self, curve: usize) -> Nuisance {
-        self.0.get(curve).or(self.0.first().filter(|_| self.0.len() == 1)).copied().unwrap_or(Nuisance::Fixed(0.0))
+    /// The parameter of one curve alone.
+    pub(crate) fn of(&self, curve: usize) -> PerCurve {
+        let own = self.0.get(if self.0.len() == 1 { 0 } else { curve });
+        PerCurve(own.map_or_else(Vec::new, |own| vec![*own]))
     }
 
-    /// Whether there is one for each of so many curves, and all are numbers.
-    fn check(&self, field: &'static str, curves: usize) -> Result<()> {
+    /// The parameter of each of so many curves, all of them numbers.
+    fn each(&self, field: &'static str, curves: usize) -> Result<impl Iterator<Item = Nuisance>> {
         if self.0.len() != 1 {
             same_length(field, self.0.len(), curves)?;
         }
@@ -56,45 +59,53 @@ impl PerCurve {
                 within(field, value, true, "finite")?;
             }
         }
-        Ok(())
+        Ok(self.0.iter().copied().cycle().take(curves))
+    }
+}
+
+/// A property of the measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Property {
+    /// Stiffness of the spring \[N/m\].
+    Stiffness,
+    /// Drive at first touch \[m\].
+    ContactPoint,
+    /// Force without contact \[N\].
+    Offset,
+    /// Growth of this force \[N/s\].
+    Drift,
+    /// Growth of this force with the drive \[N/m\].
+    Tilt,
+    /// Force over the speed of the drive \[N s/m\].
+    Drag,
+}
+
+impl Property {
+    const ALL: [Self; 6] = [Self::Stiffness, Self::ContactPoint, Self::Offset, Self::Drift, Self::Tilt, Self::Drag];
+
+    pub(crate) fn name(self) -> &'static str {
+        ["stiffness", "contact point", "offset", "drift", "tilt", "drag"][self as usize]
     }
 }
 
 /// Which quantity a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A parameter of the material, by index.
-    Material(usize),
-    /// Stiffness of the spring \[N/m\].
-    Stiffness,
-    /// Drive at first touch of a curve \[m\].
-    ContactPoint(usize),
-    /// Force without contact \[N\].
-    Offset(usize),
-    /// Growth of this force \[N/s\].
-    Drift(usize),
-    /// Growth of the force without contact with the drive \[N/m\].
-    Tilt(usize),
-    /// Force over the speed of the drive \[N s/m\].
-    Drag(usize),
+    Material,
+    /// A property of one curve, or of all of them.
+    Measurement(Property, Option<usize>),
 }
 
 impl Kind {
     /// The only curve on which the parameter acts.
     pub(crate) fn curve(self) -> Option<usize> {
-        match self {
-            Kind::Material(_) | Kind::Stiffness => None,
-            Kind::ContactPoint(curve)
-            | Kind::Offset(curve)
-            | Kind::Drift(curve)
-            | Kind::Tilt(curve)
-            | Kind::Drag(curve) => Some(curve),
-        }
+        if let Kind::Measurement(_, curve) = self { curve } else { None }
     }
 
-    /// Whether the force is linear in the parameter.
-    pub(crate) fn is_linear(self) -> bool {
-        matches!(self, Kind::Offset(_) | Kind::Drift(_) | Kind::Tilt(_) | Kind::Drag(_))
+    /// The property, if the force is linear in it.
+    pub(crate) fn linear(self) -> Option<Property> {
+        let Kind::Measurement(property, _) = self else { return None };
+        (!matches!(property, Property::Stiffness | Property::ContactPoint)).then_some(property)
     }
 }
 
@@ -112,20 +123,24 @@ pub(crate) struct Parameter {
 }
 
 impl Parameter {
-    /// The parameters of a model, of which some are set: value, and whether it is fixed.
-    pub(crate) fn of_material(model: Model, chosen: &[(String, f64, bool)]) -> Vec<Parameter> {
-        let parameter = |(index, name): (usize, String)| {
-            let set = chosen.iter().rev().find(|(set, ..)| *set == name);
-            Parameter {
-                kind: Kind::Material(index),
-                scale: Model::scale(&name),
-                unit: 1.0,
-                is_free: set.is_none_or(|(_, _, fixed)| !fixed),
-                given: set.map(|(_, value, _)| *value),
-                name,
-            }
+    fn new(name: String, kind: Kind, scale: Scale, unit: f64, nuisance: Nuisance) -> Parameter {
+        let (is_free, given) = match nuisance {
+            Nuisance::Fixed(value) => (false, Some(value)),
+            Nuisance::Fitted => (true, None),
+            Nuisance::FittedFrom(value) => (true, Some(value)),
         };
-        model.parameters().into_iter().enumerate().map(parameter).collect()
+        Parameter { name, kind, scale, unit, is_free, given }
+    }
+
+    /// The parameters of a model, of which some are set.
+    pub(crate) fn of_material(model: Model, chosen: &Chosen) -> Result<Vec<Parameter>> {
+        let parameter = |name: String| {
+            let set = chosen.of(&name).map(|set| set.each("parameters of the material", 1)).transpose()?;
+            let nuisance = set.and_then(|mut set| set.next()).unwrap_or(Nuisance::Fitted);
+            let scale = Model::scale(&name);
+            Ok(Parameter::new(name, Kind::Material, scale, 1.0, nuisance))
+        };
+        model.parameters().into_iter().map(parameter).collect()
     }
 
     /// The coordinate of a search.
@@ -138,91 +153,50 @@ impl Parameter {
     }
 }
 
-/// What is set of each parameter of an identification.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Chosen {
-    pub(crate) contact_point: PerCurve,
-    pub(crate) offset: PerCurve,
-    pub(crate) drift: PerCurve,
-    pub(crate) tilt: PerCurve,
-    pub(crate) drag: PerCurve,
-    pub(crate) stiffness: Option<Nuisance>,
-    /// Material parameters by name: value, and whether it is fixed.
-    pub(crate) material: Vec<(String, f64, bool)>,
-}
+/// What is set of each parameter of an identification, by name; the last counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Chosen(pub(crate) Vec<(String, PerCurve)>);
 
-impl Default for Chosen {
-    fn default() -> Chosen {
-        let known = || PerCurve::from(Nuisance::Fixed(0.0));
-        Chosen {
-            contact_point: known(),
-            offset: known(),
-            drift: known(),
-            tilt: known(),
-            drag: known(),
-            stiffness: None,
-            material: Vec::new(),
+impl Chosen {
+    fn of(&self, name: &str) -> Option<&PerCurve> {
+        self.0.iter().rev().find(|(set, _)| set == name).map(|(_, each)| each)
+    }
+
+    /// All parameters of a model and of the measurement of some curves.
+    pub(crate) fn parameters(&self, model: Model, curves: &[Curve]) -> Result<Vec<Parameter>> {
+        let names = model.parameters();
+        let is_known = |name: &String| names.contains(name) || Property::ALL.iter().any(|other| other.name() == name);
+        if let Some((name, _)) = self.0.iter().find(|(name, _)| !is_known(name)) {
+            return Err(Error::UnknownParameter { name: name.clone(), names: names.join(", ") });
         }
-    }
-}
-
-/// Sizes of the curves: depth, force and duration.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Size {
-    pub(crate) depth: f64,
-    /// Least and greatest drive \[m\].
-    pub(crate) drive: [f64; 2],
-    pub(crate) force: f64,
-    pub(crate) time: f64,
-}
-
-/// All parameters of a problem.
-pub(crate) fn parameters(model: Model, chosen: &Chosen, sizes: &[Size]) -> Result<Vec<Parameter>> {
-    let names = model.parameters();
-    if let Some((name, ..)) = chosen.material.iter().find(|(name, ..)| !names.contains(name)) {
-        return Err(Error::UnknownParameter { name: name.clone(), names: names.join(", ") });
-    }
-    for (field, each) in [
-        ("contact point", &chosen.contact_point),
-        ("offset", &chosen.offset),
-        ("drift", &chosen.drift),
-        ("tilt", &chosen.tilt),
-        ("drag", &chosen.drag),
-    ] {
-        each.check(field, sizes.len())?;
-    }
-    for (curve, size) in sizes.iter().enumerate() {
-        if let Nuisance::FittedFrom(value) = chosen.contact_point.of(curve) {
-            let inside = (size.drive[0]..=size.drive[1]).contains(&value);
-            within("start of the contact point", value, inside, "within the range of the drive")?;
+        let mut all = Parameter::of_material(model, self)?;
+        for property in Property::ALL {
+            let Some(set) = self.of(property.name()) else { continue };
+            // of one spring, unless several are given
+            let is_common = property == Property::Stiffness && set.0.len() == 1;
+            let each = set.each(property.name(), curves.len())?.take(if is_common { 1 } else { curves.len() });
+            for (curve, (nuisance, of)) in each.zip(curves).enumerate() {
+                let (times, drive) = (of.experiment.protocol.times(), range(of.experiment.protocol.drive()));
+                if let (Property::ContactPoint, Nuisance::FittedFrom(value)) = (property, nuisance) {
+                    let inside = (drive[0]..=drive[1]).contains(&value);
+                    within("start of the contact point", value, inside, "within the range of the drive")?;
+                }
+                let size = |[low, high]: [f64; 2]| if high > low { high - low } else { 1.0 };
+                let (depth, force, time) = (size(drive), size(range(&of.force)), times[times.len() - 1] - times[0]);
+                let (scale, unit) = match property {
+                    Property::Stiffness => (Scale::Logarithm, 1.0),
+                    Property::ContactPoint => (Scale::Linear, depth),
+                    Property::Offset => (Scale::Linear, force),
+                    Property::Drift => (Scale::Linear, force / time),
+                    Property::Tilt => (Scale::Linear, force / depth),
+                    Property::Drag => (Scale::Linear, force / (depth / time)),
+                };
+                let is_only = is_common || curves.len() == 1;
+                let name = if is_only { property.name().into() } else { format!("{} {curve}", property.name()) };
+                let kind = Kind::Measurement(property, (!is_common).then_some(curve));
+                all.push(Parameter::new(name, kind, scale, unit, nuisance));
+            }
         }
+        Ok(all)
     }
-    let mut all = Parameter::of_material(model, &chosen.material);
-    let mut add = |name: String, kind: Kind, scale: Scale, unit: f64, nuisance: Nuisance| {
-        let (is_free, given) = match nuisance {
-            Nuisance::Fixed(value) => (false, Some(value)),
-            Nuisance::Fitted => (true, None),
-            Nuisance::FittedFrom(value) => (true, Some(value)),
-        };
-        all.push(Parameter { name, kind, scale, unit, is_free, given });
-    };
-    if let Some(stiffness) = chosen.stiffness {
-        add("stiffness".to_string(), Kind::Stiffness, Scale::Logarithm, 1.0, stiffness);
-    }
-    for (curve, size) in sizes.iter().enumerate() {
-        let name = |name: &str| if sizes.len() == 1 { name.to_string() } else { format!("{name} {curve}") };
-        let speed = size.depth / size.time;
-        add(
-            name("contact point"),
-            Kind::ContactPoint(curve),
-            Scale::Linear,
-            size.depth,
-            chosen.contact_point.of(curve),
-        );
-        add(name("offset"), Kind::Offset(curve), Scale::Linear, size.force, chosen.offset.of(curve));
-        add(name("drift"), Kind::Drift(curve), Scale::Linear, size.force / size.time, chosen.drift.of(curve));
-        add(name("tilt"), Kind::Tilt(curve), Scale::Linear, size.force / size.depth, chosen.tilt.of(curve));
-        add(name("drag"), Kind::Drag(curve), Scale::Linear, size.force / speed, chosen.drag.of(curve));
-    }
-    Ok(all)
 }

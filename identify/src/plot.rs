@@ -2,11 +2,10 @@
 
 use viscocontact::plot::{COLORS, Chart, Legend, Picture, Quantity, Scale, Style};
 
-use crate::error::{Result, within};
+use crate::error::Result;
 use crate::fit::Fit;
+use crate::statistics::WITHIN_95;
 
-/// Standard deviations of a normal distribution within which 95 % of the draws are.
-const WITHIN_95: f64 = 1.96;
 /// Points of a curve of the modulus.
 const POINTS: usize = 100;
 
@@ -35,17 +34,10 @@ impl Fit {
     /// # Errors
     /// If there is no such curve.
     pub fn force_chart(&self, curve: usize) -> Result<Chart> {
-        let times = self.times(curve)?;
-        let [time, force] = [Quantity::new("time", "s"), Quantity::new("force", "N")];
-        let mut chart = Chart::new("Force", time, force, Legend::UpperRight);
-        let measured = self.curves()[curve].force();
+        let (times, measured) = (self.experiment(curve)?.protocol().times(), self.curves()[curve].force());
+        let mut chart = self.noise_chart(curve, "Force", "force", self.force(curve));
         chart.add("measured", COLORS[0], Style::Dots, pairs(times, measured));
         chart.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, self.force(curve)));
-        let limit = self.noise_limit(curve);
-        for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
-            let band = times.iter().zip(self.force(curve)).map(|(time, force)| (*time, force + side));
-            chart.add(label, COLORS[5], Style::Line, band.collect());
-        }
         Ok(chart)
     }
 
@@ -55,20 +47,15 @@ impl Fit {
     /// # Errors
     /// If there is no such curve.
     pub fn residual_chart(&self, curve: usize) -> Result<Chart> {
-        let times = self.times(curve)?;
-        let [time, force] = [Quantity::new("time", "s"), Quantity::new("measured - fitted force", "N")];
-        let mut chart = Chart::new("Residuals", time, force, Legend::UpperRight);
+        let times = self.experiment(curve)?.protocol().times();
+        let mut chart = self.noise_chart(curve, "Residuals", "measured - fitted force", &vec![0.0; times.len()]);
         chart.add("", COLORS[0], Style::Dots, pairs(times, self.residuals(curve)));
-        let limit = self.noise_limit(curve);
-        for (label, value) in [("95 % of the noise", limit), ("", -limit)] {
-            chart.add(label, COLORS[1], Style::Line, vec![(times[0], value), (times[times.len() - 1], value)]);
-        }
         Ok(chart)
     }
 
     /// The contact modulus over time with its band of 95 %, from the shortest sampling interval to the length of the curves.
     pub fn modulus_chart(&self) -> Chart {
-        let [first, last] = self.window();
+        let [first, last] = self.problem.window;
         let times = (0..=POINTS).map(|k| first * (last / first).powf(k as f64 / POINTS as f64));
         let band: Vec<(f64, [f64; 2])> = times.map(|time| (time, self.modulus_band(time))).collect();
         let falls_by_decades = band[0].1[0] > 10.0 * band[POINTS].1[0];
@@ -98,15 +85,17 @@ impl Fit {
         Ok(Picture::beside(&pictures)?)
     }
 
-    /// Limit of 95 % of the noise of a curve: of correlated noise, the whole one.
-    fn noise_limit(&self, curve: usize) -> f64 {
+    /// A chart of forces, with the limits of 95 % of the noise about some of them: of correlated noise, of the whole one.
+    fn noise_chart(&self, curve: usize, title: &str, name: &str, middle: &[f64]) -> Chart {
+        let mut chart = Chart::new(title, Quantity::new("time", "s"), Quantity::new(name, "N"), Legend::UpperRight);
+        let times = self.curves()[curve].experiment().protocol().times();
         let phi = self.autoregression_of(curve).unwrap_or_default();
-        WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt()
-    }
-
-    fn times(&self, curve: usize) -> Result<&[f64]> {
-        within("index of the curve", curve as f64, curve < self.curves().len(), "below the number of curves")?;
-        Ok(self.curves()[curve].experiment().protocol().times())
+        let limit = WITHIN_95 * self.sigma_of(curve) / (1.0 - phi * phi).sqrt();
+        for (label, side) in [("95 % of the noise", limit), ("", -limit)] {
+            let moved: Vec<f64> = middle.iter().map(|force| force + side).collect();
+            chart.add(label, COLORS[5], Style::Line, pairs(times, &moved));
+        }
+        chart
     }
 }
 

@@ -1,16 +1,16 @@
 //! A least-squares problem: the model forces of all curves, less the measured ones, made white.
 
-use std::cell::Cell;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use faer::Mat;
 
-use crate::error::Result;
-use crate::experiment::Experiment;
-use crate::forward::{Drive, Dual, Forward, LANES, Real, Response, Roots, Sample, Term};
-use crate::model::Model;
+use crate::error::{Error, Result};
+use crate::experiment::{Curve, Experiment};
+use crate::forward::{Forward, LANES, Real, Response, Roots, Sample, Term};
+use crate::model::{Model, Scale};
 use crate::noise::Whitening;
-use crate::parameters::{Kind, Parameter};
+use crate::parameters::{Chosen, Kind, Parameter, Property};
 use crate::protocol::Protocol;
 use crate::series::Prony;
 
@@ -22,17 +22,18 @@ const ROUGH: usize = 128;
 const ENOUGH: [f64; 2] = [1e-12, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
+/// Width of coordinates over which derivatives of parameters are taken.
+const WIDTH: f64 = 1e-5;
 
 /// One curve of a problem.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    pub(crate) experiment: Experiment,
-    /// The measured forces; zeros where none are measured yet.
-    pub(crate) data: Vec<f64>,
+    /// Experiment and measured forces: zeros where none are measured yet.
+    pub(crate) curve: Curve,
     pub(crate) whitening: Whitening,
-    /// Weights of the residuals made white: a scale of the curve, times the weights of outliers.
-    pub(crate) weights: Vec<f64>,
+    /// Weight of the residuals made white.
     pub(crate) scale: f64,
+    /// A further weight of each: below 1 for outliers.
     pub(crate) outliers: Vec<f64>,
     forward: Forward,
     /// Speed of the drive at each sample \[m/s\].
@@ -40,17 +41,16 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    pub(crate) fn new(experiment: &Experiment, data: Vec<f64>, whitening: Whitening) -> Part {
-        let (times, drive) = (experiment.protocol.times(), experiment.protocol.drive());
+    fn new(index: usize, curve: Curve, whitening: Whitening) -> Part {
+        let Protocol { times, drive } = &curve.experiment.protocol;
         let last = times.len() - 1;
         let speed = |k: usize| {
             let [a, b] = [k.saturating_sub(1), (k + 1).min(last)];
             (drive[b] - drive[a]) / (times[b] - times[a])
         };
-        let speed = (0..times.len()).map(speed).collect();
-        let weights = vec![1.0; times.len()];
-        let (outliers, forward) = (weights.clone(), Forward::new(&experiment.tip));
-        Part { experiment: experiment.clone(), data, whitening, weights, scale: 1.0, outliers, forward, speed }
+        let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
+        let forward = Forward::new(index, &curve.experiment.tip, curve.experiment.surface);
+        Part { curve, whitening, scale: 1.0, outliers, forward, speed }
     }
 
     /// Means of neighbouring samples, as if their noise were white.
@@ -59,22 +59,22 @@ impl Part {
             let means = values.chunks(self.len().div_ceil(ROUGH));
             means.map(|chunk| chunk.iter().sum::<f64>() / chunk.len() as f64).collect()
         };
-        let Protocol { times, drive } = &self.experiment.protocol;
+        let Protocol { times, drive } = &self.curve.experiment.protocol;
         let protocol = Protocol { times: of(times), drive: of(drive) };
-        let (data, speed, weights, outliers) = (of(&self.data), of(&self.speed), of(&self.weights), of(&self.outliers));
-        let experiment = Experiment { protocol, ..self.experiment.clone() };
-        let whitening = Whitening::Autoregressive(0.0);
-        Part { experiment, data, whitening, weights, outliers, speed, ..self.clone() }
+        let experiment = Experiment { protocol, ..self.curve.experiment.clone() };
+        let curve = Curve { experiment, force: of(&self.curve.force) };
+        let (outliers, speed, whitening) = (of(&self.outliers), of(&self.speed), Whitening::Autoregressive(0.0));
+        Part { curve, whitening, outliers, speed, ..self.clone() }
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.data.len()
+        self.speed.len()
     }
 
     /// Makes a column of the data white, with its weights.
     pub(crate) fn whiten(&self, column: &mut [f64]) {
         self.whitening.apply(column);
-        column.iter_mut().zip(&self.weights).for_each(|(value, weight)| *value *= weight);
+        column.iter_mut().zip(&self.outliers).for_each(|(value, weight)| *value *= self.scale * weight);
     }
 
     /// −ln of the determinant of the covariance, up to the factor σ².
@@ -82,20 +82,15 @@ impl Part {
         self.whitening.log_weight() + 2.0 * self.len() as f64 * self.scale.ln()
     }
 
-    /// Force of the contact, and where the tip is, at each sample. `record` is given each with the terms of its force.
-    pub(crate) fn respond<T: Real>(
-        &self,
-        curve: usize,
-        prony: &Prony<T>,
-        contact_point: T,
-        stiffness: T,
-        roots: &mut Roots,
-        record: impl FnMut(Response<T>, &[Term<T>]),
-    ) -> Result<()> {
-        let protocol = &self.experiment.protocol;
-        let drive: Vec<T> = protocol.drive().iter().map(|&z| T::from(z) - contact_point).collect();
-        let drive = Drive { times: protocol.times(), drive: &drive };
-        self.forward.respond(prony, drive, T::from(1.0) / stiffness, curve, roots, record)
+    /// The force at a sample over a property in which it is linear.
+    fn force_over(&self, property: Property, sample: usize) -> f64 {
+        let Protocol { times, drive } = &self.curve.experiment.protocol;
+        match property {
+            Property::Drift => times[sample] - times[0],
+            Property::Tilt => drive[sample] - drive[0],
+            Property::Drag => self.speed[sample],
+            _ => 1.0,
+        }
     }
 }
 
@@ -110,16 +105,26 @@ pub(crate) struct Problem {
     /// Fraction of the sum of squares that a search leaves.
     pub(crate) enough: f64,
     /// Exponentials that were advanced by a sample, each derivative counted.
-    pub(crate) work: Rc<Cell<usize>>,
+    pub(crate) work: Arc<AtomicUsize>,
 }
 
 impl Problem {
-    pub(crate) fn new(model: Model, parts: Vec<Part>, parameters: Vec<Parameter>) -> Problem {
-        let times = || parts.iter().map(|part| part.experiment.protocol.times());
+    pub(crate) fn new(
+        model: Model,
+        chosen: &Chosen,
+        curves: Vec<Curve>,
+        whitening: impl Fn(usize, usize) -> Result<Whitening>,
+    ) -> Result<Problem> {
+        if curves.is_empty() {
+            return Err(Error::TooFewPoints { points: 0, parameters: model.parameters().len() });
+        }
+        let parameters = chosen.parameters(model, &curves)?;
+        let times = || curves.iter().map(|curve| curve.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
-        let longest = times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max);
-        let (enough, work) = (ENOUGH[0], Rc::default());
-        Problem { model, parts, parameters, window: [shortest, longest], enough, work }
+        let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
+        let part = |(k, curve): (usize, Curve)| Ok(Part::new(k, curve.clone(), whitening(k, curve.force.len())?));
+        let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
+        Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }
 
     /// The same problem with few samples, on which a search is cheap; `None` where there are few, or their noise is given by a matrix.
@@ -132,12 +137,11 @@ impl Problem {
 
     /// The same problem with a simpler model; `None` where parameters of the material are given.
     pub(crate) fn with_model(&self, model: Model) -> Option<Problem> {
-        let is_material = |parameter: &&Parameter| matches!(parameter.kind, Kind::Material(_));
-        if self.parameters.iter().filter(is_material).any(|parameter| parameter.given.is_some()) {
+        let (material, others) = self.parameters.split_at(self.model.parameters().len());
+        if material.iter().any(|parameter| parameter.given.is_some()) {
             return None;
         }
-        let others = self.parameters.iter().filter(|parameter| !is_material(parameter)).cloned();
-        let parameters = Parameter::of_material(model, &[]).into_iter().chain(others).collect();
+        let parameters = [Parameter::of_material(model, &Chosen::default()).ok()?, others.to_vec()].concat();
         Some(Problem { model, parameters, ..self.clone() })
     }
 
@@ -149,10 +153,10 @@ impl Problem {
         all
     }
 
-    /// The same problem with the weights of curves alone.
+    /// The same problem without weights of outliers.
     pub(crate) fn without_outliers(&self) -> Problem {
         let mut problem = self.clone();
-        problem.parts.iter_mut().for_each(|part| part.weights.fill(part.scale));
+        problem.parts.iter_mut().for_each(|part| part.outliers.fill(1.0));
         problem
     }
 
@@ -163,7 +167,7 @@ impl Problem {
 
     /// A sum of squares that is rounding.
     pub(crate) fn rounding(&self) -> f64 {
-        EXACT * self.parts.iter().flat_map(|part| &part.data).map(|force| force * force).sum::<f64>()
+        EXACT * self.parts.iter().flat_map(|part| &part.curve.force).map(|force| force * force).sum::<f64>()
     }
 
     /// The free parameters.
@@ -210,67 +214,90 @@ impl Problem {
         pairs.map(|(parameter, value)| parameter.coordinate(value)).collect()
     }
 
+    /// Values of all parameters where a coordinate is larger by some width.
+    fn moved(&self, coordinates: &[f64], column: usize, width: f64) -> Vec<f64> {
+        let mut moved = coordinates.to_vec();
+        moved[column] += width;
+        self.values(&moved)
+    }
+
     /// Derivatives of the free parameters, on their scales, by the coordinates.
-    pub(crate) fn scales(&self, values: &[f64]) -> Mat<f64> {
-        let free: Vec<&Parameter> = self.free().collect();
-        let mut scales = Mat::from_fn(free.len(), free.len(), |i, j| if i == j { free[i].unit } else { 0.0 });
-        if self.has_equilibrium() {
-            let share = values[1] / values[0];
-            if self.parameters[0].is_free {
-                scales[(0, 0)] = 1.0 - share;
-                if self.parameters[1].is_free {
-                    scales[(0, 1)] = share;
-                }
-            } else if self.parameters[1].is_free {
-                scales[(0, 0)] = 1.0 - share;
-            }
-        }
-        scales
+    pub(crate) fn scales(&self, coordinates: &[f64]) -> Mat<f64> {
+        let on_scales = |column: usize, width: f64| -> Vec<f64> {
+            let pairs = self.parameters.iter().zip(self.moved(coordinates, column, width));
+            pairs.filter(|(of, _)| of.is_free).map(|(of, value)| of.scale.forward(value)).collect()
+        };
+        let count = coordinates.len();
+        let ends: Vec<_> = (0..count).map(|column| [-WIDTH, WIDTH].map(|width| on_scales(column, width))).collect();
+        Mat::from_fn(count, count, |i, j| (ends[j][1][i] - ends[j][0][i]) / (2.0 * WIDTH))
     }
 
     /// The exponentials of the material of given values.
     pub(crate) fn prony(&self, values: &[f64]) -> Result<Prony> {
-        let is_material = |parameter: &&Parameter| matches!(parameter.kind, Kind::Material(_));
-        let count = self.parameters.iter().filter(is_material).count();
-        self.model.prony(&values[..count], self.window)
+        self.model.prony(&values[..self.model.parameters().len()], self.window)
     }
 
-    /// The value of a parameter, if there is one of this kind.
-    pub(crate) fn value_of(&self, values: &[f64], kind: Kind) -> Option<f64> {
-        self.parameters.iter().position(|parameter| parameter.kind == kind).map(|at| values[at])
+    /// The value of a property of a curve, if it is a parameter.
+    pub(crate) fn value_of(&self, values: &[f64], property: Property, curve: usize) -> Option<f64> {
+        let is_it = |parameter: &Parameter| matches!(parameter.kind, Kind::Measurement(own, of) if own == property && of.is_none_or(|of| of == curve));
+        self.parameters.iter().position(is_it).map(|at| values[at])
+    }
+
+    /// Drive at first touch of a curve \[m\].
+    pub(crate) fn contact_point(&self, curve: usize, values: &[f64]) -> f64 {
+        self.value_of(values, Property::ContactPoint, curve).unwrap_or_default()
     }
 
     /// Stiffness of the spring of a curve.
     pub(crate) fn stiffness(&self, curve: usize, values: &[f64]) -> f64 {
-        self.value_of(values, Kind::Stiffness).unwrap_or(self.parts[curve].experiment.stiffness)
+        self.value_of(values, Property::Stiffness, curve).unwrap_or(self.parts[curve].curve.experiment.stiffness)
     }
 
-    /// Counts an evaluation of a curve.
-    fn count<T: Real>(&self, curve: usize, prony: &Prony<T>) {
-        let each = if T::DERIVES { LANES + 1 } else { 1 };
-        self.work.set(self.work.get() + each * self.parts[curve].len() * prony.moduli.len());
+    /// Force of the contact of a curve, and where the tip is, at each sample. `record` is given each with the terms of its force.
+    fn respond<const N: usize>(
+        &self,
+        curve: usize,
+        prony: &Prony<Real<N>>,
+        contact_point: Real<N>,
+        stiffness: Real<N>,
+        roots: &mut Roots,
+        record: impl FnMut(Response<N>, &[Term<N>]),
+    ) -> Result<()> {
+        let part = &self.parts[curve];
+        self.work.fetch_add(N.max(1) * part.len() * prony.moduli.len(), Ordering::Relaxed);
+        let Protocol { times, drive } = &part.curve.experiment.protocol;
+        let drive: Vec<Real<N>> = drive.iter().map(|&z| Real::from(z) - contact_point).collect();
+        part.forward.respond(prony, times, &drive, Real::from(1.0) / stiffness, roots, record)
+    }
+
+    /// Response of one curve, with the terms of the force of each sample.
+    pub(crate) fn terms(
+        &self,
+        curve: usize,
+        values: &[f64],
+        prony: &Prony,
+        record: impl FnMut(Response<0>, &[Term<0>]),
+    ) -> Result<Roots> {
+        let mut roots = Roots::default();
+        let [contact_point, stiffness] =
+            [self.contact_point(curve, values), self.stiffness(curve, values)].map(Real::from);
+        self.respond(curve, &prony.into(), contact_point, stiffness, &mut roots, record).map(|()| roots)
     }
 
     /// Response of one curve.
     pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
-        let contact_point = self.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
         let mut samples = Vec::with_capacity(self.parts[curve].len());
-        let push = |response: Response<f64>, _: &[Term<f64>]| samples.push(response.into());
-        let stiffness = self.stiffness(curve, values);
-        self.count(curve, prony);
-        self.parts[curve].respond(curve, prony, contact_point, stiffness, &mut Roots::default(), push)?;
+        self.terms(curve, values, prony, |response, _| samples.push(response.into()))?;
         Ok(samples)
     }
 
     /// The force that a curve would measure, from the force of its contact.
     pub(crate) fn measured(&self, curve: usize, values: &[f64], contact: impl Iterator<Item = f64>) -> Vec<f64> {
-        let value = |kind: Kind| self.value_of(values, kind).unwrap_or_default();
-        let [offset, drift, tilt, drag] =
-            [Kind::Offset(curve), Kind::Drift(curve), Kind::Tilt(curve), Kind::Drag(curve)].map(value);
-        let part = &self.parts[curve];
-        let (times, drive) = (part.experiment.protocol.times(), part.experiment.protocol.drive());
+        let own = self.parameters.iter().zip(values).filter(|(parameter, _)| parameter.kind.curve() == Some(curve));
+        let linear: Vec<_> = own.filter_map(|(parameter, value)| Some((parameter.kind.linear()?, value))).collect();
         let of = |(k, force): (usize, f64)| {
-            force + offset + drift * (times[k] - times[0]) + tilt * (drive[k] - drive[0]) + drag * part.speed[k]
+            let each = linear.iter().map(|&(property, value)| value * self.parts[curve].force_over(property, k));
+            each.fold(force, |sum, part| sum + part)
         };
         contact.enumerate().map(of).collect()
     }
@@ -281,80 +308,80 @@ impl Problem {
         Ok(self.measured(curve, values, samples.iter().map(|sample| sample.force)))
     }
 
-    /// Model less data of one curve, not made white.
-    fn deviations(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
-        let mut force = self.force(curve, values, prony)?;
-        for (force, data) in force.iter_mut().zip(&self.parts[curve].data) {
-            *force -= data;
-        }
-        Ok(force)
-    }
-
-    /// Model less data of each curve, not made white.
-    pub(crate) fn all_deviations(&self, values: &[f64]) -> Result<Vec<Vec<f64>>> {
-        let prony = self.prony(values)?;
-        (0..self.parts.len()).map(|curve| self.deviations(curve, values, &prony)).collect()
+    /// Columns of the curves, made white, one after the other.
+    pub(crate) fn white(&self, columns: impl IntoIterator<Item = Vec<f64>>) -> Vec<f64> {
+        let white = |(part, mut column): (&Part, Vec<f64>)| {
+            part.whiten(&mut column);
+            column
+        };
+        self.parts.iter().zip(columns).flat_map(white).collect()
     }
 
     /// Model less data of all curves, made white.
     pub(crate) fn residuals(&self, coordinates: &[f64]) -> Result<Vec<f64>> {
-        let mut all = Vec::with_capacity(self.len());
-        for (part, mut deviations) in self.parts.iter().zip(self.all_deviations(&self.values(coordinates))?) {
-            part.whiten(&mut deviations);
-            all.append(&mut deviations);
-        }
-        Ok(all)
+        let values = self.values(coordinates);
+        let prony = self.prony(&values)?;
+        let deviations = |curve: usize| {
+            let force = self.force(curve, &values, &prony)?;
+            Ok(force.iter().zip(&self.parts[curve].curve.force).map(|(force, data)| force - data).collect())
+        };
+        let columns: Vec<Vec<f64>> = (0..self.parts.len()).map(deviations).collect::<Result<_>>()?;
+        Ok(self.white(columns))
     }
 
     /// Derivatives of the residuals by the free coordinates.
     pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
         let values = self.values(coordinates);
-        let material = self.free().filter(|parameter| matches!(parameter.kind, Kind::Material(_))).count();
+        let material = self.free().filter(|parameter| parameter.kind == Kind::Material).count();
+        let moved = |column: usize| [WIDTH, -WIDTH].map(|width| self.moved(coordinates, column, width));
         let count = self.model.parameters().len();
-        let moved = |column: usize, width: f64| {
-            let mut moved = coordinates.to_vec();
-            moved[column] += width;
-            self.values(&moved)[..count].to_vec()
-        };
-        let (prony, slopes) = self.model.derived(&values[..count], self.window, material, moved)?;
+        let all = std::iter::once(values.clone()).chain((0..material).flat_map(moved));
+        let sums = self.model.sums(&all.map(|values| values[..count].to_vec()).collect::<Vec<_>>(), self.window)?;
+        let prony = &sums[0];
         let mut jacobian = Mat::zeros(self.len(), coordinates.len());
-        let (mut roots, mut row) = (Roots::default(), 0);
+        let mut row = 0;
         for (curve, part) in self.parts.iter().enumerate() {
-            let acts = |parameter: &Parameter| parameter.kind.curve().is_none_or(|only| only == curve);
-            let columns = || self.free().enumerate().filter(|(_, parameter)| acts(parameter));
             let mut put = |column: usize, mut slopes: Vec<f64>| {
                 part.whiten(&mut slopes);
                 slopes.into_iter().enumerate().for_each(|(k, slope)| jacobian[(row + k, column)] = slope);
             };
-            for (column, parameter) in columns().filter(|(_, parameter)| parameter.kind.is_linear()) {
-                put(column, self.linear_slopes(curve, parameter));
+            let mut curved = Vec::new();
+            for (column, parameter) in self.free().enumerate() {
+                match parameter.kind.linear() {
+                    _ if parameter.kind.curve().is_some_and(|only| only != curve) => {}
+                    Some(property) => {
+                        put(column, (0..part.len()).map(|k| parameter.unit * part.force_over(property, k)).collect())
+                    }
+                    None => curved.push((column, parameter)),
+                }
             }
-            let curved: Vec<_> = columns().filter(|(_, parameter)| !parameter.kind.is_linear()).collect();
-            for lanes in curved.chunks(LANES) {
+            let mut roots = self.terms(curve, &values, prony, |_, _| {})?;
+            for lanes in curved.chunks(LANES - 1) {
                 let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
-                    Dual::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
+                    Real::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
                 };
-                let of = |values: &[f64], slope: &dyn Fn(&Prony) -> f64, at: usize| {
-                    dual(values[at], &|column, _| slopes.get(column).map_or(0.0, slope))
+                let terms = |of: fn(&Prony) -> &Vec<f64>| -> Vec<Real<LANES>> {
+                    let slope = |at: usize, column: usize| match sums.get(2 * column + 1..2 * column + 3) {
+                        Some([up, down]) => (of(up)[at] - of(down)[at]) / (2.0 * WIDTH),
+                        _ => 0.0,
+                    };
+                    let term = |(at, &value)| dual(value, &|column, _| slope(at, column));
+                    of(prony).iter().enumerate().map(term).collect()
                 };
-                let terms = 0..prony.moduli.len();
-                let derived = Prony {
-                    moduli: terms.clone().map(|at| of(&prony.moduli, &|by| by.moduli[at], at)).collect(),
-                    rates: terms.map(|at| of(&prony.rates, &|by| by.rates[at], at)).collect(),
+                let derived = Prony { moduli: terms(|prony| &prony.moduli), rates: terms(|prony| &prony.rates) };
+                let measured = |value: f64, property: Property| {
+                    dual(value, &|_, parameter| match parameter.kind {
+                        Kind::Measurement(own, _) if own != property => 0.0,
+                        Kind::Measurement(..) if parameter.scale == Scale::Linear => parameter.unit,
+                        Kind::Measurement(..) => value,
+                        Kind::Material => 0.0,
+                    })
                 };
-                let contact_point = self.value_of(&values, Kind::ContactPoint(curve)).unwrap_or_default();
-                let stiffness = self.stiffness(curve, &values);
-                let shift = dual(contact_point, &|_, parameter| match parameter.kind {
-                    Kind::ContactPoint(_) => parameter.unit,
-                    _ => 0.0,
-                });
-                let spring =
-                    dual(stiffness, &|_, parameter| if parameter.kind == Kind::Stiffness { stiffness } else { 0.0 });
-                self.count(curve, &prony);
-                self.count(curve, &derived);
-                part.respond(curve, &prony, contact_point, stiffness, &mut roots, |_, _| {})?;
+                let shift = measured(self.contact_point(curve, &values), Property::ContactPoint);
+                let spring = measured(self.stiffness(curve, &values), Property::Stiffness);
                 let mut forces = Vec::with_capacity(part.len());
-                part.respond(curve, &derived, shift, spring, &mut roots, |response, _| forces.push(response.force))?;
+                let record = |response: Response<LANES>, _: &[Term<LANES>]| forces.push(response.force);
+                self.respond(curve, &derived, shift, spring, &mut roots, record)?;
                 for (lane, &(column, _)) in lanes.iter().enumerate() {
                     put(column, forces.iter().map(|force| force.slope(lane)).collect());
                 }
@@ -362,18 +389,5 @@ impl Problem {
             row += part.len();
         }
         Ok(jacobian)
-    }
-
-    /// Derivative by a parameter in which the force is linear.
-    fn linear_slopes(&self, curve: usize, parameter: &Parameter) -> Vec<f64> {
-        let part = &self.parts[curve];
-        let (times, drive) = (part.experiment.protocol.times(), part.experiment.protocol.drive());
-        let of = |k: usize| match parameter.kind {
-            Kind::Offset(_) => 1.0,
-            Kind::Drift(_) => times[k] - times[0],
-            Kind::Tilt(_) => drive[k] - drive[0],
-            _ => part.speed[k],
-        };
-        (0..part.len()).map(|k| parameter.unit * of(k)).collect()
     }
 }

@@ -58,10 +58,9 @@ impl Protocol {
     /// # Ok::<(), viscocontact_identify::Error>(())
     /// ```
     pub fn builder(start: f64, interval: f64) -> ProtocolBuilder {
-        ProtocolBuilder { interval, times: vec![0.0], drive: vec![start], error: None }.checked(|builder| {
-            within("start of the drive", start, true, "finite")?;
-            positive("interval of samples", builder.interval)
-        })
+        let checked = within("start of the drive", start, true, "finite");
+        let error = checked.and_then(|_| positive("interval of samples", interval)).err();
+        ProtocolBuilder { interval, times: vec![0.0], drive: vec![start], error }
     }
 
     /// A trapezoid: from 0 to `depth` \[m\], held there, and back to 0, in the `durations` \[s\] of rise, hold and fall;
@@ -189,22 +188,13 @@ const ROUNDING: f64 = 1e-9;
 const MOST_SAMPLES: f64 = 1e8;
 
 impl ProtocolBuilder {
-    /// Runs a check unless an earlier one failed.
-    fn checked(mut self, check: impl FnOnce(&ProtocolBuilder) -> Result<f64>) -> ProtocolBuilder {
-        if self.error.is_none() {
-            self.error = check(&self).err();
-        }
-        self
-    }
-
-    /// `count` equal intervals over a `duration`, with the drive as a function of the share of it.
-    fn extend(mut self, count: usize, duration: f64, drive: impl Fn(f64) -> f64) -> ProtocolBuilder {
-        if self.error.is_some() {
-            return self;
-        }
-        let start = self.end()[0];
-        for k in 1..=count {
-            let share = k as f64 / count as f64;
+    /// `count` equal intervals over a `duration`, with the drive as a function of the share of it, unless a value was refused.
+    fn extend(mut self, checked: Result<f64>, count: f64, duration: f64, drive: impl Fn(f64) -> f64) -> Self {
+        let allowed = "at most 1e8: check the unit of time";
+        let checked = checked.and_then(|_| within("samples of a piece", count, count <= MOST_SAMPLES, allowed));
+        self.error = self.error.or(checked.err());
+        let ([start, _], count) = (self.end(), if self.error.is_none() { count } else { 0.0 });
+        for share in (1..=count as usize).map(|k| k as f64 / count) {
             self.times.push(start + share * duration);
             self.drive.push(drive(share));
         }
@@ -224,22 +214,15 @@ impl ProtocolBuilder {
     /// Samples the pieces that follow at another `interval` \[s\].
     pub fn every(mut self, interval: f64) -> ProtocolBuilder {
         self.interval = interval;
-        self.checked(|builder| positive("interval of samples", builder.interval))
+        self.extend(positive("interval of samples", interval), 0.0, 0.0, |_| 0.0)
     }
 
     /// On a straight line to `drive` \[m\] within `duration` \[s\].
     pub fn line(self, drive: f64, duration: f64) -> ProtocolBuilder {
         let (from, count) = (self.end()[1], self.intervals(duration));
-        let checked = self.checked(|_| {
-            within("drive", drive, true, "finite")?;
-            positive("duration of a line", duration)?;
-            within("samples of a line", count, count <= MOST_SAMPLES, "at most 1e8: check the unit of time")
-        });
-        checked.extend(
-            count as usize,
-            duration,
-            |share| if share == 1.0 { drive } else { from + share * (drive - from) },
-        )
+        let checked = within("drive", drive, true, "finite").and_then(|_| positive("duration of a line", duration));
+        let at = |share: f64| if share == 1.0 { drive } else { from + share * (drive - from) };
+        self.extend(checked, count, duration, at)
     }
 
     /// At the same drive for `duration` \[s\]; 0 is no hold.
@@ -253,15 +236,13 @@ impl ProtocolBuilder {
     /// lower by (π/samples)²/3.
     pub fn oscillate(self, amplitude: f64, frequency: f64, periods: usize, samples: usize) -> ProtocolBuilder {
         let (middle, count) = (self.end()[1], periods as f64 * samples as f64);
-        let checked = self.checked(|_| {
-            positive("amplitude", amplitude)?;
-            positive("frequency", frequency)?;
-            within("periods", periods as f64, periods > 0, "> 0")?;
-            within("samples of a period", samples as f64, samples >= 4, ">= 4")?;
-            within("samples of an oscillation", count, count <= MOST_SAMPLES, "at most 1e8")
-        });
+        let checked = positive("amplitude", amplitude)
+            .and_then(|_| positive("frequency", frequency))
+            .and_then(|_| within("periods", periods as f64, periods > 0, "> 0"))
+            .and_then(|_| within("samples of a period", samples as f64, samples >= 4, ">= 4"));
         let sine = |share: f64| if share == 1.0 { 0.0 } else { (TAU * periods as f64 * share).sin() };
-        checked.extend(count as usize, periods as f64 / frequency, |share| middle + amplitude * sine(share))
+        let duration = periods as f64 / frequency;
+        self.extend(checked, count, duration, |share| middle + amplitude * sine(share))
     }
 
     /// The protocol.

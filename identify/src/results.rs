@@ -36,25 +36,14 @@ pub struct Summary {
 }
 
 /// Columns of a table of results.
-const COLUMNS: [&str; 11] = [
-    "model",
-    "aicc",
-    "parameter",
-    "value",
-    "unit",
-    "deviation",
-    "scale of deviation",
-    "robust deviation",
-    "lower 95 %",
-    "upper 95 %",
-    "warnings",
-];
+const COLUMNS: &str =
+    "model,aicc,parameter,value,unit,deviation,scale of deviation,robust deviation,lower 95 %,upper 95 %,warnings";
 
 /// The name of the model, without its settings.
 impl fmt::Display for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let debug = format!("{self:?}");
-        f.pad(debug.split(" {").next().unwrap_or(&debug))
+        f.pad(if let Model::Custom(law) = self { law.name } else { debug.split(" {").next().unwrap_or(&debug) })
     }
 }
 
@@ -132,27 +121,22 @@ impl Summary {
     /// # Errors
     /// [`Error::Unwritable`].
     pub fn write_csv(summaries: &[Summary], mut to: impl Write) -> Result<()> {
-        let unwritable = |error: std::io::Error| Error::Unwritable { reason: error.to_string() };
-        let mut write = |fields: &[String]| {
-            let quoted = |field: &String| match field.contains([',', '"']) {
-                true => format!("\"{}\"", field.replace('"', "\"\"")),
-                false => field.clone(),
-            };
-            writeln!(to, "{}", fields.iter().map(quoted).collect::<Vec<_>>().join(","))
+        let quoted = |field: &str| match field.contains([',', '"']) {
+            true => format!("\"{}\"", field.replace('"', "\"\"")),
+            false => field.to_owned(),
         };
-        write(&COLUMNS.map(str::to_owned)).map_err(unwritable)?;
-        for summary in summaries {
-            let warnings: Vec<String> = summary.warnings.iter().map(|warning| warning.to_string()).collect();
-            for Estimate { name, value, scale, deviation, robust_deviation, interval, .. } in &summary.estimates {
-                let [low, high] = interval.map(|limit| limit.to_string());
-                let (model, aicc, scale) = (summary.model.to_string(), summary.aicc.to_string(), format!("{scale:?}"));
-                let [value, deviation, robust] = [value, deviation, robust_deviation].map(f64::to_string);
-                let (unit, warnings) = (unit(name).to_owned(), warnings.join("; "));
-                write(&[model, aicc, name.clone(), value, unit, deviation, scale, robust, low, high, warnings])
-                    .map_err(unwritable)?;
+        let mut lines = vec![COLUMNS.to_owned()];
+        for Summary { model, aicc, estimates, warnings, .. } in summaries {
+            let model = quoted(&model.to_string());
+            let warnings = quoted(&warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
+            for Estimate { name, value, scale, deviation, robust_deviation, interval: [low, high], .. } in estimates {
+                let (name, unit) = (quoted(name), unit(name));
+                let numbers = format!("{value},{unit},{deviation},{scale:?},{robust_deviation},{low},{high}");
+                lines.push(format!("{model},{aicc},{name},{numbers},{warnings}"));
             }
         }
-        to.flush().map_err(unwritable)
+        let written = to.write_all((lines.join("\n") + "\n").as_bytes()).and_then(|()| to.flush());
+        written.map_err(|error| Error::Unwritable { reason: error.to_string() })
     }
 
     /// Writes some fits as a JSON array of objects with the names of the fields of [`Summary`].

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::error::{Result, within};
 use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
-use crate::start::scatter;
+use crate::statistics::{mean, range, scatter};
 
 /// Drives that differ from the greatest by less than this share of the range belong to its hold.
 const SAME_DRIVE: f64 = 1e-2;
@@ -42,7 +42,7 @@ impl Curve {
     /// # Errors
     /// As [`Curve::within`].
     pub fn approach(&self) -> Result<Curve> {
-        self.samples(0..self.top().0 + 1)
+        self.samples(0..self.top(SAME_DRIVE).0 + 1)
     }
 
     /// The curve until the drive leaves its greatest value: approach and hold.
@@ -50,7 +50,7 @@ impl Curve {
     /// # Errors
     /// As [`Curve::within`].
     pub fn loading(&self) -> Result<Curve> {
-        self.samples(0..self.top().1 + 1)
+        self.samples(0..self.top(SAME_DRIVE).1 + 1)
     }
 
     /// The curve until the force returns to the base line before the contact: without the pull-off of an adhesive tip.
@@ -58,8 +58,8 @@ impl Curve {
     /// # Errors
     /// As [`Curve::within`].
     pub fn until_release(&self) -> Result<Curve> {
-        let (base, last) = (self.base_line(), self.top().1);
-        let is_released = |block: &[f64]| block.iter().sum::<f64>() <= base * block.len() as f64;
+        let (base, last) = (self.base_line(), self.top(SAME_DRIVE).1);
+        let is_released = |block: &[f64]| mean(block) <= base;
         let end = self.force[last..].windows(BLOCK).position(is_released).map_or(self.force.len(), |at| last + at);
         self.samples(0..end)
     }
@@ -68,35 +68,23 @@ impl Curve {
     /// it, and [`Curve::until_release`] leaves it out.
     pub fn pull_off(&self) -> Option<f64> {
         let base = self.base_line();
-        let after = &self.force[self.top().1..];
-        let means = after.windows(BLOCK).map(|block| block.iter().sum::<f64>() / BLOCK as f64 - base);
-        let least = means.fold(0.0, f64::min);
-        let greatest = self.force.iter().fold(0.0, |most: f64, force| most.max(force - base));
+        let after = &self.force[self.top(SAME_DRIVE).1..];
+        let pull = after.windows(BLOCK).map(|block| base - mean(block)).fold(0.0, f64::max);
         // less than a hundredth of the force is a base line that is not straight
-        let is_felt = -least > PULL * scatter(&self.force) / (BLOCK as f64).sqrt() && -least > 0.01 * greatest;
-        is_felt.then_some(-least)
-    }
-
-    /// First and last sample near the greatest drive.
-    fn top(&self) -> (usize, usize) {
-        let drive = self.experiment.protocol.drive();
-        let [low, high] = drive.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(*z), b.max(*z)]);
-        let is_near = |z: &f64| *z >= high - SAME_DRIVE * (high - low);
-        (drive.iter().position(is_near).unwrap_or(0), drive.iter().rposition(is_near).unwrap_or(0))
+        let least = (PULL * scatter(&self.force) / (BLOCK as f64).sqrt()).max(0.01 * (range(&self.force)[1] - base));
+        (pull > least).then_some(pull)
     }
 
     /// Mean force of the first twentieth of the samples up to the top.
     fn base_line(&self) -> f64 {
-        let count = (self.top().0 / 20).max(1);
-        self.force[..count].iter().sum::<f64>() / count as f64
+        mean(&self.force[..(self.top(SAME_DRIVE).0 / 20).max(1)])
     }
 
     fn samples(&self, samples: Range<usize>) -> Result<Curve> {
         let count = samples.len() as f64;
         within("samples of the segment", count, count >= 2.0, "at least 2")?;
-        let protocol = &self.experiment.protocol;
-        let protocol =
-            Protocol::new(protocol.times()[samples.clone()].to_vec(), protocol.drive()[samples.clone()].to_vec())?;
+        let Protocol { times, drive } = &self.experiment.protocol;
+        let protocol = Protocol::new(times[samples.clone()].to_vec(), drive[samples.clone()].to_vec())?;
         let experiment = Experiment { protocol, ..self.experiment.clone() };
         Curve::new(experiment, self.force[samples].to_vec())
     }

@@ -26,8 +26,6 @@ const RIDGE: f64 = 1e-8;
 /// −ln of the least share of a spectrum that is summed, and the spacing of its nodes: the trapezoidal rule errs by exp(−π²/spacing), below 1e-8.
 const LEAST_SHARE: f64 = 23.0;
 const NODES: f64 = 0.5;
-/// Width of coordinates over which derivatives of the terms are taken.
-const DIFFERENCE: f64 = 1e-5;
 
 /// E(t).
 type Relaxation = Box<dyn Fn(f64) -> f64>;
@@ -95,31 +93,7 @@ fn times([first, last]: [f64; 2], count: usize) -> Vec<f64> {
 impl Model {
     /// The exponentials of the model for data between two times \[s\].
     pub(crate) fn prony(&self, parameters: &[f64], window: [f64; 2]) -> Result<Prony> {
-        self.check(parameters)?;
-        Ok(self.sums(&[parameters.to_vec()], window).swap_remove(0))
-    }
-
-    /// The exponentials, and their derivatives by some coordinates: `moved` gives the parameters where a coordinate is larger by some width.
-    pub(crate) fn derived(
-        &self,
-        parameters: &[f64],
-        window: [f64; 2],
-        coordinates: usize,
-        moved: impl Fn(usize, f64) -> Vec<f64>,
-    ) -> Result<(Prony, Vec<Prony>)> {
-        self.check(parameters)?;
-        let both =
-            (0..coordinates).flat_map(|coordinate| [moved(coordinate, DIFFERENCE), moved(coordinate, -DIFFERENCE)]);
-        let all: Vec<Vec<f64>> = std::iter::once(parameters.to_vec()).chain(both).collect();
-        let mut sums = self.sums(&all, window);
-        let slope =
-            |up: &[f64], down: &[f64]| up.iter().zip(down).map(|(up, down)| (up - down) / (2.0 * DIFFERENCE)).collect();
-        let by = |pair: &[Prony]| Prony {
-            moduli: slope(&pair[0].moduli, &pair[1].moduli),
-            rates: slope(&pair[0].rates, &pair[1].rates),
-        };
-        let slopes = sums[1..].chunks_exact(2).map(by).collect();
-        Ok((sums.swap_remove(0), slopes))
+        Ok(self.sums(&[parameters.to_vec()], window)?.swap_remove(0))
     }
 
     /// Refuses parameters outside their ranges.
@@ -145,7 +119,8 @@ impl Model {
     }
 
     /// The exponentials of some parameters, of which all are near the first.
-    fn sums(&self, all: &[Vec<f64>], window: [f64; 2]) -> Vec<Prony> {
+    pub(crate) fn sums(&self, all: &[Vec<f64>], window: [f64; 2]) -> Result<Vec<Prony>> {
+        self.check(&all[0])?;
         let few = |parameters: &Vec<f64>| match (*self, parameters.as_slice()) {
             (Model::Elastic, &[e]) => Some(Prony::of([(e, 0.0)])),
             (Model::Maxwell, &[e0, tau]) => Some(Prony::of([(e0, 1.0 / tau)])),
@@ -157,18 +132,18 @@ impl Model {
             _ => None,
         };
         if let Some(sums) = all.iter().map(few).collect() {
-            return sums;
+            return Ok(sums);
         }
         let rates = self.rates(&all[0], window);
         let laws: Vec<_> = all.iter().map(|parameters| self.law(parameters, &rates)).collect();
-        nearest_sums(&rates, &laws, [FIRST * window[0], window[1]])
+        Ok(nearest_sums(&rates, &laws, [FIRST * window[0], window[1]]))
     }
 
     /// E(t) of a model that is no sum of a few exponentials, between the times that some rates show.
     fn law(&self, parameters: &[f64], rates: &[f64]) -> Relaxation {
         match (*self, parameters) {
-            (Model::PowerLaw { cutoff }, &[e1, alpha]) => Box::new(move |t| e1 * (t + cutoff).powf(-alpha)),
-            (Model::PowerLawSolid { cutoff }, &[e1, alpha, einf]) => {
+            (Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff }, &[e1, alpha, ref rest @ ..]) => {
+                let einf = rest.first().copied().unwrap_or_default();
                 Box::new(move |t| einf + e1 * (t + cutoff).powf(-alpha))
             }
             (Model::Stretched, &[e0, einf, tau, beta]) => {

@@ -6,8 +6,6 @@ use viscocontact::numeric::non_negative_least_squares;
 
 use crate::error::{Error, Result};
 use crate::fit::Fit;
-use crate::forward::{Response, Roots, Term};
-use crate::parameters::Kind;
 use crate::problem::Problem;
 use crate::series::Prony;
 
@@ -74,49 +72,25 @@ impl Fit {
     /// # Errors
     /// If the iteration fails.
     pub fn free_spectrum(&self) -> Result<FreeSpectrum> {
-        let problem = self.problem()?;
-        let rates = rates(problem.window);
-        let mut prony = nearest(self, &rates);
-        let mut last: Option<Vec<f64>> = None;
-        let whitened = |columns: &mut Mat<f64>, column: usize, values: &[Vec<f64>]| {
-            let mut row = 0;
-            for (part, values) in problem.parts.iter().zip(values) {
-                let mut values = values.clone();
-                part.whiten(&mut values);
-                for value in values {
-                    columns[(row, column)] = value;
-                    row += 1;
-                }
-            }
-        };
+        let (problem, rates) = (&self.problem, rates(self.problem.window));
+        let mut prony = nearest(&self.prony(), &rates);
+        // the data without offset, drift, tilt and drag
+        let bare = problem.parts.iter().enumerate().map(|(curve, part)| {
+            let rest = problem.measured(curve, &self.values, part.curve.force.iter().map(|_| 0.0));
+            part.curve.force.iter().zip(rest).map(|(data, rest)| data - rest).collect()
+        });
+        let data = problem.white(bare);
+        let data = Col::from_fn(data.len(), |k| data[k]);
+        let mut last = Col::full(data.nrows(), f64::INFINITY);
         for round in 1..=MAX_ROUNDS {
-            let basis = basis(&problem, self.values(), &prony)?;
-            let mut matrix = Mat::zeros(problem.len(), rates.len() + 1);
-            for (column, of_term) in basis.iter().enumerate() {
-                whitened(&mut matrix, column, of_term);
-            }
-            // the data without offset, drift and drag
-            let bare: Vec<Vec<f64>> = problem
-                .parts
-                .iter()
-                .enumerate()
-                .map(|(curve, part)| {
-                    let rest = problem.measured(curve, self.values(), part.data.iter().map(|_| 0.0));
-                    part.data.iter().zip(rest).map(|(data, rest)| data - rest).collect()
-                })
-                .collect();
-            whitened(&mut matrix, rates.len(), &bare);
-            let (moduli, smoothing, sum) = smoothed(&matrix);
-            let forces: Vec<f64> =
-                (0..problem.len()).map(|k| (0..rates.len()).map(|j| matrix[(k, j)] * moduli[j]).sum()).collect();
-            let greatest = forces.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
-            let change = last.as_ref().map_or(f64::INFINITY, |last| {
-                last.iter().zip(&forces).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
-            });
+            let basis = basis(problem, &self.values, &prony)?;
+            let (moduli, smoothing, sum) = smoothed(&basis, &data);
+            let forces = &basis * Col::from_fn(moduli.len(), |j| moduli[j]);
+            let (greatest, change) = (forces.norm_max(), (&forces - last).norm_max());
             let total: f64 = moduli.iter().sum();
             prony = Prony { moduli: moduli.iter().map(|m| m.max(LEAST * total)).collect(), rates: rates.clone() };
             if change <= AGREED * greatest || round == MAX_ROUNDS && change <= 1e-3 * greatest {
-                let of_curve = |curve: usize| problem.force(curve, self.values(), &prony);
+                let of_curve = |curve: usize| problem.force(curve, &self.values, &prony);
                 return Ok(FreeSpectrum {
                     equilibrium: moduli[0],
                     terms: rates[1..].iter().zip(&moduli[1..]).map(|(rate, &modulus)| (1.0 / rate, modulus)).collect(),
@@ -126,7 +100,7 @@ impl Fit {
                     rounds: round,
                 });
             }
-            last = Some(forces);
+            last = forces;
         }
         let reason = "the spectrum and the extent of the contact do not agree: fit a model with few parameters instead";
         Err(Error::NotConverged { iterations: MAX_ROUNDS, reason })
@@ -138,57 +112,39 @@ impl Fit {
     /// # Errors
     /// As [`Fit::free_spectrum`].
     pub fn decades(&self) -> Result<Vec<Decade>> {
-        let problem = self.problem()?;
-        let [shortest, longest] = problem.window;
+        let [shortest, longest] = self.problem.window;
         let first = shortest.log10().floor();
         let count = (longest.log10() - first).ceil().max(1.0) as usize + 2;
         let edges: Vec<[f64; 2]> =
             (0..count).map(|k| [0.0, 1.0].map(|end| 10.0_f64.powf(first + k as f64 + end))).collect();
-        // three times in each decade share its modulus
+        // the equilibrium, and three times in each decade, which share its modulus
         let times = edges.iter().flat_map(|[low, _]| [1.0, 3.0, 5.0].map(|sixth| low * 10.0_f64.powf(sixth / 6.0)));
         let rates: Vec<f64> = std::iter::once(0.0).chain(times.map(|time| 1.0 / time)).collect();
-        let total = self.modulus(0.0);
-        let prony = Prony { moduli: vec![LEAST * total; rates.len()], rates: rates.clone() };
-        let mut path = self.prony();
-        let own = path.moduli.len();
-        path.moduli.extend(prony.moduli);
-        path.rates.extend(prony.rates);
-        let basis = basis(&problem, self.values(), &path)?;
-        let column = |decade: usize| -> Vec<f64> {
-            let of = |term: usize| &basis[own + term];
-            let terms: &[usize] = if decade == 0 { &[0] } else { &[3 * decade - 2, 3 * decade - 1, 3 * decade] };
-            let mut all = Vec::with_capacity(problem.len());
-            for (curve, part) in problem.parts.iter().enumerate() {
-                let share = 1.0 / terms.len() as f64;
-                let mut sum: Vec<f64> =
-                    (0..part.len()).map(|k| terms.iter().map(|&t| of(t)[curve][k] * share).sum()).collect();
-                part.whiten(&mut sum);
-                all.append(&mut sum);
-            }
-            all
+        let share = |term: usize, decade: usize| match term {
+            0 => f64::from(u8::from(decade == 0)),
+            _ => f64::from(u8::from(term.div_ceil(3) == decade)) / 3.0,
         };
-        let columns: Vec<Vec<f64>> = (0..=count).map(column).collect();
-        let sigma = self.sigma();
+        let (total, prony) = (self.modulus(0.0), self.prony());
+        let mut path = prony.clone();
+        path.moduli.resize(prony.moduli.len() + rates.len(), LEAST * total);
+        path.rates.extend(&rates);
+        let basis = basis(&self.problem, &self.values, &path)?;
+        let columns =
+            basis.subcols(prony.moduli.len(), rates.len()) * Mat::from_fn(rates.len(), count + 1, share) / self.sigma();
         // nobody expects more in a decade than the modulus at the shortest times: a weak prior, without which decades that the data do
         // not see have no deviation
-        let scaled = Mat::from_fn(count + 1, count + 1, |i, j| {
-            let product: f64 = columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
-            product * (total / sigma).powi(2) + if i == j { 1.0 } else { 0.0 }
-        });
+        let scaled = total * total * columns.transpose() * &columns + Mat::<f64>::identity(count + 1, count + 1);
         let inverse = scaled.llt(Side::Lower).map_err(|_| Error::NotConverged {
             iterations: 0,
             reason: "the forces of the decades are not finite: check the times and the noise",
         })?;
         let inverse = inverse.inverse();
-        let prony = self.prony();
-        let modulus = |[low, high]: [f64; 2]| {
-            let inside =
-                prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| (low..high).contains(&(1.0 / **rate)));
-            inside.fold(0.0, |sum, (modulus, _)| sum + modulus)
-        };
         let decade = |(k, times): (usize, [f64; 2])| {
+            let is_inside = |rate: f64| (times[0]..times[1]).contains(&(1.0 / rate));
+            let inside = prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| is_inside(**rate));
+            let modulus = inside.fold(0.0, |sum, (modulus, _)| sum + modulus);
             let deviation = total * inverse[(k + 1, k + 1)].sqrt();
-            Decade { times, modulus: modulus(times), deviation, is_determined: deviation < DETERMINED * total }
+            Decade { times, modulus, deviation, is_determined: deviation < DETERMINED * total }
         };
         Ok(edges.into_iter().enumerate().map(decade).collect())
     }
@@ -202,51 +158,36 @@ fn rates([shortest, longest]: [f64; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain((0..=count).map(|k| 1.0 / time(k))).collect()
 }
 
-/// The modulus of a fit, shared out to the nearest rates.
-fn nearest(fit: &Fit, rates: &[f64]) -> Prony {
-    let prony = fit.prony();
+/// A relaxation, shared out to the nearest rates, of which the first is 0.
+fn nearest(prony: &Prony, rates: &[f64]) -> Prony {
     let total: f64 = prony.moduli.iter().sum();
     let mut moduli = vec![LEAST * total; rates.len()];
     for (modulus, rate) in prony.moduli.iter().zip(&prony.rates) {
-        let distance = |other: f64| {
-            if *rate == 0.0 || other == 0.0 {
-                if *rate == other { 0.0 } else { 1e9 }
-            } else {
-                (rate / other).ln().abs()
-            }
-        };
-        let at = (0..rates.len()).min_by(|&a, &b| distance(rates[a]).total_cmp(&distance(rates[b]))).unwrap_or(0);
-        moduli[at] += modulus;
+        let distance = |at: &usize| (rate / rates[*at]).ln().abs();
+        let nearest = (1..rates.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).filter(|_| *rate > 0.0);
+        moduli[nearest.unwrap_or(0)] += modulus;
     }
     Prony { moduli, rates: rates.to_vec() }
 }
 
-/// Force of each term per unit modulus, by term, curve and sample.
-fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Vec<Vec<Vec<f64>>>> {
-    let mut basis = vec![Vec::with_capacity(problem.parts.len()); prony.moduli.len()];
-    for (curve, part) in problem.parts.iter().enumerate() {
-        let contact_point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
-        let mut columns = vec![Vec::with_capacity(part.len()); prony.moduli.len()];
-        let record = |_: Response<f64>, terms: &[Term<f64>]| {
-            for (column, (term, modulus)) in columns.iter_mut().zip(terms.iter().zip(&prony.moduli)) {
-                column.push(term.force / modulus);
+/// Force of each term per unit modulus, made white.
+fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Mat<f64>> {
+    let mut columns = vec![Vec::with_capacity(problem.parts.len()); prony.moduli.len()];
+    for curve in 0..problem.parts.len() {
+        columns.iter_mut().for_each(|column| column.push(Vec::new()));
+        problem.terms(curve, values, prony, |_, terms| {
+            for ((column, term), modulus) in columns.iter_mut().zip(terms).zip(&prony.moduli) {
+                column[curve].push(term.force.value() / modulus);
             }
-        };
-        let stiffness = problem.stiffness(curve, values);
-        part.respond(curve, prony, contact_point, stiffness, &mut Roots::default(), record)?;
-        for (of_term, column) in basis.iter_mut().zip(columns) {
-            of_term.push(column);
-        }
+        })?;
     }
-    Ok(basis)
+    let white: Vec<Vec<f64>> = columns.into_iter().map(|column| problem.white(column)).collect();
+    Ok(Mat::from_fn(problem.len(), white.len(), |row, column| white[column][row]))
 }
 
-/// The smoothed moduli of the least criterion of cross-validation, with the strength of the smoothing and the sum of squares. The last
-/// column of the matrix is the data.
-fn smoothed(matrix: &Mat<f64>) -> (Vec<f64>, f64, f64) {
-    let count = matrix.ncols() - 1;
-    let all = matrix.transpose() * matrix;
-    let right: Vec<f64> = (0..count).map(|j| all[(j, count)]).collect();
+/// The smoothed moduli of the least criterion of cross-validation, with the strength of the smoothing and the sum of squares.
+fn smoothed(matrix: &Mat<f64>, data: &Col<f64>) -> (Vec<f64>, f64, f64) {
+    let (count, all, right) = (matrix.ncols(), matrix.transpose() * matrix, matrix.transpose() * data);
     // second differences of neighbouring relaxation times; the equilibrium modulus is the first unknown
     let roughness = Mat::from_fn(count - 3, count, |i, j| {
         [(1, 1.0), (2, -2.0), (3, 1.0)].iter().find(|(k, _)| i + k == j).map_or(0.0, |(_, v)| *v)
@@ -263,14 +204,11 @@ fn smoothed(matrix: &Mat<f64>) -> (Vec<f64>, f64, f64) {
         // with G = L Lᵀ, ½ xᵀ G x − hᵀ x is least where |Lᵀ x − L⁻¹ h| is
         let Ok(factor) = gram.llt(Side::Lower) else { continue };
         let lower = factor.L();
-        let mut reduced = Col::from_fn(count, |i| right[i]);
+        let mut reduced = right.clone();
         lower.solve_lower_triangular_in_place(reduced.as_mut());
         let reduced: Vec<f64> = reduced.iter().copied().collect();
         let moduli = non_negative_least_squares(&reduced, count, |i, j| lower[(j, i)]);
-        let product = |j: usize| (0..count).map(|i| all[(j, i)] * moduli[i]).sum::<f64>();
-        let sum = (all[(count, count)] - 2.0 * (0..count).map(|j| moduli[j] * right[j]).sum::<f64>()
-            + (0..count).map(|j| moduli[j] * product(j)).sum::<f64>())
-        .max(0.0);
+        let sum = (matrix * Col::from_fn(count, |j| moduli[j]) - data).squared_norm_l2();
         // degrees of freedom: the trace of the influence matrix over the free unknowns
         let at: Vec<usize> = (0..count).filter(|&j| moduli[j] > 0.0).collect();
         let part = |of: &Mat<f64>| Mat::from_fn(at.len(), at.len(), |i, j| of[(at[i], at[j])]);

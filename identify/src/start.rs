@@ -1,114 +1,84 @@
 //! Where a search begins: the contact point by an elastic fit of the loading, the material by a coarse grid.
 
 use crate::error::{Error, Result};
-use crate::experiment::Experiment;
 use crate::model::Model;
-use crate::parameters::Kind;
+use crate::parameters::{Kind, Parameter, Property};
 use crate::problem::Problem;
+use crate::statistics::is_flat;
 
-/// The variance of a force without contact is above the square of its scatter by less than this over the root of the number of samples:
-/// six deviations of their ratio if the noise is white (J. von Neumann, 1941).
-const NO_CONTACT: f64 = 11.0;
-/// Contact points tried at first, and then between the neighbours of the best.
-const CONTACT_POINTS: usize = 24;
 /// Searches at most.
 const STARTS: usize = 4;
+/// Change of the moduli at which they are scaled to the data.
+const ENOUGH: f64 = 1e-3;
+/// Rounds in which moduli are scaled to the data: through a spring, forces are not proportional to them.
+const ROUNDS: usize = 3;
 /// Values of a time, between the shortest interval and the length of the curve.
 const TIMES: usize = 6;
 
 /// Coordinates from which searches may begin, best first.
 pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
-    let initial = |parameter: &crate::parameters::Parameter| match (parameter.given, parameter.kind) {
+    let initial = |parameter: &Parameter| match (parameter.given, parameter.kind) {
         (Some(value), _) => value,
-        (None, Kind::Stiffness) => problem.parts[0].experiment.stiffness,
+        (None, Kind::Measurement(Property::Stiffness, curve)) => {
+            problem.parts[curve.unwrap_or_default()].curve.experiment.stiffness
+        }
         (None, _) => 0.0,
     };
     let mut values: Vec<f64> = problem.parameters.iter().map(initial).collect();
+    // a body softer than an elastic one would let the tip deeper than it was, perhaps beyond its last elastic state
+    let mut reference = 0.0_f64;
     for (curve, part) in problem.parts.iter().enumerate() {
-        let at = problem.parameters.iter().position(|p| p.kind == Kind::ContactPoint(curve));
-        if let Some(at) = at.filter(|&at| problem.parameters[at].given.is_none()) {
-            let has_offset = problem.parameters.iter().any(|p| p.kind == Kind::Offset(curve) && p.is_free);
-            let give = 1.0 / problem.stiffness(curve, &values);
-            values[at] = contact_point(&part.experiment, &part.data, give, has_offset);
+        let give = 1.0 / problem.stiffness(curve, &values);
+        let find = |property: Property| {
+            problem.parameters.iter().position(|of| of.is_free && of.kind == Kind::Measurement(property, Some(curve)))
+        };
+        let has_offset = find(Property::Offset).is_some();
+        if let Some(at) = find(Property::ContactPoint).filter(|&at| problem.parameters[at].given.is_none()) {
+            values[at] = part.curve.elastic_contact_point(give, has_offset);
         }
+        let [_, modulus, _] = part.curve.elastic_law(problem.contact_point(curve, &values), give, has_offset);
+        reference = reference.max(modulus);
     }
-    let reference = elastic_modulus(problem, &values);
+    let unit = if reference > 0.0 { reference } else { 1.0 };
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
-    let mut failure = None;
+    let mut failure = Error::NoContact { curve: 0 };
     for candidate in candidates(problem.model, problem.window) {
-        for (k, value) in candidate.iter().enumerate() {
-            let unit = if is_modulus(&problem.parameters[k].name) { reference } else { 1.0 };
-            values[k] = problem.parameters[k].given.unwrap_or(value * unit);
+        for ((value, parameter), size) in values.iter_mut().zip(&problem.parameters).zip(candidate) {
+            *value = parameter.given.unwrap_or(if is_modulus(&parameter.name) { size * unit } else { size });
         }
         match scaled(problem, &mut values) {
             Ok(sum) if sum.is_finite() => found.push((sum, problem.coordinates(&values))),
             Ok(_) => {}
-            Err(error) => failure = Some(error),
+            Err(error) => failure = error,
         }
     }
     if found.is_empty() {
-        return Err(failure.unwrap_or(Error::NoContact { curve: 0 }));
+        return Err(failure);
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.truncate(STARTS);
-    Ok(found.into_iter().map(|(_, coordinates)| coordinates).collect())
+    Ok(found.into_iter().take(STARTS).map(|(_, coordinates)| coordinates).collect())
 }
 
 fn is_modulus(name: &str) -> bool {
     name.starts_with('E')
 }
 
-/// The modulus of an elastic body that fits the forces best, at the depths that a spring leaves of the drive: a softer body would let
-/// the tip deeper than it was, perhaps beyond its last elastic state.
-fn elastic_modulus(problem: &Problem, values: &[f64]) -> f64 {
-    let (mut product, mut square) = (0.0, 0.0);
-    for (curve, part) in problem.parts.iter().enumerate() {
-        let tip = &part.experiment.tip;
-        let point = problem.value_of(values, Kind::ContactPoint(curve)).unwrap_or_default();
-        let give = 1.0 / problem.stiffness(curve, values);
-        for (z, force) in part.experiment.protocol.drive().iter().zip(&part.data) {
-            let depth = z - point - give * force.max(0.0);
-            let elastic = part.scale * if depth > 0.0 { tip.level_at(tip.approach(0.0) + depth) } else { 0.0 };
-            if elastic.is_finite() {
-                (product, square) = (product + elastic * part.scale * force, square + elastic * elastic);
-            }
-        }
-    }
-    let modulus = product / square;
-    if modulus.is_finite() && modulus > 0.0 { modulus } else { 1.0 }
-}
-
 /// Refuses curves without contact.
 pub(crate) fn check_contact(problem: &Problem) -> Result<()> {
-    let is_flat = |data: &[f64]| {
-        let count = data.len() as f64;
-        let mean = data.iter().sum::<f64>() / count;
-        let variance = data.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / count;
-        variance <= (1.0 + NO_CONTACT / count.sqrt()) * scatter(data).powi(2)
-    };
-    let flat = problem.parts.iter().position(|part| is_flat(&part.data));
+    let flat = problem.parts.iter().position(|part| is_flat(&part.curve.force));
     flat.map_or(Ok(()), |curve| Err(Error::NoContact { curve }))
-}
-
-/// Standard deviation of the noise, from second differences.
-pub(crate) fn scatter(data: &[f64]) -> f64 {
-    let differences = data.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
-    (differences.sum::<f64>() / (6.0 * data.len().saturating_sub(2).max(1) as f64)).sqrt()
 }
 
 /// Scales the free moduli to the data; returns the sum of squared deviations.
 fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
-    // with a spring, the force is not proportional to the moduli
-    let is_stiff = (0..problem.parts.len()).all(|curve| problem.stiffness(curve, values) == f64::INFINITY);
-    let rounds = if is_stiff { 1 } else { 2 };
     let mut sum = f64::INFINITY;
-    for round in 0..=rounds {
+    for _ in 0..ROUNDS {
         let prony = problem.prony(values)?;
         let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
         for (curve, part) in problem.parts.iter().enumerate() {
             let samples = problem.samples(curve, values, &prony)?;
-            let rest: Vec<f64> = problem.measured(curve, values, samples.iter().map(|_| 0.0));
-            for ((sample, data), rest) in samples.iter().zip(&part.data).zip(rest) {
+            let rest = problem.measured(curve, values, samples.iter().map(|_| 0.0));
+            for ((sample, data), rest) in samples.iter().zip(&part.curve.force).zip(rest) {
                 let (force, data) = (part.scale * sample.force, part.scale * (data - rest));
                 product += force * data;
                 square += force * force;
@@ -116,21 +86,17 @@ fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
             }
         }
         let factor = product / square;
-        if round == rounds {
-            sum = if is_stiff { sum } else { data_square - 2.0 * product + square };
-            break;
-        }
         if !(factor.is_finite() && factor > 0.0) {
             return Ok(f64::INFINITY);
         }
-        sum = data_square - product * factor;
+        sum = data_square - 2.0 * product + square;
+        if (factor - 1.0).abs() < ENOUGH {
+            break;
+        }
         for (value, parameter) in values.iter_mut().zip(&problem.parameters) {
             if is_modulus(&parameter.name) && parameter.given.is_none() {
                 *value *= factor;
             }
-        }
-        if is_stiff {
-            break;
         }
     }
     Ok(sum)
@@ -168,39 +134,4 @@ fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
         let values = values(index);
         grid.iter().flat_map(|first| values.iter().map(move |&value| [&first[..], &[value]].concat())).collect()
     })
-}
-
-/// The contact point for which an elastic law, with an offset if there is one, fits the loading best.
-fn contact_point(experiment: &Experiment, data: &[f64], give: f64, has_offset: bool) -> f64 {
-    let drive = experiment.protocol.drive();
-    let last = (0..data.len()).max_by(|&a, &b| data[a].total_cmp(&data[b])).unwrap_or(0);
-    let lowest = drive[..=last].iter().copied().fold(f64::INFINITY, f64::min);
-    let tip = &experiment.tip;
-    let rest = tip.approach(0.0);
-    let misfit = |point: f64| {
-        // sums of 1, f, f², F, F², f F
-        let mut sums = [0.0; 6];
-        for (z, force) in drive[..=last].iter().zip(data) {
-            let depth = z - point - give * force.max(0.0);
-            let elastic = if depth > 0.0 { tip.level_at(rest + depth) } else { 0.0 };
-            if elastic.is_nan() {
-                return f64::INFINITY;
-            }
-            let terms = [1.0, elastic, elastic * elastic, *force, force * force, elastic * force];
-            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-        }
-        let [count, f, ff, y, yy, fy] = sums;
-        let (ff, yy, fy) =
-            if has_offset { (ff - f * f / count, yy - y * y / count, fy - f * y / count) } else { (ff, yy, fy) };
-        if ff > 0.0 && fy > 0.0 { yy - fy * fy / ff } else { f64::INFINITY }
-    };
-    let (mut low, mut high) = (lowest, drive[last]);
-    let mut best = low;
-    for _ in 0..3 {
-        let at = |k: usize| low + (high - low) * k as f64 / CONTACT_POINTS as f64;
-        let k = (0..CONTACT_POINTS).min_by(|&a, &b| misfit(at(a)).total_cmp(&misfit(at(b)))).unwrap_or(0);
-        best = at(k);
-        (low, high) = (at(k.saturating_sub(1)), at(k + 1));
-    }
-    best
 }

@@ -2,6 +2,43 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
+/// Standard deviations of a normal distribution within which 95 % of the draws are.
+pub(crate) const WITHIN_95: f64 = 1.959963984540054;
+
+/// Least and greatest value.
+pub(crate) fn range(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
+}
+
+/// Arithmetic mean.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Standard deviation of the noise of some data, from second differences.
+pub(crate) fn scatter(data: &[f64]) -> f64 {
+    let differences = data.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));
+    (differences.sum::<f64>() / (6.0 * data.len().saturating_sub(2).max(1) as f64)).sqrt()
+}
+
+/// Whether the variance of some data is above the square of their scatter by so little that both are the same of white noise, by six
+/// deviations of their ratio (J. von Neumann, 1941).
+pub(crate) fn is_flat(data: &[f64]) -> bool {
+    let mean = mean(data);
+    let squares: f64 = data.iter().map(|value| (value - mean).powi(2)).sum();
+    let count = data.len() as f64;
+    squares <= (count + 11.0 * count.sqrt()) * scatter(data).powi(2)
+}
+
+/// Intercept, if there is one, slope and sum of squares of the line through some points.
+pub(crate) fn line(x: &[f64], y: &[f64], has_intercept: bool) -> [f64; 3] {
+    let [mean_x, mean_y] = if has_intercept { [mean(x), mean(y)] } else { [0.0; 2] };
+    let offsets = || x.iter().zip(y).map(|(x, y)| [x - mean_x, y - mean_y]);
+    let [xx, xy] = offsets().fold([0.0; 2], |[xx, xy], [x, y]| [xx + x * x, xy + x * y]);
+    let slope = if xx > 0.0 { xy / xx } else { 0.0 };
+    [mean_y - slope * mean_x, slope, offsets().map(|[x, y]| (y - slope * x).powi(2)).sum()]
+}
+
 /// A test of residuals: how far they are from independent ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

@@ -7,8 +7,8 @@ use viscocontact::states::ElasticStates;
 
 use crate::error::{Result, positive};
 
-/// Contact radii over the radius of a sphere: the first, and the ratio of neighbours.
-const RADII: [f64; 2] = [1e-4, 1.05];
+/// Contact radii over the radius of a sphere: the first, below which all are powers of the radius to 1e-6, and the ratio of neighbours.
+const RADII: [f64; 2] = [1e-3, 1.05];
 /// Greatest contact radius over the radius of a sphere.
 const GREATEST: f64 = 0.97;
 
@@ -39,15 +39,7 @@ pub fn sphere(radius: f64) -> Result<Arc<ElasticStates>> {
     let row = |k: i32| {
         let x = (RADII[0] * RADII[1].powi(k)).min(GREATEST);
         let half = x.atanh();
-        // (1 + x²) atanh x − x, free of the cancellation
-        let level = if x < 0.1 {
-            let square = x * x;
-            x * square
-                * (4.0 / 3.0
-                    + square * (8.0 / 15.0 + square * (12.0 / 35.0 + square * (16.0 / 63.0 + square * 20.0 / 99.0))))
-        } else {
-            (1.0 + x * x) * half - x
-        };
+        let level = (1.0 + x * x) * half - x;
         (radius * radius * level, radius * x * half, 2.0 * radius * x, PI * (radius * x).powi(2))
     };
     let table: Vec<_> = (0..=count).map(row).collect();

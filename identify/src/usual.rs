@@ -16,6 +16,7 @@ use viscocontact::numeric::least;
 
 use crate::error::{Error, Result, positive};
 use crate::experiment::Curve;
+use crate::statistics::{line, range};
 
 /// Shares of the force at the onset of unloading between which its curve is fitted.
 const UNLOADING: [f64; 2] = [0.98, 0.20];
@@ -25,8 +26,6 @@ const EPSILON: f64 = 0.75;
 const POINTS: usize = 60;
 /// Fewest points of a fit.
 const LEAST_POINTS: usize = 5;
-/// Drives that differ from the greatest one by this share of the range belong to its hold.
-const SAME_DRIVE: f64 = 1e-3;
 
 /// The reading of an unloading curve, see [`oliver_pharr`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +68,7 @@ pub struct OliverPharr {
 /// If fewer than five points unload, or stiffness or area are not positive.
 pub fn oliver_pharr(curve: &Curve, contact_point: f64, area: impl Fn(f64) -> f64) -> Result<OliverPharr> {
     let (depth, force) = (depths(curve, contact_point), curve.force());
-    let onset = hold(curve).1;
+    let onset = curve.hold().1;
     let greatest = positive("force at the onset of unloading", force[onset])?;
     let is_fitted = |force: f64| (UNLOADING[1] * greatest..=UNLOADING[0] * greatest).contains(&force);
     let end = (onset..force.len()).find(|&k| force[k] < UNLOADING[1] * greatest).unwrap_or(force.len());
@@ -81,7 +80,7 @@ pub fn oliver_pharr(curve: &Curve, contact_point: f64, area: impl Fn(f64) -> f64
     // h_f below the lowest depth by some factor of the range of depths
     let power = |below: f64| {
         let rest = lowest - range * below.exp();
-        (rest, line(&fitted.iter().map(|&k| (depth[k] - rest).ln()).collect::<Vec<_>>(), &logs))
+        (rest, line(&fitted.iter().map(|&k| (depth[k] - rest).ln()).collect::<Vec<_>>(), &logs, true))
     };
     let (rest, [intercept, exponent, _]) = power(least(-7.0, 4.0, POINTS, |below| power(below).1[2]));
     let stiffness = exponent * (intercept + (exponent - 1.0) * (depth[onset] - rest).ln()).exp();
@@ -132,13 +131,14 @@ impl HoldRelaxation {
 pub fn hold_relaxation(curve: &Curve, contact_point: f64, correction: RampCorrection) -> Result<HoldRelaxation> {
     let (depth, times, drive) =
         (depths(curve, contact_point), curve.experiment.protocol.times(), curve.experiment.protocol.drive());
-    let (start, end) = hold(curve);
+    let (start, end) = curve.hold();
     enough(end + 1 - start)?;
-    let modulus = |k: usize| Ok(curve.force[k] / level(curve, positive("depth in the hold", depth[k])?)?);
+    let level = |k: usize| curve.experiment.level_within(positive("depth in the hold", depth[k])?);
+    let modulus = |k: usize| Ok(curve.force[k] / level(k)?);
     let moduli: Vec<f64> = (start..=end).map(modulus).collect::<Result<_>>()?;
     let ages: Vec<f64> = times[start..=end].iter().map(|time| time - times[start]).collect();
-    let fit =
-        |log_time: f64| line(&ages.iter().map(|age| (-age * (-log_time).exp()).exp()).collect::<Vec<_>>(), &moduli);
+    let decay = |log_time: f64| -> Vec<f64> { ages.iter().map(|age| (-age * (-log_time).exp()).exp()).collect() };
+    let fit = |log_time: f64| line(&decay(log_time), &moduli, true);
     let time = least((0.5 * ages[1]).ln(), (10.0 * ages[ages.len() - 1]).ln(), POINTS, |log_time| fit(log_time)[2]);
     let ([equilibrium, at_end, _], time) = (fit(time), time.exp());
     let touch = (0..start).find(|&k| drive[k + 1] > contact_point).unwrap_or_default();
@@ -177,25 +177,12 @@ pub struct LoadingModulus {
 /// # Errors
 /// If the loading has fewer than five points; [`Error::BeyondStates`].
 pub fn loading_modulus(curve: &Curve, contact_point: Option<f64>) -> Result<LoadingModulus> {
-    let (drive, end) = (curve.experiment.protocol.drive(), hold(curve).0);
+    let end = curve.hold().0;
     enough(end + 1)?;
-    let fit = |contact_point: f64| -> Result<[f64; 3]> {
-        let depths = depths(curve, contact_point);
-        let levels = depths[..=end].iter().map(|&depth| level(curve, depth)).collect::<Result<Vec<_>>>()?;
-        Ok(line(&levels, &curve.force[..=end]))
-    };
-    let contact_point = match contact_point {
-        Some(given) => given,
-        None => {
-            let lowest = drive[..=end].iter().copied().fold(f64::INFINITY, f64::min);
-            let travel = drive[end] - lowest;
-            // also a little before the first point, and a contact over a tenth of the travel at least
-            least(lowest - 0.1 * travel, lowest + 0.9 * travel, POINTS, |point| {
-                fit(point).map_or(f64::INFINITY, |[.., sum]| sum)
-            })
-        }
-    };
-    let [offset, modulus, _] = fit(contact_point)?;
+    let give = 1.0 / curve.experiment.stiffness;
+    let contact_point = contact_point.unwrap_or_else(|| curve.elastic_contact_point(give, true));
+    curve.experiment.level_within(range(&depths(curve, contact_point)[..=end])[1])?;
+    let [offset, modulus, _] = curve.elastic_law(contact_point, give, true);
     Ok(LoadingModulus { modulus, offset, contact_point })
 }
 
@@ -206,34 +193,6 @@ fn depths(curve: &Curve, contact_point: f64) -> Vec<f64> {
     experiment.protocol.drive().iter().zip(&curve.force).map(depth).collect()
 }
 
-/// First and last index of the hold at the greatest drive.
-fn hold(curve: &Curve) -> (usize, usize) {
-    let drive = curve.experiment.protocol.drive();
-    let [least, greatest] = drive.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(*z), b.max(*z)]);
-    let is_held = |k: &usize| drive[*k] >= greatest - SAME_DRIVE * (greatest - least);
-    let start = (0..drive.len()).find(is_held).unwrap_or_default();
-    (start, (start..drive.len()).take_while(is_held).last().unwrap_or(start))
-}
-
-/// The level of the elastic states at a depth \[m²\].
-fn level(curve: &Curve, depth: f64) -> Result<f64> {
-    let tip = &curve.experiment.tip;
-    match tip.level_at(tip.approach(0.0) + depth) {
-        level if level.is_nan() => Err(Error::BeyondStates { curve: 0, depth }),
-        level => Ok(level),
-    }
-}
-
 fn enough(points: usize) -> Result<()> {
     if points >= LEAST_POINTS { Ok(()) } else { Err(Error::TooFewPoints { points, parameters: 3 }) }
-}
-
-/// Intercept, slope and sum of squares of the line through some points.
-fn line(x: &[f64], y: &[f64]) -> [f64; 3] {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (mean_x, mean_y) = (mean(x), mean(y));
-    let offsets = || x.iter().zip(y).map(|(x, y)| [x - mean_x, y - mean_y]);
-    let [xx, xy] = offsets().fold([0.0; 2], |[xx, xy], [x, y]| [xx + x * x, xy + x * y]);
-    let slope = if xx > 0.0 { xy / xx } else { 0.0 };
-    [mean_y - slope * mean_x, slope, offsets().map(|[x, y]| (y - slope * x).powi(2)).sum()]
 }

@@ -1,9 +1,8 @@
 //! A fit compared with the stepper in space.
 
 use viscocontact::contact::Builder;
-use viscocontact::load::Load;
 
-use crate::error::{Result, within};
+use crate::error::Result;
 use crate::fit::Fit;
 
 /// The forces of a fit from a contact that is computed cell by cell, see [`Fit::verify`].
@@ -39,19 +38,13 @@ impl Fit {
     /// If there is no such curve; those of [`Builder::build`] and
     /// [`ViscoelasticContact::step`](viscocontact::ViscoelasticContact::step).
     pub fn verify(&self, curve: usize, scene: &Builder) -> Result<Verification> {
-        within("index of the curve", curve as f64, curve < self.curves().len(), "below the number of curves")?;
-        let experiment = self.curves()[curve].experiment();
-        let stiffness = self.estimate("stiffness").map_or(experiment.stiffness, |estimate| estimate.value);
-        let shift = experiment.tip().approach(0.0) - self.contact_point(curve);
+        let experiment = self.experiment(curve)?;
+        let (contact_point, stiffness) = (self.contact_point(curve), self.problem.stiffness(curve, &self.values));
         let mut contact = scene.clone().material(self.material()?).build()?;
         let (times, samples) = (experiment.protocol().times(), self.samples(curve));
         let (mut force, mut before) = (Vec::with_capacity(times.len()), times[0]);
         for (&time, &drive) in times.iter().zip(experiment.protocol().drive()) {
-            let load = match stiffness {
-                f64::INFINITY => Load::approach(drive + shift),
-                stiffness => Load::spring(stiffness, drive + shift),
-            };
-            force.push(contact.step(time - before, load)?.force);
+            force.push(contact.step(time - before, experiment.load(drive - contact_point, stiffness))?.force);
             before = time;
         }
         let greatest = samples.iter().map(|sample| sample.force).fold(0.0, f64::max);

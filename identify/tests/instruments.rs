@@ -125,19 +125,21 @@ fn what_instruments_add_is_described_or_told() -> Result<()> {
     let (times, drive) = (experiment.protocol().times(), experiment.protocol().drive());
     let speed = |k: usize| (drive[(k + 1).min(drive.len() - 1)] - drive[k.saturating_sub(1)]) / 0.01;
     let base = || Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted);
-    type Added<'a> = Box<dyn Fn(usize, f64) -> f64 + 'a>;
+    // of a sample, the greatest force and the force
+    type Added<'a> = Box<dyn Fn(usize, f64, f64) -> f64 + 'a>;
     let cases: Vec<(&str, Added<'_>, Identification)> = vec![
-        ("tilt", Box::new(|k, f| 0.02 * f * drive[k] / 1e-6), base().tilt(Nuisance::Fitted)),
-        ("drift", Box::new(|k, f| 0.02 * f * times[k]), base().drift(Nuisance::Fitted)),
-        ("drag", Box::new(|k, f| 0.02 * f * speed(k) / 4e-6), base().drag(Nuisance::Fitted)),
-        ("unmodelled tilt", Box::new(|k, f| 0.02 * f * drive[k] / 1e-6), base()),
-        ("hum", Box::new(|k, f| 0.01 * f * (314.159 * times[k]).sin()), base().noise(Noise::Autoregressive)),
+        ("tilt", Box::new(|k, f, _| 0.02 * f * drive[k] / 1e-6), base().tilt(Nuisance::Fitted)),
+        ("drift", Box::new(|k, f, _| 0.02 * f * times[k]), base().drift(Nuisance::Fitted)),
+        ("drag", Box::new(|k, f, _| 0.02 * f * speed(k) / 4e-6), base().drag(Nuisance::Fitted)),
+        ("unmodelled tilt", Box::new(|k, f, _| 0.02 * f * drive[k] / 1e-6), base()),
+        ("hum", Box::new(|k, f, _| 0.01 * f * (314.159 * times[k]).sin()), base().noise(Noise::Autoregressive)),
+        ("steps of a converter", Box::new(|_, f, force| (force / (0.02 * f)).round() * 0.02 * f - force), base()),
     ];
     for (name, added, fitting) in cases {
         let (mut fits, mut flagged) = (Vec::new(), 0);
         for seed in 0..seeds() {
             let (greatest, force) = with_noise(&exact, 100 + seed);
-            let force = force.iter().enumerate().map(|(k, force)| force + added(k, greatest)).collect();
+            let force = force.iter().enumerate().map(|(k, force)| force + added(k, greatest, *force)).collect();
             let fit = fitting.fit(&[Curve::new(experiment.clone(), force)?])?;
             flagged += u64::from(fit.warnings().iter().any(|warning| matches!(warning, FitWarning::Misfit { .. })));
             fits.push(fit);

@@ -77,21 +77,8 @@ fn searches_end_at_the_minimum() {
         let Case { curve, truth, values, text } = case(seed);
         let data = std::slice::from_ref(&curve);
         let fit = |model: Model| fitting(model).fit(data).unwrap_or_else(|error| panic!("{text}: {model:?}: {error}"));
-        let mut fits: Vec<Fit> = Vec::new();
         let models = [Model::Elastic, Model::Maxwell, Model::Zener, Model::Prony(2), POWER_LAW, Model::FractionalZener];
-        for model in models {
-            let start = std::time::Instant::now();
-            fits.push(fit(model));
-            let last = fits.last().unwrap();
-            if std::env::var("NESTED_VERBOSE").is_ok() {
-                println!(
-                    "{text} | {model:?}: {} its {:.3} s sum {:.6e}",
-                    last.iterations(),
-                    start.elapsed().as_secs_f64(),
-                    sum(last)
-                );
-            }
-        }
+        let fits = models.map(fit);
         let of = |model: Model| fits.iter().find(|fit| fit.model() == model).unwrap();
         for (inner, outer) in contained {
             let ratio = sum(of(outer)) / sum(of(inner)) - 1.0;
@@ -104,28 +91,14 @@ fn searches_end_at_the_minimum() {
         for (name, value) in truth.parameters().iter().zip(&values) {
             at_truth = at_truth.start(name, *value);
         }
-        let known = at_truth.fit(data);
-        let (default, known) = (
-            sum(of(truth)),
-            known.as_ref().map_or_else(
-                |error| {
-                    println!("{text}: from the truth: {error}");
-                    f64::NAN
-                },
-                sum,
-            ),
-        );
+        let (default, known) = (sum(of(truth)), at_truth.fit(data).as_ref().map_or(f64::NAN, sum));
         iterations += of(truth).iterations();
         if (default / known - 1.0).abs() > 1e-6 || known.is_nan() {
             apart.push(format!("{text}: default start {:.2e} above the start at the truth", default / known - 1.0));
         }
     }
-    println!(
-        "{compared} pairs, {} above; {} of {} starts apart; {iterations} iterations",
-        above.len(),
-        apart.len(),
-        curves()
-    );
+    let [pairs, starts] = [above.len(), apart.len()];
+    println!("{compared} pairs, {pairs} above; {starts} of {} starts apart; {iterations} iterations", curves());
     assert!(compared as u64 == 5 * curves());
     println!("{}\n{}", above.join("\n"), apart.join("\n"));
     assert!(above.is_empty());

@@ -1,49 +1,39 @@
 //! Deviations and intervals under noise, over many seeds.
 
+use std::sync::Arc;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
-use viscocontact_identify::{Curve, Experiment, Fit, FitWarning, Identification, Model, Noise, Nuisance, Protocol};
+use viscocontact_identify::{Curve, Fit, FitWarning, Identification, Model, Noise, Nuisance};
 
-use crate::random::normal;
+use crate::coverage::{ZENER, experiment};
+use crate::random::correlated;
 
 /// Number of seeds: `NOISE_SEEDS`, or fewer.
 fn seeds() -> u64 {
     std::env::var("NOISE_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(30)
 }
 
-/// Depth 1 in unit time, held to 2, and out at unit speed; the drive before touch included.
-fn experiment(tip: &std::sync::Arc<ElasticStates>) -> Experiment {
-    let times: Vec<f64> = (0..1000).map(|k| 3.2 * f64::from(k) / 999.0 - 0.2).collect();
-    let drive = times.iter().map(|&t: &f64| t.min(1.0).min(3.0 - t)).collect();
-    Experiment::new(Protocol::new(times, drive).unwrap(), std::sync::Arc::clone(tip))
-}
-
-/// A noisy curve: 1 % of the greatest force, each deviation `phi` times the one before plus an independent part.
-fn noisy(experiment: &Experiment, model: Model, truth: &[(&str, f64)], phi: f64, seed: u64) -> (Curve, f64) {
-    let samples = Identification::new(model).respond(experiment, truth).unwrap();
+/// A noisy curve of 1000 samples, and the deviation of the independent part of its noise: 1 % of the greatest force without correlation.
+fn noisy(tip: &Arc<ElasticStates>, model: Model, truth: &[(&str, f64)], phi: f64, seed: u64) -> (Curve, f64) {
+    let experiment = experiment(Arc::clone(tip), 1000);
+    let samples = Identification::new(model).respond(&experiment, truth).unwrap();
     let sigma = 0.01 * samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut deviation = sigma * normal(&mut rng);
-    let force = samples.iter().map(|sample| {
-        deviation = phi * deviation + (1.0 - phi * phi).sqrt() * sigma * normal(&mut rng);
-        sample.force + deviation
-    });
-    (Curve::new(experiment.clone(), force.collect()).unwrap(), sigma * (1.0 - phi * phi).sqrt())
+    let noise = correlated(samples.len(), sigma, phi, &mut ChaCha8Rng::seed_from_u64(seed));
+    let force = samples.iter().zip(noise).map(|(sample, noise)| sample.force + noise).collect();
+    (Curve::new(experiment, force).unwrap(), sigma * (1.0 - phi * phi).sqrt())
 }
-
-const ZENER: [(&str, f64); 3] = [("E0", 1.0), ("Einf", 0.25), ("tau", 1.0)];
 
 /// Bias, spread and coverage of the parameters of a Zener body and the contact point.
 fn statistics_under(noise: Noise, phi: f64) {
-    let experiment = experiment(&ElasticStates::sphere(9.0 / 16.0).unwrap());
+    let sphere = ElasticStates::sphere(9.0 / 16.0).unwrap();
     let fitting = Identification::new(Model::Zener).contact_point(Nuisance::Fitted).noise(noise);
-    let fits: Vec<Fit> = (0..seeds())
-        .map(|seed| fitting.fit(&[noisy(&experiment, Model::Zener, &ZENER, phi, seed).0]).unwrap())
-        .collect();
-    let sigma = noisy(&experiment, Model::Zener, &ZENER, phi, 0).1;
+    let fits: Vec<Fit> =
+        (0..seeds()).map(|seed| fitting.fit(&[noisy(&sphere, Model::Zener, &ZENER, phi, seed).0]).unwrap()).collect();
+    let sigma = noisy(&sphere, Model::Zener, &ZENER, phi, 0).1;
     let exact = Identification::new(Model::Zener).contact_point(Nuisance::Fitted).noise(Noise::AutoregressiveWith(phi));
-    let bounds = exact.bounds(&[experiment], &ZENER, sigma).unwrap();
+    let bounds = exact.bounds(&[experiment(sphere, 1000)], &ZENER, sigma).unwrap();
     let count = seeds() as f64;
     // limits of the asked 300 seeds, and beyond them the scatter of fewer ones: three standard errors
     let more = 3.0 * ((300.0 / count).sqrt() - 1.0).max(0.0);
@@ -93,11 +83,11 @@ fn wrong_models_are_flagged() {
     let two_times = [("Einf", 0.25), ("E1", 0.4), ("tau1", 0.03), ("E2", 0.35), ("tau2", 1.0)];
     let power = [("E1", 0.6), ("alpha", 0.3)];
     let flagged = |fit: &Fit| fit.warnings().iter().any(|warning| matches!(warning, FitWarning::Misfit { .. }));
-    let share = |truth: Model, values: &[(&str, f64)], fitted: Model, tip: &std::sync::Arc<ElasticStates>| {
-        let (real, assumed) = (experiment(&sphere), experiment(tip));
+    let share = |truth: Model, values: &[(&str, f64)], fitted: Model, tip: &Arc<ElasticStates>| {
+        let assumed = experiment(Arc::clone(tip), 1000);
         let fitting = Identification::new(fitted).contact_point(Nuisance::Fitted);
         let is_flagged = |seed: u64| {
-            let curve = noisy(&real, truth, values, 0.0, seed).0;
+            let curve = noisy(&sphere, truth, values, 0.0, seed).0;
             flagged(&fitting.fit(&[Curve::new(assumed.clone(), curve.force().to_vec()).unwrap()]).unwrap())
         };
         let seeds = (seeds() / 3).max(10);

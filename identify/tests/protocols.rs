@@ -1,6 +1,6 @@
 use viscocontact::load::{Load, LoadHistory, StepLoad};
 use viscocontact::prelude::*;
-use viscocontact_identify::{Error, Experiment, Protocol, Result};
+use viscocontact_identify::{Error, Experiment, Identification, Model, Protocol, Result, Sample};
 
 #[test]
 fn pieces_end_at_samples_and_are_divided_equally() -> Result<()> {
@@ -71,6 +71,27 @@ fn a_rough_tip_rests_where_its_highest_peak_touches() -> Result<()> {
     Ok(())
 }
 
+/// A ball on cells: depths that count from its apex have the force of Hertz, with few cells in contact as well.
+#[test]
+fn the_depth_of_a_swept_tip_may_count_from_its_apex() -> Result<()> {
+    let radius = 5.0e-6;
+    let tip = Sweep::new(Grid::square(64, 6.0e-6)?, &Sphere::new(radius)?).run(Reach::Approach(0.6e-6))?;
+    let protocol = Protocol::builder(0.0, 0.01).line(0.5e-6, 1.0).build()?;
+    let first_cell = Experiment::new(protocol, tip);
+    let worst = |experiment: &Experiment, from: f64| -> Result<f64> {
+        let samples = Identification::new(Model::Elastic).respond(experiment, &[("E", 1.0)])?;
+        let error = |s: &Sample| (s.force / (4.0 / 3.0 * radius.sqrt() * s.depth.powf(1.5)) - 1.0).abs();
+        Ok(samples.iter().filter(|sample| sample.depth > from).map(error).fold(0.0, f64::max))
+    };
+    let apex = first_cell.clone().with_surface(0.0)?;
+    let errors = [(&first_cell, 1.0e-7), (&apex, 1.0e-7), (&apex, 1.0e-9)].map(|(of, from)| worst(of, from));
+    let [first, deep, all] = [errors[0].clone()?, errors[1].clone()?, errors[2].clone()?];
+    println!("from the first cell {first:.1e}, from the apex {deep:.1e}, with few cells {all:.1e}");
+    assert!(first > 5e-3 && deep < 2e-3 && all < 3e-2, "{first:e} {deep:e} {all:e}");
+    assert!(matches!(first_cell.with_surface(1.0e-6), Err(Error::OutOfRange { .. })));
+    Ok(())
+}
+
 #[test]
 fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
     let refused = [
@@ -78,7 +99,7 @@ fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
         (Protocol::trapezoid(1.0, [0.0, 1.0, 1.0], 0.1), "duration of a line"),
         (Protocol::trapezoid(1.0, [1.0, -1.0, 1.0], 0.1), "duration of a line"),
         (Protocol::trapezoid(1.0, [1.0; 3], 0.0), "interval of samples"),
-        (Protocol::trapezoid(1.0, [1.0; 3], 1.0e-12), "samples of a line"),
+        (Protocol::trapezoid(1.0, [1.0; 3], 1.0e-12), "samples of a piece"),
         (Protocol::ramp_hold_retract(0.0, [0.0, 1.0], 1.0, 0.1), "speed"),
         (Protocol::ramp_hold_retract(1.0, [-1.0, 1.0], 1.0, 0.1), "distance above the surface"),
         (Protocol::staircase(&[1.0, f64::NAN], 1.0, 1.0, 0.1), "drive"),

@@ -23,3 +23,13 @@ pub fn logarithmic(rng: &mut ChaCha8Rng, [low, high]: [f64; 2]) -> f64 {
 pub fn choice<T: Copy>(rng: &mut ChaCha8Rng, of: &[T]) -> T {
     of[rng.next_u32() as usize % of.len()]
 }
+
+/// Noise of standard deviation `sigma`, each value `phi` times the one before plus an independent part.
+pub fn correlated(count: usize, sigma: f64, phi: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
+    let mut value = sigma * normal(rng);
+    let mut next = || {
+        value = phi * value + (1.0 - phi * phi).sqrt() * sigma * normal(rng);
+        value
+    };
+    (0..count).map(|_| next()).collect()
+}

@@ -1,7 +1,9 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use viscocontact::states::ElasticStates;
-use viscocontact_identify::{Curve, Error, Experiment, Fit, Identification, Model, Protocol, Result, Summary};
+use viscocontact_identify::{
+    Curve, Error, Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol, Result, Summary,
+};
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -35,6 +37,39 @@ fn each_curve_of_a_map_is_fitted_as_if_alone() -> Result<()> {
             (fit, alone) => panic!("curve {k}: {fit:?}, alone {alone:?}"),
         }
     }
+    Ok(())
+}
+
+/// Springs, contact points and starts of each curve, fitted one by one and together.
+#[test]
+fn each_curve_has_its_own_spring_contact_point_and_start() -> Result<()> {
+    let (springs, points, moduli) = ([0.02, 0.2], [0.0, 2.0e-7], [1.0e3, 4.0e3]);
+    let zener = Identification::new(Model::Zener);
+    let curve = |k: usize, modulus: f64| {
+        let protocol = Protocol::trapezoid(1.0e-6, [0.5, 2.0, 0.5], 0.02)?;
+        let experiment = Experiment::new(protocol, ElasticStates::sphere(5.0e-6)?).with_spring(springs[k])?;
+        let at = zener.clone().contact_point(Nuisance::Fixed(points[k]));
+        let exact = at.respond(&experiment, &[("E0", modulus), ("Einf", 0.3 * modulus), ("tau", 0.4)])?;
+        // the spring of the experiment is another one
+        Curve::new(experiment.with_spring(1.0)?, exact.iter().map(|sample| sample.force).collect())
+    };
+    let fixed = |of: [f64; 2]| of.map(Nuisance::Fixed).to_vec();
+    let fitting = zener.clone().stiffness(fixed(springs)).contact_point(fixed(points));
+    let found = |fit: &Fit| fit.estimate("E0").expect("a modulus").value;
+    let joint = fitting.fit(&[curve(0, moduli[0])?, curve(1, moduli[0])?])?;
+    assert!((found(&joint) / moduli[0] - 1.0).abs() < 1e-6, "{joint}");
+    let starts = fitting.parameter("E0", moduli.map(|modulus| Nuisance::FittedFrom(1.2 * modulus)).to_vec());
+    for (fit, modulus) in starts.fit_each(&[curve(0, moduli[0])?, curve(1, moduli[1])?], |_| ()).into_iter().zip(moduli)
+    {
+        assert!((found(&fit?) / modulus - 1.0).abs() < 1e-6);
+    }
+    // a list that is too short, and a name of nothing
+    let short = starts.fit_each(&[curve(0, moduli[0])?, curve(1, moduli[1])?, curve(0, moduli[0])?], |_| ());
+    assert!(matches!(short[2], Err(Error::WrongLength { .. })), "{:?}", short[2]);
+    let nothing = zener.clone().parameter("colour", Nuisance::Fitted).fit(&[curve(0, moduli[0])?]);
+    assert!(matches!(nothing, Err(Error::UnknownParameter { .. })));
+    let warning = FitWarning::AtLimit { parameter: "Einf".into(), limit: "Einf = 0: no equilibrium" };
+    assert!(warning.to_string().contains("take the simpler model"), "{warning}");
     Ok(())
 }
 

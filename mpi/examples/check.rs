@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use viscocontact::output::{Field, Format, FrameSeries, Metadata};
+use viscocontact::output::{Earlier, Field, Format, FrameSeries, Metadata};
 use viscocontact::parallel::{Ranks, RanksError};
 use viscocontact::prelude::*;
 use viscocontact_mpi::Mpi;
@@ -73,8 +73,8 @@ fn succeed(what: &str, place: Option<&str>, ranks: Option<Arc<dyn Ranks>>) -> Re
 /// Two frames of a contact, with all fields.
 fn write_files(folder: &Path, ranks: Option<Arc<dyn Ranks>>) -> Result<(), Error> {
     let mut contact = sphere(ranks)?;
-    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &Metadata::new("check"), &Field::ALL)?;
-    let mut vtk = FrameSeries::create(folder.join("vtk"), Format::Vtk, &Metadata::new("check"), &Field::ALL)?;
+    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &Metadata::new("check"), &contact, &Field::ALL, Earlier::Refuse)?;
+    let mut vtk = FrameSeries::create(folder.join("vtk"), Format::Vtk, &Metadata::new("check"), &contact, &Field::ALL, Earlier::Refuse)?;
     for dt in [0.0, 0.3] {
         contact.step(dt, Load::force(1.0))?;
         npz.record(&contact)?;

@@ -275,9 +275,10 @@ pub fn persson_friction(
     surface: &Shape,
     modulus: Py<PyAny>,
     pressure: f64,
-    velocity: [f64; 2],
+    velocity: &Bound<'_, PyAny>,
     gamma: f64,
 ) -> PyResult<(f64, f64)> {
+    let velocity = crate::sliding::velocity(velocity)?;
     let surface = Arc::clone(&surface.geometry);
     let theory = py.detach(|| {
         an::PerssonFriction::new(&grid.0, &*surface, |omega| complex(&modulus, omega), pressure, velocity, gamma)

@@ -4,7 +4,7 @@ use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 
 /// Any array of Python.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -13,7 +13,10 @@ pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 pub fn values(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     let py = object.py();
     let numpy = py.import(intern!(py, "numpy"))?;
-    let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
+    // NumPy takes an iterator, as of `zip`, for one value
+    let listed = object.hasattr(intern!(py, "__next__"))?.then(|| py.get_type::<PyList>().call1((object,)));
+    let listed = listed.transpose()?;
+    let array = numpy.call_method1(intern!(py, "asarray"), (listed.as_ref().unwrap_or(object),))?;
     let options = PyDict::new(py);
     options.set_item("casting", "same_kind")?;
     options.set_item("copy", false)?;
@@ -87,6 +90,16 @@ fn no_nan(name: &str, values: &[f64]) -> PyResult<()> {
 /// A field as a new array of the shape of the grid.
 pub fn to_array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Array<'py>> {
     values.into_pyarray(py).reshape(shape.to_vec())
+}
+
+/// Columns as arrays, by name.
+pub fn columns<'py>(
+    py: Python<'py>,
+    named: impl IntoIterator<Item = (&'static str, Vec<f64>)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    named.into_iter().try_for_each(|(name, column)| all.set_item(name, column.into_pyarray(py)))?;
+    Ok(all)
 }
 
 /// A function of one number, at a number or at each value of an array: a number or an array of the same shape.

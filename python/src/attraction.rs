@@ -133,22 +133,17 @@ impl Attraction {
         mapped("gap", gap, |gap| self.law.energy(gap))
     }
 
-    /// Work of separation [J/m²].
-    #[getter]
-    fn work(&self) -> f64 {
-        self.law.work()
-    }
-
-    /// Range: work over the greatest traction [m].
-    #[getter]
-    fn range(&self) -> f64 {
-        self.law.range()
-    }
-
     /// Tabor's number of a sphere of `radius` [m] on a body of contact `modulus` E* [Pa].
     fn tabor_number(&self, radius: f64, modulus: f64) -> PyResult<f64> {
         ad::tabor_number(&*self.law, radius, modulus).or_raise()
     }
+}
+
+getters! {Attraction.law, of:
+    /// Work of separation [J/m²].
+    work: f64 = of.work();
+    /// Range: work over the greatest traction [m].
+    range: f64 = of.range();
 }
 
 made_by_calls!(Attraction);

@@ -8,7 +8,8 @@ use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
 
 use crate::contact::ViscoelasticContact;
 use crate::errors::OrRaise;
-use crate::held::Options;
+use crate::held::{Options, saved_every, stepping, times};
+use crate::loads::history;
 use crate::run::Run;
 use crate::scratch::{bytes_of, file_of};
 use crate::states_contact::StatesContact;
@@ -39,9 +40,10 @@ macro_rules! both {
             ///     Error in time of the pressure at the times of `sample_at`, relative, in [1e-5, 0.1]; `Sample.field` has the error estimated.
             ///     Without it approach and force alone are as exact as `tolerance` says.
             /// progress : function, optional
-            ///     Called after each step with the share of the time that is over; the run ends with `Cancelled` where it returns False.
+            ///     Called after each step with the share of the time that is over (`Run.progress` has that of the decades, too); the run ends with
+            ///     `Cancelled` where it returns False.
             /// autosave : (path, seconds), optional
-            ///     Saves the run to a checkpoint as often.
+            ///     Saves the run to a checkpoint every so many seconds of the clock, and at its end.
             ///
             /// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
             /// >>> history = [(0, Load.force(0)), (0.5, Load.force(0.5)), (1, Load.force(0.1))]
@@ -63,7 +65,10 @@ macro_rules! both {
                 progress: Option<Py<PyAny>>,
                 autosave: Option<(PathBuf, f64)>,
             ) -> PyResult<Run> {
-                let options = Options::new(load, until, tolerance, dt, stop_at, sample_at, fields_to, progress, autosave)?;
+                let (stop_at, sample_at) = (times("stop_at", stop_at)?, times("sample_at", sample_at)?);
+                let (stepping, autosave) = (stepping(dt, tolerance)?, saved_every(autosave)?);
+                let options =
+                    Options { history: history(load)?, stepping, until, stop_at, sample_at, progress, fields_to, autosave };
                 let mut contact = slf.borrow_mut();
                 let cancel = Arc::clone(&contact.cancel);
                 let run = contact.held.follow(&options, cancel)?;

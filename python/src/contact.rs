@@ -32,7 +32,7 @@ const LONG: Duration = Duration::from_millis(10);
 /// ----------
 /// grid : Grid
 /// geometry : Shape, array of the shape of the grid, or sequence of shapes
-///     The gap before deformation [m], +inf where there is nothing to touch. A sequence makes several rigid bodies, each with a load.
+///     The gap before deformation [m], +inf where there is nothing to touch. An array is a gap: heights are for `HeightMap`. A sequence makes several rigid bodies, each with a load.
 /// material : Material
 ///     The creeping body.
 /// counter_body : Material, optional

@@ -347,17 +347,17 @@ impl Recording {
     }
 }
 
-/// The model of a name: "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]) or "fractional_zener".
+/// The model of a name, or of a pair of name and number of terms or cutoff [s].
 pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
     if let Ok((name, terms)) = given.extract::<(String, usize)>()
         && name == "prony"
     {
         return Ok(id::Model::Prony(terms));
     }
-    if let Ok((name, cutoff)) = given.extract::<(String, f64)>()
-        && name == "power_law"
-    {
-        return Ok(id::Model::PowerLaw { cutoff });
+    match given.extract::<(String, f64)>() {
+        Ok((name, cutoff)) if name == "power_law" => return Ok(id::Model::PowerLaw { cutoff }),
+        Ok((name, cutoff)) if name == "power_law_solid" => return Ok(id::Model::PowerLawSolid { cutoff }),
+        _ => {}
     }
     let needed = "model: a name, (\"prony\", terms) or (\"power_law\", cutoff) is needed";
     let name: String = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
@@ -365,6 +365,7 @@ pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
         ("elastic", id::Model::Elastic),
         ("maxwell", id::Model::Maxwell),
         ("zener", id::Model::Zener),
+        ("stretched", id::Model::Stretched),
         ("fractional_zener", id::Model::FractionalZener),
     ];
     choice("model", &name, &models)

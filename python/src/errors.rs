@@ -82,9 +82,27 @@ fn with_causes(error: &dyn StdError) -> String {
     in_python(text)
 }
 
-/// A message with the names of methods as Python writes them.
+/// What messages of the crates name, and what it is called here.
+const NAMES: [(&str, &str); 11] = [
+    (
+        "with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted",
+        "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
+    ),
+    ("name the times to fit one over, fit", "fit"),
+    ("Builder::times", "times="),
+    ("CreepSeries::extrapolated", "extrapolated=True of Measurements.fit"),
+    ("set Settings::edge to Edge::Allow", "give edge=\"allow\""),
+    ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
+    ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),
+    ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
+    ("Earlier::Replace removes it", "earlier=\"replace\" removes it"),
+    ("Earlier::Replace replaces it", "earlier=\"replace\" replaces it"),
+    ("::", "."),
+];
+
+/// A message with names as Python writes them.
 pub fn in_python(text: impl ToString) -> String {
-    text.to_string().replace("::", ".")
+    NAMES.into_iter().fold(text.to_string(), |text, (name, here)| text.replace(name, here))
 }
 
 /// The exception that a function of the user raised, among the causes of an error.

@@ -1,7 +1,6 @@
 //! Fits: identified parameters, and what the curves determine.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError};
@@ -90,7 +89,7 @@ impl Fit {
         let spectrum = spectrum.ok_or_else(|| PyTypeError::new_err("this model has no exact exponential series"))?;
         let shear = spectrum.scaled(SHEAR_OVER_CONTACT).or_raise()?;
         let arguments = (shear.glassy(), shear.fluidity(), shear.terms().to_vec());
-        let rheology = Py::new(py, Rheology::made(py, "generalized_kelvin", arguments, Arc::new(shear))?)?;
+        let rheology = Py::new(py, Rheology::by(Recipe::new(py, "generalized_kelvin", arguments)?, shear))?;
         Ok(Material::by(Recipe::new(py, "", (rheology,))?, material))
     }
 

@@ -1,23 +1,22 @@
 //! The grid of a contact.
 
+use pyo3::conversion::FromPyObjectOwned;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Array, to_array};
 use crate::errors::OrRaise;
 
 /// A number, or a number for each axis.
-#[derive(FromPyObject)]
-pub enum PerAxis<T> {
-    Both([T; 2]),
-    Same(T),
-}
+pub struct PerAxis<T>(pub [T; 2]);
 
-impl<T: Copy> PerAxis<T> {
-    pub fn both(self) -> [T; 2] {
-        match self {
-            PerAxis::Both(both) => both,
-            PerAxis::Same(same) => [same; 2],
-        }
+impl<'a, 'py, T: Copy + FromPyObjectOwned<'py>> FromPyObject<'a, 'py> for PerAxis<T> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<PerAxis<T>> {
+        let both = given.extract::<T>().map(|same| [same; 2]).or_else(|_| given.extract::<[T; 2]>());
+        let needed = "a number, whole where it counts cells, or a pair of them is needed";
+        both.map(PerAxis).map_err(|_| PyTypeError::new_err(needed))
     }
 }
 
@@ -46,7 +45,7 @@ pub struct Grid(pub viscocontact::Grid);
 impl Grid {
     #[new]
     fn new(cells: PerAxis<usize>, lengths: PerAxis<f64>) -> PyResult<Grid> {
-        viscocontact::Grid::new(cells.both(), lengths.both()).or_raise().map(Grid)
+        viscocontact::Grid::new(cells.0, lengths.0).or_raise().map(Grid)
     }
 
     /// Centres of the cells along x1, of shape (n1, 1), and along x2, of shape (1, n2) [m]: sums of functions of them have the

@@ -16,7 +16,6 @@ use viscocontact::states::{ElasticStates, StatesContact as InStates};
 
 use crate::arrays::column;
 use crate::errors::OrRaise;
-use crate::loads::history;
 use crate::recipe::Recipe;
 
 /// Times at which steps end or states are sampled, counted from the start of a run.
@@ -43,7 +42,8 @@ impl Times {
     }
 
     fn __add__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
-        Ok(Times(self.0.clone().and(times("times", other)?)))
+        let other = times("times", Some(other.clone()))?;
+        Ok(Times(self.0.clone().and(other.unwrap_or_default())))
     }
 
     fn __repr__(&self) -> &'static str {
@@ -51,59 +51,43 @@ impl Times {
     }
 }
 
-fn times(name: &str, given: &Bound<'_, PyAny>) -> PyResult<vr::Times> {
+pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr::Times>> {
+    let Some(given) = given else { return Ok(None) };
     match given.cast::<Times>() {
-        Ok(times) => Ok(times.get().0.clone()),
-        Err(_) => Ok(column(name, given)?.into()),
+        Ok(times) => Ok(Some(times.get().0.clone())),
+        Err(_) => Ok(Some(column(name, &given)?.into())),
     }
 }
 
 /// What a run is asked for.
 pub struct Options {
-    history: Arc<dyn LoadHistory>,
-    stepping: Stepping,
-    until: f64,
-    stop_at: Option<vr::Times>,
+    pub history: Arc<dyn LoadHistory>,
+    pub stepping: Stepping,
+    pub until: f64,
+    pub stop_at: Option<vr::Times>,
     pub sample_at: Option<vr::Times>,
     pub progress: Option<Py<PyAny>>,
-    fields_to: Option<f64>,
-    autosave: Option<(PathBuf, Duration)>,
+    pub fields_to: Option<f64>,
+    pub autosave: Option<(PathBuf, Duration)>,
+}
+
+/// Equal steps or adaptive ones.
+pub fn stepping(dt: Option<f64>, tolerance: Option<f64>) -> PyResult<Stepping> {
+    match (dt, tolerance) {
+        (Some(dt), None) => Ok(Stepping::fixed(dt)),
+        (None, tolerance) => Ok(Stepping::adaptive(tolerance.unwrap_or(1e-3))),
+        _ => Err(PyTypeError::new_err("give dt or tolerance, not both")),
+    }
+}
+
+/// The path of a checkpoint, and how often it is written.
+pub fn saved_every(autosave: Option<(PathBuf, f64)>) -> PyResult<Option<(PathBuf, Duration)>> {
+    let Some((path, seconds)) = autosave else { return Ok(None) };
+    let every = Duration::try_from_secs_f64(seconds);
+    every.map(|every| Some((path, every))).map_err(|_| PyTypeError::new_err("autosave: (path, seconds), seconds ≥ 0"))
 }
 
 impl Options {
-    #[allow(clippy::too_many_arguments)]
-    pub fn new(
-        load: &Bound<'_, PyAny>,
-        until: f64,
-        tolerance: Option<f64>,
-        dt: Option<f64>,
-        stop_at: Option<Bound<'_, PyAny>>,
-        sample_at: Option<Bound<'_, PyAny>>,
-        fields_to: Option<f64>,
-        progress: Option<Py<PyAny>>,
-        autosave: Option<(PathBuf, f64)>,
-    ) -> PyResult<Options> {
-        let stepping = match (dt, tolerance) {
-            (Some(dt), None) => Stepping::fixed(dt),
-            (None, tolerance) => Stepping::adaptive(tolerance.unwrap_or(1e-3)),
-            _ => return Err(PyTypeError::new_err("give dt or tolerance, not both")),
-        };
-        let autosave = autosave.map(|(path, every)| {
-            let every = Duration::try_from_secs_f64(every);
-            every.map(|every| (path, every)).map_err(|_| PyTypeError::new_err("autosave: (path, seconds), seconds ≥ 0"))
-        });
-        Ok(Options {
-            history: history(load)?,
-            stepping,
-            until,
-            stop_at: stop_at.map(|given| times("stop_at", &given)).transpose()?,
-            sample_at: sample_at.map(|given| times("sample_at", &given)).transpose()?,
-            progress,
-            fields_to,
-            autosave: autosave.transpose()?,
-        })
-    }
-
     /// Refuses times that a run would refuse, which would take the contact with it.
     fn check(&self) -> vc::Result<()> {
         let small = InStates::new(&ElasticStates::sphere(1.0)?, &Material::incompressible(Elastic::new(1.0)?))?;

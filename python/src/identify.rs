@@ -41,7 +41,7 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
 ///
 /// Parameters
 /// ----------
-/// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]) or "fractional_zener"
+/// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]), ("power_law_solid", cutoff [s]), "stretched" or "fractional_zener"
 /// contact_point, offset, drift, tilt, drag, stiffness : float (known), True (fitted), or ("from", start)
 ///     Drive at first touch [m], force without contact [N], its growth in time [N/s] and with the drive [N/m], force over the speed of the
 ///     drive [N s/m], and the stiffness of the spring [N/m] in place of that of the experiments. A list has one for each curve.
@@ -85,20 +85,18 @@ impl Identification {
     ) -> PyResult<Identification> {
         type Setter = fn(id::Identification, id::PerCurve) -> id::Identification;
         let mut identification = id::Identification::new(self::model(model)?);
-        let nuisances: [(&str, Option<&Bound<'_, PyAny>>, Setter); 5] = [
+        let nuisances: [(&str, Option<&Bound<'_, PyAny>>, Setter); 6] = [
             ("contact_point", contact_point, id::Identification::contact_point),
             ("offset", offset, id::Identification::offset),
             ("drift", drift, id::Identification::drift),
             ("tilt", tilt, id::Identification::tilt),
             ("drag", drag, id::Identification::drag),
+            ("stiffness", stiffness, id::Identification::stiffness),
         ];
         for (name, given, set) in nuisances {
             if let Some(known) = given.map(|given| per_curve(name, given)).transpose()?.flatten() {
                 identification = set(identification, known);
             }
-        }
-        if let Some(known) = stiffness.map(|given| nuisance("stiffness", given)).transpose()?.flatten() {
-            identification = identification.stiffness(known);
         }
         if robust {
             identification = identification.robust();

@@ -7,10 +7,9 @@ use std::thread;
 use std::time::Duration;
 
 use pyo3::prelude::*;
-use viscocontact as vc;
 use viscocontact::Result;
 
-use crate::errors::{OrRaise, raise};
+use crate::errors::OrRaise;
 
 /// Time between two looks for a signal.
 const LISTEN: Duration = Duration::from_millis(50);
@@ -84,10 +83,7 @@ impl Listener {
     }
 
     /// The result of the call, or what was raised meanwhile.
-    pub fn result<T>(self, result: vc::Result<T>) -> PyResult<T> {
-        match self.raised {
-            Some(raised) => Err(raised),
-            None => result.map_err(|error| raise(&error)),
-        }
+    pub fn result<T>(self, result: PyResult<T>) -> PyResult<T> {
+        self.raised.map_or(result, Err)
     }
 }

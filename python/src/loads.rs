@@ -105,13 +105,8 @@ pub struct LoadHistory {
 }
 
 impl LoadHistory {
-    fn made<'py>(
-        py: Python<'py>,
-        maker: &'static str,
-        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
-        history: Arc<dyn History>,
-    ) -> PyResult<LoadHistory> {
-        Ok(LoadHistory { history, recipe: Recipe::new(py, maker, arguments)? })
+    fn by(recipe: Recipe, history: impl History + 'static) -> LoadHistory {
+        LoadHistory { history: Arc::new(history), recipe }
     }
 }
 
@@ -121,102 +116,59 @@ fn rows(table: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, ld::Load)>> {
     Ok(rows.into_iter().map(|(t, load)| (t, load.get().load)).collect())
 }
 
-#[pymethods]
-impl LoadHistory {
+makers! {LoadHistory, py:
     /// Loads at ascending times, linear in between, from a sequence of (time [s], load). Two rows of the same time are a jump.
-    #[staticmethod]
-    pub fn table(py: Python<'_>, table: Bound<'_, PyAny>) -> PyResult<LoadHistory> {
-        let history = ld::PiecewiseLinear::new(&rows(&table)?).or_raise()?;
-        LoadHistory::made(py, "table", (table,), Arc::new(history))
-    }
-
-    /// Forces [N] at times [s], two arrays, linear in between.
-    #[staticmethod]
-    fn forces(py: Python<'_>, times: Bound<'_, PyAny>, forces: Bound<'_, PyAny>) -> PyResult<LoadHistory> {
-        let history = of_columns(&times, "forces", &forces, ld::Load::force)?;
-        LoadHistory::made(py, "forces", (times, forces), Arc::new(history))
-    }
-
-    /// Approaches [m] at times [s], two arrays, linear in between.
-    #[staticmethod]
-    fn approaches(py: Python<'_>, times: Bound<'_, PyAny>, approaches: Bound<'_, PyAny>) -> PyResult<LoadHistory> {
-        let history = of_columns(&times, "approaches", &approaches, ld::Load::approach)?;
-        LoadHistory::made(py, "approaches", (times, approaches), Arc::new(history))
-    }
+    table(table: Bound<'_, PyAny>) = ld::PiecewiseLinear::new(&rows(&table)?);
 
     /// A load held from t = 0 on.
-    #[staticmethod]
-    fn held(py: Python<'_>, load: Bound<'_, Load>) -> PyResult<LoadHistory> {
-        let history = ld::StepLoad::new(load.get().load).or_raise()?;
-        LoadHistory::made(py, "held", (load,), Arc::new(history))
-    }
+    held(load: Bound<'_, Load>) = ld::StepLoad::new(load.get().load);
 
     /// Linear from one load to another from t = 0 on within `duration` [s], then constant.
-    #[staticmethod]
-    fn ramp(py: Python<'_>, start: Bound<'_, Load>, end: Bound<'_, Load>, duration: f64) -> PyResult<LoadHistory> {
-        let history = ld::Ramp::new(start.get().load, end.get().load, duration).or_raise()?;
-        LoadHistory::made(py, "ramp", (start, end, duration), Arc::new(history))
-    }
+    ramp(start: Bound<'_, Load>, end: Bound<'_, Load>, duration: f64) =
+        ld::Ramp::new(start.get().load, end.get().load, duration);
 
     /// Oscillation between two loads with `frequency` [Hz], from their mean at t = 0, rising.
-    #[staticmethod]
-    fn sinusoid(py: Python<'_>, low: Bound<'_, Load>, high: Bound<'_, Load>, frequency: f64) -> PyResult<LoadHistory> {
-        let history = ld::Sinusoid::new(low.get().load, high.get().load, frequency).or_raise()?;
-        LoadHistory::made(py, "sinusoid", (low, high, frequency), Arc::new(history))
-    }
+    sinusoid(low: Bound<'_, Load>, high: Bound<'_, Load>, frequency: f64) =
+        ld::Sinusoid::new(low.get().load, high.get().load, frequency);
 
     /// Oscillation about the load `mean` with an `amplitude` of its force, approach or drive and a `frequency` [Hz], from the mean at t = 0.
-    #[staticmethod]
-    fn sinusoid_about(py: Python<'_>, mean: Bound<'_, Load>, amplitude: f64, frequency: f64) -> PyResult<LoadHistory> {
-        let history = ld::Sinusoid::about(mean.get().load, amplitude, frequency).or_raise()?;
-        LoadHistory::made(py, "sinusoid_about", (mean, amplitude, frequency), Arc::new(history))
-    }
+    sinusoid_about(mean: Bound<'_, Load>, amplitude: f64, frequency: f64) =
+        ld::Sinusoid::about(mean.get().load, amplitude, frequency);
 
     /// A sequence of (time [s], load) that repeats without end.
-    #[staticmethod]
-    fn periodic(py: Python<'_>, table: Bound<'_, PyAny>) -> PyResult<LoadHistory> {
-        let history = ld::Periodic::new(&rows(&table)?).or_raise()?;
-        LoadHistory::made(py, "periodic", (table,), Arc::new(history))
-    }
+    periodic(table: Bound<'_, PyAny>) = ld::Periodic::new(&rows(&table)?);
 
     /// The first load for the part `duty` of each `period` [s], then the second.
-    #[staticmethod]
     #[pyo3(signature = (first, second, period, duty=0.5))]
-    fn square(
-        py: Python<'_>,
-        first: Bound<'_, Load>,
-        second: Bound<'_, Load>,
-        period: f64,
-        duty: f64,
-    ) -> PyResult<LoadHistory> {
-        let history = ld::Periodic::square(first.get().load, second.get().load, period, duty).or_raise()?;
-        LoadHistory::made(py, "square", (first, second, period, duty), Arc::new(history))
-    }
+    square(first: Bound<'_, Load>, second: Bound<'_, Load>, period: f64, duty: f64) =
+        ld::Periodic::square(first.get().load, second.get().load, period, duty);
 
     /// Linear from one load to another in half of each `period` [s], and back.
-    #[staticmethod]
-    fn triangle(py: Python<'_>, start: Bound<'_, Load>, end: Bound<'_, Load>, period: f64) -> PyResult<LoadHistory> {
-        let history = ld::Periodic::triangle(start.get().load, end.get().load, period).or_raise()?;
-        LoadHistory::made(py, "triangle", (start, end, period), Arc::new(history))
-    }
+    triangle(start: Bound<'_, Load>, end: Bound<'_, Load>, period: f64) =
+        ld::Periodic::triangle(start.get().load, end.get().load, period);
 
     /// Linear from one load to another in each `period` [s], and back at once.
-    #[staticmethod]
-    fn sawtooth(py: Python<'_>, start: Bound<'_, Load>, end: Bound<'_, Load>, period: f64) -> PyResult<LoadHistory> {
-        let history = ld::Periodic::sawtooth(start.get().load, end.get().load, period).or_raise()?;
-        LoadHistory::made(py, "sawtooth", (start, end, period), Arc::new(history))
-    }
+    sawtooth(start: Bound<'_, Load>, end: Bound<'_, Load>, period: f64) =
+        ld::Periodic::sawtooth(start.get().load, end.get().load, period);
+
+    /// Forces [N] at times [s], two arrays, linear in between.
+    forces(times: Bound<'_, PyAny>, forces: Bound<'_, PyAny>) = of_columns(&times, "forces", &forces, ld::Load::force)?;
+
+    /// Approaches [m] at times [s], two arrays, linear in between.
+    approaches(times: Bound<'_, PyAny>, approaches: Bound<'_, PyAny>) =
+        of_columns(&times, "approaches", &approaches, ld::Load::approach)?;
 
     /// A function of time [s] that returns a `Load`, smooth but for corners at `breakpoints` [s], where steps end.
     ///
-    /// An exception of the function comes out of the step that needed the load.
-    #[staticmethod]
+    /// A run asks for loads of its whole time before the first step, for the greatest ones: the function must be defined up to `until` and
+    /// depend on the time alone. (A load that depends on the contact is for a loop over `step`.) An exception comes out of the step that
+    /// needed the load, in a run often the first.
     #[pyo3(signature = (load, breakpoints=vec![]))]
-    fn function(py: Python<'_>, load: Py<PyAny>, breakpoints: Vec<f64>) -> PyResult<LoadHistory> {
-        let kept = load.clone_ref(py);
+    function(load: Py<PyAny>, breakpoints: Vec<f64>) = {
+        let function = load.clone_ref(py);
         let call = move |t: f64| {
             Python::attach(|py| {
-                let load = load.call1(py, (t,))?;
+                let load = function.call1(py, (t,))?;
                 let load = load.bind(py);
                 load.cast::<Load>().map(|load| load.get().load).map_err(|_| {
                     let class = load.get_type();
@@ -224,10 +176,12 @@ impl LoadHistory {
                 })
             })
         };
-        let history = ld::FnHistory::fallible(call).with_breakpoints(&breakpoints).or_raise()?;
-        LoadHistory::made(py, "function", (kept, breakpoints), Arc::new(history))
-    }
+        ld::FnHistory::fallible(call).with_breakpoints(&breakpoints)
+    };
+}
 
+#[pymethods]
+impl LoadHistory {
     /// The load at a time [s].
     fn at(&self, py: Python<'_>, t: f64) -> PyResult<Load> {
         let load = self.history.at(t);
@@ -253,13 +207,13 @@ fn of_columns(
     name: &str,
     values: &Bound<'_, PyAny>,
     load: fn(f64) -> ld::Load,
-) -> PyResult<ld::PiecewiseLinear> {
+) -> PyResult<viscocontact::Result<ld::PiecewiseLinear>> {
     let (times, values) = (column("times", times)?, column(name, values)?);
     if times.len() != values.len() {
         let (n, m) = (times.len(), values.len());
         return Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")));
     }
-    ld::PiecewiseLinear::new(&times.into_iter().zip(values.into_iter().map(load)).collect::<Vec<_>>()).or_raise()
+    Ok(ld::PiecewiseLinear::new(&times.into_iter().zip(values.into_iter().map(load)).collect::<Vec<_>>()))
 }
 
 /// Any history: a `LoadHistory`, a load that is held, a sequence of (time, load), or a function.

@@ -1,6 +1,6 @@
 //! What many classes repeat.
 
-/// Getters of a class: documentation, name, type and value, of what the class wraps, or (`try`) of the contact that it holds.
+/// Getters of a class: documentation, name, type and value, of what the class wraps, of a field, or (`try`) of the contact that it holds.
 macro_rules! getters {
     (try $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
         #[pymethods]
@@ -15,15 +15,36 @@ macro_rules! getters {
             )*
         }
     };
-    ($class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+    ($class:ident, $of:ident: $($rest:tt)*) => {
+        getters! {$class.0, $of: $($rest)*}
+    };
+    ($class:ident.$field:tt, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
         #[pymethods]
         impl $class {
             $(
                 $(#[$doc])*
                 #[getter]
                 fn $name(&self) -> $type {
-                    let $of = &self.0;
+                    let $of = &self.$field;
                     $value
+                }
+            )*
+        }
+    };
+}
+
+/// Static methods that make objects: documentation, name, arguments, and what the crate makes of them, of which the class makes an object by
+/// `by`. They run with `$py` attached.
+macro_rules! makers {
+    ($class:ident, $py:ident: $($(#[$meta:meta])* $name:ident($($arg:ident: $type:ty),*) = $made:expr;)*) => {
+        #[pymethods]
+        impl $class {
+            $(
+                $(#[$meta])*
+                #[staticmethod]
+                pub fn $name($py: Python<'_>, $($arg: $type),*) -> PyResult<$class> {
+                    let made = $made.or_raise()?;
+                    Ok($class::by(crate::recipe::Recipe::new($py, stringify!($name), ($($arg,)*))?, made))
                 }
             )*
         }

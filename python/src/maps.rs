@@ -1,7 +1,7 @@
 //! Measured and generated surfaces.
 
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use pyo3::exceptions::PyTypeError;
@@ -82,7 +82,7 @@ impl HeightMap {
         periodic: bool,
     ) -> PyResult<PyClassInitializer<HeightMap>> {
         let (heights, cells) = plane("heights", heights)?;
-        let map = geo::HeightMap::new(cells, lengths.both(), heights).or_raise()?;
+        let map = geo::HeightMap::new(cells, lengths.0, heights).or_raise()?;
         HeightMap::parts(py, if periodic { map.periodic() } else { map })
     }
 
@@ -108,16 +108,6 @@ impl HeightMap {
         missing_height: Option<f64>,
     ) -> PyResult<Py<HeightMap>> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let file = File::open(&path).map_err(|error| {
-            raise(
-                &FileError::Unreadable {
-                    file: path.display().to_string(),
-                    reason: error.to_string(),
-                    kind: Some(error.kind()),
-                }
-                .into(),
-            )
-        })?;
         let unit = unit.map(|unit| unit.parse::<LengthUnit>().or_raise()).transpose()?;
         let mut format = TextFormat::default();
         if let Some(comma) = decimal_comma {
@@ -126,17 +116,16 @@ impl HeightMap {
         if let Some(height) = missing_height {
             format = format.with_missing_height(height);
         }
-        let lengths = lengths.map(PerAxis::both);
+        let lengths = lengths.map(|lengths| lengths.0);
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
         let map = match ending.as_str() {
-            "sdf" => py.detach(|| geo::HeightMap::from_sdf(file)),
-            "sur" | "pro" => py.detach(|| geo::HeightMap::from_sur(file)),
-            "x3p" => py.detach(|| geo::HeightMap::from_x3p(file)),
-            "gsf" => py.detach(|| match unit {
-                Some(unit) => geo::HeightMap::from_gsf_with(file, unit),
-                None => geo::HeightMap::from_gsf(file),
-            }),
+            "sdf" | "sur" | "pro" | "x3p" => py.detach(|| geo::HeightMap::read(&path)),
+            "gsf" => {
+                let file = opened(&path)?;
+                py.detach(|| geo::HeightMap::from_gsf(file, unit))
+            }
             _ => {
+                let file = opened(&path)?;
                 let unit = unit.ok_or_else(|| needs("the unit of its numbers, such as unit=\"um\""))?;
                 if points {
                     py.detach(|| geo::HeightMap::from_xyz(file, unit, unit, format))
@@ -313,7 +302,7 @@ impl HeightMap {
             spec = spec.with_anisotropy(Anisotropy::new(ratio, direction));
         }
         let on = &grid.get().0;
-        let period = period.map(PerAxis::both);
+        let period = period.map(|period| period.0);
         let rough = py.detach(|| match period {
             Some(period) => geo::Rough::windowed(on, spec, period),
             None => geo::Rough::new(on, spec),
@@ -347,6 +336,13 @@ getters! {HeightMap, of:
     missing: usize = of.missing();
     /// The grid whose cells have the points of the map as their centres.
     grid: Grid = Grid(of.grid());
+}
+
+fn opened(path: &Path) -> PyResult<File> {
+    File::open(path).map_err(|error| {
+        let (file, reason, kind) = (path.display().to_string(), error.to_string(), Some(error.kind()));
+        raise(&FileError::Unreadable { file, reason, kind }.into())
+    })
 }
 
 /// Pairs as the rows of an array.

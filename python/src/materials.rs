@@ -65,6 +65,13 @@ impl Material {
     }
 }
 
+makers! {Material, py:
+    /// A material of the library of published ones (`published_materials`), with a constant Poisson's ratio.
+    ///
+    /// Raises ValueError with the known names.
+    published(name: &str, nu: f64) = rh::library::find(name).and_then(|found| found.material(nu));
+}
+
 #[pymethods]
 impl Material {
     #[new]
@@ -104,15 +111,6 @@ impl Material {
         Ok(Material { material: material.or_raise()?, recipe })
     }
 
-    /// A material of the library of published ones (`published_materials`), with a constant Poisson's ratio.
-    ///
-    /// Raises ValueError with the known names.
-    #[staticmethod]
-    fn published(py: Python<'_>, name: &str, nu: f64) -> PyResult<Material> {
-        let material = rh::library::find(name).and_then(|found| found.material(nu)).or_raise()?;
-        Ok(Material { material, recipe: Recipe::new(py, "published", (name, nu))? })
-    }
-
     /// The two bodies as one: both deform, and their compliances add up.
     fn against(slf: Bound<'_, Self>, other: Bound<'_, Material>) -> PyResult<Material> {
         let material = slf.get().material.clone().against(other.get().material.clone());
@@ -132,30 +130,17 @@ impl Material {
     fn contact_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         mapped("t", t, |t| self.material.contact_compliance(t))
     }
+}
 
+getters! {Material.material, of:
     /// Poisson's ratio of each body; None of an elastic or a relaxing bulk, where it changes.
-    #[getter]
-    fn nu(&self) -> Vec<Option<f64>> {
-        self.material.poisson_ratios().collect()
-    }
-
+    nu: Vec<Option<f64>> = of.poisson_ratios().collect();
     /// The times [s] over which all rheologies were measured or fitted; (0, inf) of formulas.
-    #[getter]
-    fn measured(&self) -> (f64, f64) {
-        self.material.measured().into()
-    }
-
+    measured: (f64, f64) = of.measured().into();
     /// The exponential series of C(t), as `Rheology.creep_spectrum`; None if there is none.
-    #[getter]
-    fn contact_spectrum(&self) -> PyResult<Option<Series>> {
-        Ok(self.material.contact_spectrum().or_raise()?.map(|spectrum| series(&spectrum)))
-    }
-
+    contact_spectrum: PyResult<Option<Series>> = Ok(of.contact_spectrum().or_raise()?.map(|spectrum| series(&spectrum)));
     /// The errors of series that were fitted, a line each.
-    #[getter]
-    fn fit_reports(&self) -> Vec<String> {
-        self.material.fit_reports().map(ToString::to_string).collect()
-    }
+    fit_reports: Vec<String> = of.fit_reports().map(ToString::to_string).collect();
 }
 
 made_by_calls!(Material);

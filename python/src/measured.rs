@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -38,6 +37,12 @@ pub struct Measurements {
     recipe: Recipe,
 }
 
+impl Measurements {
+    fn by(recipe: Recipe, measurements: rh::Measurements) -> Measurements {
+        Measurements { measurements, recipe }
+    }
+}
+
 fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
     let (x, y) = (column(names[0], x)?, column(names[1], y)?);
     if x.len() != y.len() {
@@ -52,45 +57,30 @@ fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyR
     Ok(x.into_iter().zip(y).collect())
 }
 
-#[pymethods]
-impl Measurements {
+makers! {Measurements, py:
     /// Creep: times ≥ 0 [s] and compliances [1/Pa], in any order.
-    #[staticmethod]
-    fn creep(py: Python<'_>, times: Bound<'_, PyAny>, compliances: Bound<'_, PyAny>) -> PyResult<Measurements> {
-        let measurements =
-            rh::Measurements::creep(&together(["times", "compliances"], &times, &compliances)?).or_raise()?;
-        Ok(Measurements { measurements, recipe: Recipe::new(py, "creep", (times, compliances))? })
-    }
+    creep(times: Bound<'_, PyAny>, compliances: Bound<'_, PyAny>) =
+        rh::Measurements::creep(&together(["times", "compliances"], &times, &compliances)?);
 
     /// Relaxation: times ≥ 0 [s] and moduli [Pa], in any order.
-    #[staticmethod]
-    fn relaxation(py: Python<'_>, times: Bound<'_, PyAny>, moduli: Bound<'_, PyAny>) -> PyResult<Measurements> {
-        let measurements = rh::Measurements::relaxation(&together(["times", "moduli"], &times, &moduli)?).or_raise()?;
-        Ok(Measurements { measurements, recipe: Recipe::new(py, "relaxation", (times, moduli))? })
-    }
-
-    /// Dynamic moduli: angular frequencies [rad/s], storage and loss moduli [Pa], in any order.
-    #[staticmethod]
-    fn dynamic(
-        py: Python<'_>,
-        omega: Bound<'_, PyAny>,
-        storage: Bound<'_, PyAny>,
-        loss: Bound<'_, PyAny>,
-    ) -> PyResult<Measurements> {
-        let first = together(["omega", "storage"], &omega, &storage)?;
-        let second = together(["omega", "loss"], &omega, &loss)?;
-        let rows: Vec<_> = first.into_iter().zip(second).map(|((x, storage), (_, loss))| (x, storage, loss)).collect();
-        let measurements = rh::Measurements::dynamic(&rows).or_raise()?;
-        Ok(Measurements { measurements, recipe: Recipe::new(py, "dynamic", (omega, storage, loss))? })
-    }
+    relaxation(times: Bound<'_, PyAny>, moduli: Bound<'_, PyAny>) =
+        rh::Measurements::relaxation(&together(["times", "moduli"], &times, &moduli)?);
 
     /// Storage moduli alone: angular frequencies [rad/s] and moduli [Pa], in any order.
-    #[staticmethod]
-    fn storage(py: Python<'_>, omega: Bound<'_, PyAny>, storage: Bound<'_, PyAny>) -> PyResult<Measurements> {
-        let measurements = rh::Measurements::storage(&together(["omega", "storage"], &omega, &storage)?).or_raise()?;
-        Ok(Measurements { measurements, recipe: Recipe::new(py, "storage", (omega, storage))? })
-    }
+    storage(omega: Bound<'_, PyAny>, storage: Bound<'_, PyAny>) =
+        rh::Measurements::storage(&together(["omega", "storage"], &omega, &storage)?);
 
+    /// Dynamic moduli: angular frequencies [rad/s], storage and loss moduli [Pa], in any order.
+    dynamic(omega: Bound<'_, PyAny>, storage: Bound<'_, PyAny>, loss: Bound<'_, PyAny>) = {
+        let first = together(["omega", "storage"], &omega, &storage)?;
+        let second = together(["omega", "loss"], &omega, &loss)?;
+        let rows = first.into_iter().zip(second).map(|((x, storage), (_, loss))| (x, storage, loss));
+        rh::Measurements::dynamic(&rows.collect::<Vec<_>>())
+    };
+}
+
+#[pymethods]
+impl Measurements {
     /// Reads a text file of an `experiment` ("creep", "relaxation", "dynamic" or "storage").
     ///
     /// Numbers are in SI units, which headings must agree with; `units="headings"` takes the units that each heading names, and
@@ -160,7 +150,7 @@ impl Measurements {
 }
 
 fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rheology {
-    Rheology::by(recipe, Arc::new(if extrapolated { series.extrapolated() } else { series }))
+    Rheology::by(recipe, if extrapolated { series.extrapolated() } else { series })
 }
 
 /// A text file, read as keywords say: `decimal_comma`, `delimiter`, `skipped_lines`, `headings` by column, and `only` some of them.
@@ -277,18 +267,6 @@ impl MasterCurve {
             .collect()
     }
 
-    /// Temperature [K] and vertical factor of each isotherm.
-    #[getter]
-    fn vertical_factors(&self) -> Vec<(f64, f64)> {
-        self.0.vertical_factors()
-    }
-
-    /// Temperature [K] of each isotherm, and how far it is off its neighbours where they overlap, relative.
-    #[getter]
-    fn disagreements(&self) -> Vec<(f64, f64)> {
-        self.0.disagreements()
-    }
-
     /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`.
     fn wlf(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
         let law = self.0.wlf().or_raise()?;
@@ -327,4 +305,11 @@ impl MasterCurve {
         }
         Ok(all)
     }
+}
+
+getters! {MasterCurve, of:
+    /// Temperature [K] and vertical factor of each isotherm.
+    vertical_factors: Vec<(f64, f64)> = of.vertical_factors();
+    /// Temperature [K] of each isotherm, and how far it is off its neighbours where they overlap, relative.
+    disagreements: Vec<(f64, f64)> = of.disagreements();
 }

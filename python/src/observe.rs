@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::observe as ob;
 
-use crate::arrays::{Array, field, to_array};
+use crate::arrays::{Array, columns, field, to_array};
 use crate::contact::ViscoelasticContact;
 use crate::errors::OrRaise;
 use crate::grid::Grid;
@@ -32,13 +32,13 @@ impl ViscoelasticContact {
     fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let contact = self.get()?;
         let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
-        let all = PyDict::new(py);
-        all.set_item("approach", error.approach)?;
-        all.set_item("max_pressure", error.max_pressure)?;
-        all.set_item("pressure_field", error.pressure_field)?;
-        all.set_item("rim_pressure", error.rim_pressure)?;
-        all.set_item("area", error.area)?;
-        Ok(Some(all))
+        Ok(Some(dict! { py;
+            "approach": error.approach,
+            "max_pressure": error.max_pressure,
+            "pressure_field": error.pressure_field,
+            "rim_pressure": error.rim_pressure,
+            "area": error.area,
+        }))
     }
 
     /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
@@ -56,18 +56,14 @@ impl ViscoelasticContact {
     #[pyo3(signature = (along=0, at=0.0))]
     fn profile<'py>(&self, py: Python<'py>, along: usize, at: f64) -> PyResult<Bound<'py, PyDict>> {
         let line = self.get()?.profile(axis(along)?, at).or_raise()?;
-        let all = PyDict::new(py);
-        let columns = [
+        let named = [
             ("position", line.positions),
             ("pressure", line.pressure),
             ("displacement", line.displacement),
             ("gap", line.gap),
             ("traction", line.traction),
         ];
-        for (name, column) in columns {
-            all.set_item(name, column.into_pyarray(py))?;
-        }
-        Ok(all)
+        columns(py, named)
     }
 
     /// The connected patches of the contact: an array of labels (0 out of contact, k + 1 in patch k), and for each patch a dict of

@@ -102,7 +102,7 @@ impl Plan {
             }
             plan.build_with(|at| listener.goes_on((at.steps, at.cells, at.time, at.work)))
         });
-        Ok(Plan { plan: listener.result(plan)?, parts: (shape, material), kernel, temperature })
+        Ok(Plan { plan: listener.result(plan.or_raise())?, parts: (shape, material), kernel, temperature })
     }
 
     /// The contact of the plan, at rest.
@@ -122,88 +122,6 @@ impl Plan {
         Ok(ViscoelasticContact::of(contact, Recipe::new(py, "", parts)?.with_keywords(Some(&keywords))))
     }
 
-    /// The grid.
-    #[getter]
-    fn grid(&self) -> Grid {
-        Grid(self.plan.grid.clone())
-    }
-
-    /// The tolerance of the steps, for `follow`.
-    #[getter]
-    fn tolerance(&self) -> f64 {
-        match self.plan.stepping {
-            Stepping::Adaptive { tolerance } => tolerance,
-            Stepping::Fixed { .. } => f64::NAN,
-            _ => f64::NAN,
-        }
-    }
-
-    /// Expected extent of the contact from the middle of the grid, along x1 and x2 [m].
-    #[getter]
-    fn reach(&self) -> (f64, f64) {
-        self.plan.reach.into()
-    }
-
-    /// Approximate number of steps.
-    #[getter]
-    fn steps(&self) -> usize {
-        self.plan.steps
-    }
-
-    /// Approximate number of convolution equivalents.
-    #[getter]
-    fn convolutions(&self) -> f64 {
-        self.plan.convolutions
-    }
-
-    /// Approximate memory [bytes].
-    #[getter]
-    fn bytes(&self) -> u64 {
-        self.plan.bytes
-    }
-
-    /// Expected error in time of approach and force, relative to their greatest values.
-    #[getter]
-    fn time_error(&self) -> Option<f64> {
-        self.plan.time_error
-    }
-
-    /// Expected error of the mesh of approach and force, relative to their greatest values.
-    #[getter]
-    fn mesh_error(&self) -> f64 {
-        self.plan.mesh_error.approach
-    }
-
-    /// The accuracy in time of fields, for `follow`; None if no fields were asked for.
-    #[getter]
-    fn fields_to(&self) -> Option<f64> {
-        self.plan.fields
-    }
-
-    /// Expected error of the mesh of the pressure field, in L1 over its load, at the times asked for or at the end.
-    #[getter]
-    fn field_error(&self) -> f64 {
-        self.plan.mesh_error.pressure_field
-    }
-
-    /// Times at which steps end besides, for `follow`: with them the run has the greatest pressure that is promised [s].
-    #[getter]
-    fn stops(&self) -> Vec<f64> {
-        self.plan.stops.clone()
-    }
-
-    /// Whether the greatest pressure of the run is promised.
-    #[getter]
-    fn pressure_converges(&self) -> bool {
-        self.plan.pressure_converges()
-    }
-
-    /// Why the greatest pressure of the run is not promised.
-    #[getter]
-    fn pressure_doubt(&self) -> Option<&'static str> {
-        self.plan.pressure_doubt()
-    }
-
     fn __str__(&self) -> String {
         self.plan.to_string()
     }
@@ -215,6 +133,39 @@ impl Plan {
             self.plan.steps, self.plan.convolutions, self.plan.bytes
         )
     }
+}
+
+getters! {Plan.plan, of:
+    /// The grid.
+    grid: Grid = Grid(of.grid.clone());
+    /// The tolerance of the steps, for `follow`.
+    tolerance: f64 = match of.stepping {
+        Stepping::Adaptive { tolerance } => tolerance,
+        Stepping::Fixed { .. } => f64::NAN,
+        _ => f64::NAN,
+    };
+    /// Expected extent of the contact from the middle of the grid, along x1 and x2 [m].
+    reach: (f64, f64) = of.reach.into();
+    /// Approximate number of steps.
+    steps: usize = of.steps;
+    /// Approximate number of convolution equivalents.
+    convolutions: f64 = of.convolutions;
+    /// Approximate memory [bytes].
+    bytes: u64 = of.bytes;
+    /// Expected error in time of approach and force, relative to their greatest values.
+    time_error: Option<f64> = of.time_error;
+    /// Expected error of the mesh of approach and force, relative to their greatest values.
+    mesh_error: f64 = of.mesh_error.approach;
+    /// The accuracy in time of fields, for `follow`; None if no fields were asked for.
+    fields_to: Option<f64> = of.fields;
+    /// Expected error of the mesh of the pressure field, in L1 over its load, at the times asked for or at the end.
+    field_error: f64 = of.mesh_error.pressure_field;
+    /// Times at which steps end besides, for `follow`: with them the run has the greatest pressure that is promised [s].
+    stops: Vec<f64> = of.stops.clone();
+    /// Whether the greatest pressure of the run is promised.
+    pressure_converges: bool = of.pressure_converges();
+    /// Why the greatest pressure of the run is not promised.
+    pressure_doubt: Option<&'static str> = of.pressure_doubt();
 }
 
 /// The kernel that a function in Python makes on a grid.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use numpy::{Complex64, IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
 use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 
 use crate::arrays::{column, mapped, pairs, values};
@@ -28,17 +27,8 @@ pub struct Rheology {
 }
 
 impl Rheology {
-    pub fn made<'py>(
-        py: Python<'py>,
-        maker: &'static str,
-        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
-        body: Arc<dyn Body>,
-    ) -> PyResult<Rheology> {
-        Ok(Rheology { body, recipe: Recipe::new(py, maker, arguments)? })
-    }
-
-    pub fn by(recipe: Recipe, body: Arc<dyn Body>) -> Rheology {
-        Rheology { body, recipe }
+    pub fn by(recipe: Recipe, body: impl Body + 'static) -> Rheology {
+        Rheology { body: Arc::new(body), recipe }
     }
 
     fn spectrum(&self) -> PyResult<CreepSpectrum> {
@@ -48,151 +38,77 @@ impl Rheology {
     }
 }
 
-#[pymethods]
-impl Rheology {
+makers! {Rheology, py:
     /// An elastic body of shear modulus `g` [Pa]: J = 1/G.
-    #[staticmethod]
-    fn elastic(py: Python<'_>, g: f64) -> PyResult<Rheology> {
-        Rheology::made(py, "elastic", (g,), Arc::new(rh::Elastic::new(g).or_raise()?))
-    }
+    elastic(g: f64) = rh::Elastic::new(g);
 
     /// An elastic body of Young's modulus `e` [Pa] and Poisson's ratio `nu`; its `Material` needs the same `nu`.
-    #[staticmethod]
-    fn elastic_young(py: Python<'_>, e: f64, nu: f64) -> PyResult<Rheology> {
-        Rheology::made(py, "elastic_young", (e, nu), Arc::new(rh::Elastic::young(e, nu).or_raise()?))
-    }
+    elastic_young(e: f64, nu: f64) = rh::Elastic::young(e, nu);
 
     /// A published Prony series in shear (`published_materials`), by Poisson's ratio where it was measured in tension.
-    #[staticmethod]
-    fn published(py: Python<'_>, name: &str, nu: f64) -> PyResult<Rheology> {
-        let body = rh::library::find(name).and_then(|found| found.rheology(nu)).or_raise()?;
-        Rheology::made(py, "published", (name, nu), Arc::new(body))
-    }
+    published(name: &str, nu: f64) = rh::library::find(name).and_then(|found| found.rheology(nu));
 
     /// Spring `g` [Pa] and dashpot in series, of `relaxation_time` [s]: a fluid.
-    #[staticmethod]
-    fn maxwell(py: Python<'_>, g: f64, relaxation_time: f64) -> PyResult<Rheology> {
-        let body = rh::Maxwell::with_time(g, relaxation_time).or_raise()?;
-        Rheology::made(py, "maxwell", (g, relaxation_time), Arc::new(body))
-    }
+    maxwell(g: f64, relaxation_time: f64) = rh::Maxwell::with_time(g, relaxation_time);
 
     /// Spring `g` [Pa] and dashpot in parallel, of `retardation_time` [s]: no elastic response.
-    #[staticmethod]
-    fn kelvin_voigt(py: Python<'_>, g: f64, retardation_time: f64) -> PyResult<Rheology> {
-        let body = rh::KelvinVoigt::with_time(g, retardation_time).or_raise()?;
-        Rheology::made(py, "kelvin_voigt", (g, retardation_time), Arc::new(body))
-    }
+    kelvin_voigt(g: f64, retardation_time: f64) = rh::KelvinVoigt::with_time(g, retardation_time);
 
     /// A spring `g` [Pa] in series with a spring `g_k` [Pa] and a dashpot in parallel, of `retardation_time` [s]: the standard linear
     /// solid.
-    #[staticmethod]
-    fn zener(py: Python<'_>, g: f64, g_k: f64, retardation_time: f64) -> PyResult<Rheology> {
-        let body = rh::Zener::with_time(g, g_k, retardation_time).or_raise()?;
-        Rheology::made(py, "zener", (g, g_k, retardation_time), Arc::new(body))
-    }
+    zener(g: f64, g_k: f64, retardation_time: f64) = rh::Zener::with_time(g, g_k, retardation_time);
 
     /// The standard linear solid whose modulus relaxes from `glassy` to `rubbery` [Pa] with `relaxation_time` [s].
-    #[staticmethod]
-    fn relaxing(py: Python<'_>, glassy: f64, rubbery: f64, relaxation_time: f64) -> PyResult<Rheology> {
-        let body = rh::Zener::relaxing(glassy, rubbery, relaxation_time).or_raise()?;
-        Rheology::made(py, "relaxing", (glassy, rubbery, relaxation_time), Arc::new(body))
-    }
+    relaxing(glassy: f64, rubbery: f64, relaxation_time: f64) = rh::Zener::relaxing(glassy, rubbery, relaxation_time);
 
     /// A Maxwell element (modulus `g` [Pa], `relaxation_time` [s]) and a Kelvin–Voigt element (`g_k` [Pa], `retardation_time` [s]) in
     /// series.
-    #[staticmethod]
-    fn burgers(py: Python<'_>, g: f64, relaxation_time: f64, g_k: f64, retardation_time: f64) -> PyResult<Rheology> {
-        let body = rh::Burgers::with_times((g, relaxation_time), (g_k, retardation_time)).or_raise()?;
-        Rheology::made(py, "burgers", (g, relaxation_time, g_k, retardation_time), Arc::new(body))
-    }
+    burgers(g: f64, relaxation_time: f64, g_k: f64, retardation_time: f64) =
+        rh::Burgers::with_times((g, relaxation_time), (g_k, retardation_time));
 
     /// A Prony series G(t) = G∞ + Σ G_k exp(−t/τ_k): the `equilibrium` modulus [Pa] (0 for a fluid) and rows (modulus [Pa], relaxation
     /// time [s]).
-    #[staticmethod]
-    fn prony(py: Python<'_>, equilibrium: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
-        let body = rh::GeneralizedMaxwell::new(equilibrium, &pairs("terms", &terms)?).or_raise()?;
-        Rheology::made(py, "prony", (equilibrium, terms), Arc::new(body))
-    }
-
-    /// A Prony series as finite-element programs write it: the `glassy` modulus [Pa] and rows (share g_k, relaxation time [s]).
-    #[staticmethod]
-    fn prony_of_glassy(py: Python<'_>, glassy: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
-        let rows: Vec<_> = shares(&terms)?;
-        let body = rh::GeneralizedMaxwell::prony(glassy, &rows).or_raise()?;
-        Rheology::made(py, "prony_of_glassy", (glassy, terms), Arc::new(body))
-    }
-
-    /// A Prony series relative to the `rubbery` modulus [Pa]: rows (share g_k, relaxation time [s]).
-    #[staticmethod]
-    fn prony_of_rubbery(py: Python<'_>, rubbery: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
-        let rows: Vec<_> = shares(&terms)?;
-        let body = rh::GeneralizedMaxwell::prony_long_term(rubbery, &rows).or_raise()?;
-        Rheology::made(py, "prony_of_rubbery", (rubbery, terms), Arc::new(body))
-    }
+    prony(equilibrium: f64, terms: Bound<'_, PyAny>) =
+        rh::GeneralizedMaxwell::new(equilibrium, &pairs("terms", &terms)?);
 
     /// A creep series J(t) = J_g + φ t + Σ J_k (1 − exp(−t/λ_k)): `glassy` compliance [1/Pa], `fluidity` [1/(Pa·s)], rows (compliance
     /// [1/Pa], retardation time [s]).
-    #[staticmethod]
-    fn generalized_kelvin(py: Python<'_>, glassy: f64, fluidity: f64, terms: Bound<'_, PyAny>) -> PyResult<Rheology> {
-        let body = rh::GeneralizedKelvin::new(glassy, fluidity, &pairs("terms", &terms)?).or_raise()?;
-        Rheology::made(py, "generalized_kelvin", (glassy, fluidity, terms), Arc::new(body))
-    }
+    generalized_kelvin(glassy: f64, fluidity: f64, terms: Bound<'_, PyAny>) =
+        rh::GeneralizedKelvin::new(glassy, fluidity, &pairs("terms", &terms)?);
 
     /// A springpot J(t) = J₁ (t/t₁)^α: `compliance` J₁ [1/Pa] at `time` t₁ [s], `exponent` α.
-    #[staticmethod]
-    fn power_law(py: Python<'_>, compliance: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::PowerLaw::new(compliance, time, exponent).or_raise()?;
-        Rheology::made(py, "power_law", (compliance, time, exponent), Arc::new(body))
-    }
+    power_law(compliance: f64, time: f64, exponent: f64) = rh::PowerLaw::new(compliance, time, exponent);
 
     /// A spring `g` [Pa] and a springpot in series that creeps as much as the spring at `time` [s].
-    #[staticmethod]
-    fn fractional_maxwell(py: Python<'_>, g: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::FractionalMaxwell::with_time(g, time, exponent).or_raise()?;
-        Rheology::made(py, "fractional_maxwell", (g, time, exponent), Arc::new(body))
-    }
+    fractional_maxwell(g: f64, time: f64, exponent: f64) = rh::FractionalMaxwell::with_time(g, time, exponent);
 
     /// Findley's form J = J₀ + m tⁿ: `glassy` J₀ [1/Pa], `coefficient` m, `exponent` n.
-    #[staticmethod]
-    fn findley(py: Python<'_>, glassy: f64, coefficient: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::FractionalMaxwell::findley(glassy, coefficient, exponent).or_raise()?;
-        Rheology::made(py, "findley", (glassy, coefficient, exponent), Arc::new(body))
-    }
+    findley(glassy: f64, coefficient: f64, exponent: f64) =
+        rh::FractionalMaxwell::findley(glassy, coefficient, exponent);
 
     /// The standard linear solid with a springpot of `exponent` in place of the dashpot, of retardation `time` [s].
-    #[staticmethod]
-    fn fractional_zener(py: Python<'_>, g: f64, g_k: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::FractionalZener::new(g, g_k, time, exponent).or_raise()?;
-        Rheology::made(py, "fractional_zener", (g, g_k, time, exponent), Arc::new(body))
-    }
+    fractional_zener(g: f64, g_k: f64, time: f64, exponent: f64) = rh::FractionalZener::new(g, g_k, time, exponent);
 
     /// The fractional standard linear solid whose modulus relaxes from `glassy` to `rubbery` [Pa], of relaxation `time` [s].
-    #[staticmethod]
-    fn fractional_relaxing(py: Python<'_>, glassy: f64, rubbery: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::FractionalZener::relaxing(glassy, rubbery, time, exponent).or_raise()?;
-        Rheology::made(py, "fractional_relaxing", (glassy, rubbery, time, exponent), Arc::new(body))
-    }
+    fractional_relaxing(glassy: f64, rubbery: f64, time: f64, exponent: f64) =
+        rh::FractionalZener::relaxing(glassy, rubbery, time, exponent);
 
     /// A stretched exponential J(t) = J_g + ΔJ [1 − exp(−(t/λ)^β)].
-    #[staticmethod]
-    fn kww(py: Python<'_>, glassy: f64, retarded: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::Kww::new(glassy, retarded, time, exponent).or_raise()?;
-        Rheology::made(py, "kww", (glassy, retarded, time, exponent), Arc::new(body))
-    }
+    kww(glassy: f64, retarded: f64, time: f64, exponent: f64) = rh::Kww::new(glassy, retarded, time, exponent);
 
     /// Logarithmic creep J(t) = J_g + c ln(1 + t/λ).
-    #[staticmethod]
-    fn log_creep(py: Python<'_>, glassy: f64, strength: f64, time: f64) -> PyResult<Rheology> {
-        let body = rh::LogCreep::new(glassy, strength, time).or_raise()?;
-        Rheology::made(py, "log_creep", (glassy, strength, time), Arc::new(body))
-    }
+    log_creep(glassy: f64, strength: f64, time: f64) = rh::LogCreep::new(glassy, strength, time);
 
     /// Log-power creep J(t) = J_g + c ln(1 + (t/λ)ⁿ).
-    #[staticmethod]
-    fn slow_creep(py: Python<'_>, glassy: f64, strength: f64, time: f64, exponent: f64) -> PyResult<Rheology> {
-        let body = rh::SlowCreep::new(glassy, strength, time, exponent).or_raise()?;
-        Rheology::made(py, "slow_creep", (glassy, strength, time, exponent), Arc::new(body))
-    }
+    slow_creep(glassy: f64, strength: f64, time: f64, exponent: f64) =
+        rh::SlowCreep::new(glassy, strength, time, exponent);
+
+    /// A Prony series as finite-element programs write it: the `glassy` modulus [Pa] and rows (share g_k, relaxation time [s]).
+    prony_of_glassy(glassy: f64, terms: Bound<'_, PyAny>) = rh::GeneralizedMaxwell::prony(glassy, &shares(&terms)?);
+
+    /// A Prony series relative to the `rubbery` modulus [Pa]: rows (share g_k, relaxation time [s]).
+    prony_of_rubbery(rubbery: f64, terms: Bound<'_, PyAny>) =
+        rh::GeneralizedMaxwell::prony_long_term(rubbery, &shares(&terms)?);
 
     /// Your own shear creep compliance: a function of the time t ≥ 0 [s] that returns J [1/Pa], never decreasing.
     ///
@@ -201,19 +117,21 @@ impl Rheology {
     /// >>> own = Rheology.function(lambda t: 1e-6 * (1 + t**0.3))
     /// >>> own.creep_compliance(1.0)
     /// 2e-06
-    #[staticmethod]
-    fn function(py: Python<'_>, creep_compliance: Py<PyAny>) -> PyResult<Rheology> {
-        let kept = creep_compliance.clone_ref(py);
-        let call = move |t: f64| Python::attach(|py| creep_compliance.call1(py, (t,))?.extract::<f64>(py));
-        Rheology::made(py, "function", (kept,), Arc::new(rh::FnRheology::fallible(call)))
-    }
+    function(creep_compliance: Py<PyAny>) = {
+        let function = creep_compliance.clone_ref(py);
+        let call = move |t: f64| Python::attach(|py| function.call1(py, (t,))?.extract::<f64>(py));
+        Ok::<_, viscocontact::Error>(rh::FnRheology::fallible(call))
+    };
+}
 
+#[pymethods]
+impl Rheology {
     /// This body fitted by an exponential series over the times from `first` to `last` [s] within a relative error.
     #[pyo3(signature = (first, last, tolerance=1e-4))]
     fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Rheology> {
         let (py, body) = (slf.py(), Arc::clone(&slf.get().body));
         let series = py.detach(|| body.series(first..=last, tolerance)).or_raise()?;
-        Rheology::made(py, "fitted", (slf, first, last, tolerance), Arc::new(series))
+        Ok(Rheology::by(Recipe::new(py, "fitted", (slf, first, last, tolerance))?, series))
     }
 
     /// Checks the laws of creep at ascending times [s]: not negative, not decreasing, concave, and as its series. Raises ValueError with the
@@ -251,31 +169,18 @@ impl Rheology {
         let moduli: Vec<Complex64> = values.into_iter().map(|omega| spectrum.complex_modulus(omega)).collect();
         Ok(moduli.into_pyarray(py).reshape(shape)?.into_any())
     }
+}
 
+getters! {Rheology.body, of:
     /// The exact exponential series of J(t): glassy compliance [1/Pa], fluidity [1/(Pa·s)], rows (compliance, retardation time); None
     /// if there is none.
-    #[getter]
-    fn creep_spectrum(&self) -> Option<Series> {
-        self.body.creep_spectrum().map(|spectrum| series(&spectrum))
-    }
-
+    creep_spectrum: Option<Series> = of.creep_spectrum().map(|spectrum| series(&spectrum));
     /// The times [s] over which it was measured or fitted; (0, inf) of formulas.
-    #[getter]
-    fn measured(&self) -> (f64, f64) {
-        self.body.measured().into()
-    }
-
+    measured: (f64, f64) = of.measured().into();
     /// The longest time at which it is known [s]; inf of formulas.
-    #[getter]
-    fn known_until(&self) -> f64 {
-        self.body.known_until()
-    }
-
+    known_until: f64 = of.known_until();
     /// The error of the series, if it was fitted, in one line.
-    #[getter]
-    fn fit_report(&self) -> Option<String> {
-        self.body.fit_report().map(|report| report.to_string())
-    }
+    fit_report: Option<String> = of.fit_report().map(|report| report.to_string());
 }
 
 made_by_calls!(Rheology);

@@ -9,7 +9,7 @@ use viscocontact::contact::StepReport as Report;
 use viscocontact::run::{self as vr, Crossing};
 use viscocontact::{self as vc, ViscoelasticContact as InSpace};
 
-use crate::arrays::{Array, to_array};
+use crate::arrays;
 use crate::contact::ViscoelasticContact;
 use crate::errors::{Cancelled, OrRaise, choice, no_exception, raised_number};
 use crate::held::{Led, Options};
@@ -195,7 +195,7 @@ impl Run {
             .or_raise()?;
             passed.iter().for_each(|row| columns.iter_mut().zip(row).for_each(|(column, value)| column.push(*value)));
         }
-        as_table(py, columns)
+        arrays::columns(py, ["time", "force", "approach", "contact_area"].into_iter().zip(columns))
     }
 
     /// The contact that the run leads.
@@ -249,17 +249,6 @@ impl Run {
             contact.held.run(self.number)?.0.save(path).or_raise()
         })
     }
-}
-
-/// The columns of a table by name.
-pub fn as_table(py: Python<'_>, columns: [Vec<f64>; 4]) -> PyResult<Bound<'_, PyDict>> {
-    let all = PyDict::new(py);
-    for (name, column) in ["time", "force", "approach", "contact_area"].into_iter().zip(columns) {
-        let n = column.len();
-        let array: Array<'_> = to_array(py, column, &[n])?;
-        all.set_item(name, array)?;
-    }
-    Ok(all)
 }
 
 type Quantity<C> = Box<dyn Fn(&C) -> f64 + Send + Sync>;

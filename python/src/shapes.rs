@@ -39,6 +39,10 @@ impl Shape {
         Ok(Shape { geometry, recipe: Recipe::new(py, maker, arguments)? })
     }
 
+    fn by(recipe: Recipe, geometry: impl Geometry + 'static) -> Shape {
+        Shape { geometry: Arc::new(geometry), recipe }
+    }
+
     pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> Shape {
         Shape { recipe: self.recipe.with_keywords(Some(keywords)), ..self }
     }
@@ -71,55 +75,45 @@ impl Geometry for GapOnCells {
     }
 }
 
-#[pymethods]
-impl Shape {
+makers! {Shape, py:
     /// A sphere of `radius` [m], as a paraboloid: r²/2R.
-    #[staticmethod]
-    fn sphere(py: Python<'_>, radius: f64) -> PyResult<Shape> {
-        Shape::made(py, "sphere", (radius,), Arc::new(geo::Sphere::new(radius).or_raise()?))
-    }
+    sphere(radius: f64) = geo::Sphere::new(radius);
 
     /// A cylinder of `radius` [m] along x2, as a parabola: x1²/2R.
-    #[staticmethod]
-    fn cylinder(py: Python<'_>, radius: f64) -> PyResult<Shape> {
-        Shape::made(py, "cylinder", (radius,), Arc::new(geo::Cylinder::new(radius).or_raise()?))
-    }
+    cylinder(radius: f64) = geo::Cylinder::new(radius);
 
     /// A paraboloid of the radii of curvature `r1` and `r2` [m] along x1 and x2.
-    #[staticmethod]
-    fn ellipsoid(py: Python<'_>, r1: f64, r2: f64) -> PyResult<Shape> {
-        Shape::made(py, "ellipsoid", (r1, r2), Arc::new(geo::Ellipsoid::new(r1, r2).or_raise()?))
-    }
+    ellipsoid(r1: f64, r2: f64) = geo::Ellipsoid::new(r1, r2);
 
     /// A cone whose flank rises by `tan_beta` per unit of radius.
-    #[staticmethod]
-    fn cone(py: Python<'_>, tan_beta: f64) -> PyResult<Shape> {
-        Shape::made(py, "cone", (tan_beta,), Arc::new(geo::Cone::new(tan_beta).or_raise()?))
-    }
+    cone(tan_beta: f64) = geo::Cone::new(tan_beta);
 
     /// A flat punch with a circular face of `radius` [m]; nothing to touch outside.
-    #[staticmethod]
-    fn circular_punch(py: Python<'_>, radius: f64) -> PyResult<Shape> {
-        Shape::made(py, "circular_punch", (radius,), Arc::new(geo::FlatPunch::circular(radius).or_raise()?))
-    }
+    circular_punch(radius: f64) = geo::FlatPunch::circular(radius);
 
     /// A flat punch with a rectangular face of full `sides` along x1 and x2 [m].
-    #[staticmethod]
-    fn rectangular_punch(py: Python<'_>, sides: [f64; 2]) -> PyResult<Shape> {
-        Shape::made(py, "rectangular_punch", (sides,), Arc::new(geo::FlatPunch::rectangular(sides).or_raise()?))
-    }
+    rectangular_punch(sides: [f64; 2]) = geo::FlatPunch::rectangular(sides);
 
     /// A wave along x1, A (1 − cos 2πx1/λ), of `amplitude` A and `wavelength` λ [m]; a pair of each makes the sum of a wave along x1
     /// and one along x2.
-    #[staticmethod]
-    fn wavy(py: Python<'_>, amplitude: Bound<'_, PyAny>, wavelength: Bound<'_, PyAny>) -> PyResult<Shape> {
-        let wave = match (amplitude.extract(), wavelength.extract()) {
-            (Ok(amplitudes), Ok(wavelengths)) => geo::Wavy::in_two_directions(amplitudes, wavelengths),
-            _ => geo::Wavy::new(amplitude.extract()?, wavelength.extract()?),
-        };
-        Shape::made(py, "wavy", (amplitude, wavelength), Arc::new(wave.or_raise()?))
-    }
+    wavy(amplitude: Bound<'_, PyAny>, wavelength: Bound<'_, PyAny>) =
+        match (amplitude.extract(), wavelength.extract()) {
+        (Ok(amplitudes), Ok(wavelengths)) => geo::Wavy::in_two_directions(amplitudes, wavelengths),
+        _ => geo::Wavy::new(amplitude.extract()?, wavelength.extract()?),
+    };
 
+    /// A gap by a function of the coordinates x1 and x2 [m], two floats, that returns a float [m].
+    ///
+    /// An exception of the function comes out of the call that needed the gap.
+    function(gap: Py<PyAny>) = {
+        let function = gap.clone_ref(py);
+        let call = move |x1: f64, x2: f64| Python::attach(|py| function.call1(py, (x1, x2))?.extract::<f64>(py));
+        Ok::<_, vc::Error>(geo::FnGeometry::fallible(call))
+    };
+}
+
+#[pymethods]
+impl Shape {
     /// A gap [m] for each cell of `grid`: any array of its shape, `+inf` where there is nothing to touch.
     ///
     /// Raises ValueError if the shapes differ, or a value is NaN.
@@ -134,16 +128,6 @@ impl Shape {
         let values = crate::arrays::field("gap", &gap, on.cells())?;
         let copy = to_array(py, values.clone(), &on.cells())?;
         Shape::made(py, "gap_on", (grid, copy), Arc::new(GapOnCells { grid: on, gap: values }))
-    }
-
-    /// A gap by a function of the coordinates x1 and x2 [m], two floats, that returns a float [m].
-    ///
-    /// An exception of the function comes out of the call that needed the gap.
-    #[staticmethod]
-    fn function(py: Python<'_>, gap: Py<PyAny>) -> PyResult<Shape> {
-        let kept = gap.clone_ref(py);
-        let call = move |x1: f64, x2: f64| Python::attach(|py| gap.call1(py, (x1, x2))?.extract::<f64>(py));
-        Shape::made(py, "function", (kept,), Arc::new(geo::FnGeometry::fallible(call)))
     }
 
     /// This shape with its origin at the point `by` [m].

@@ -1,9 +1,10 @@
 //! Steady sliding and rolling: one problem a velocity.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use numpy::{Complex64, IntoPyArray};
+use numpy::Complex64;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +13,7 @@ use viscocontact::{self as vc, sliding as sl};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice, raised_number};
 use crate::grid::Grid;
-use crate::interrupt::Listener;
+use crate::interrupt::{Listener, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
@@ -24,6 +25,13 @@ use crate::temperature::TimeTemperature;
 pub fn complex(function: &Py<PyAny>, omega: f64) -> Complex64 {
     let value = Python::attach(|py| function.call1(py, (omega,))?.extract(py));
     raised_number(value, Complex64::new(f64::NAN, f64::NAN))
+}
+
+/// A velocity along x1, or along x1 and x2.
+pub fn velocity(given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
+    let along = given.extract::<f64>().map(|speed| [speed, 0.0]);
+    let needed = "velocity: a speed along x1, or a pair along x1 and x2 [m/s], is needed";
+    along.or_else(|_| given.extract()).map_err(|_| PyTypeError::new_err(needed))
 }
 
 /// The state of a steady motion, in numbers.
@@ -89,6 +97,7 @@ getters! {SlidingReport, of:
 #[pyclass(module = "viscocontact")]
 pub struct SteadySliding {
     sliding: sl::SteadySliding,
+    cancel: Arc<AtomicBool>,
     /// A contact at rest of the same parts.
     recipe: Recipe,
 }
@@ -123,21 +132,23 @@ impl SteadySliding {
             (None, Some(modulus)) => py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega))),
             _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
         };
-        let sliding = sliding.or_raise()?;
+        let cancel = Arc::<AtomicBool>::default();
+        let sliding = sliding.or_raise()?.cancelled_by(Arc::clone(&cancel));
         let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options);
-        Ok(SteadySliding { sliding, recipe })
+        Ok(SteadySliding { sliding, cancel, recipe })
     }
 
-    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` along x1 and x2 [m/s].
-    fn at(&mut self, py: Python<'_>, velocity: [f64; 2], load: &Load) -> PyResult<SlidingReport> {
-        let load = load.load;
-        py.detach(|| self.sliding.at(velocity, load)).or_raise().map(SlidingReport)
+    /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
+    /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
+    fn at(&mut self, py: Python<'_>, velocity: &Bound<'_, PyAny>, load: &Load) -> PyResult<SlidingReport> {
+        let (velocity, load) = (self::velocity(velocity)?, load.load);
+        interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load)).map(SlidingReport)
     }
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
     ///
     /// `progress` is called after each state with the part that is done; where it returns False, the sweep ends with the states so far.
-    /// Ctrl-C ends it between two states.
+    /// Ctrl-C ends it within a state.
     ///
     /// Returns the table of the states, each found from the one before: neighbours cost least.
     #[pyo3(signature = (velocities, loads, *, law=None, temperatures=None, progress=None))]
@@ -161,8 +172,9 @@ impl SteadySliding {
             _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
         }
         let mut listener = Listener::new(progress);
+        let SteadySliding { sliding, cancel, .. } = self;
         let table =
-            py.detach(|| self.sliding.sweep_with(&sweep, |_, share| -> ControlFlow<()> { listener.goes_on((share,)) }));
+            interruptible(py, true, cancel, || sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,))));
         listener.result(table).map(SlidingTable)
     }
 
@@ -219,11 +231,7 @@ impl SlidingTable {
     /// Arrays with a value for each state: "velocity1", "velocity2" [m/s], "temperature" [K] (NaN without), "force" [N], "approach" [m],
     /// "friction", "lateral_force1", "lateral_force2" [N], "contact_area" [m²], "mean_gap" [m] and "dissipation" [W].
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        for (name, of) in COLUMNS {
-            all.set_item(name, self.0.states().iter().map(of).collect::<Vec<_>>().into_pyarray(py))?;
-        }
-        Ok(all)
+        crate::arrays::columns(py, COLUMNS.map(|(name, of)| (name, self.0.states().iter().map(of).collect())))
     }
 
     /// A picture of a column over the speed, a curve for each temperature and load.

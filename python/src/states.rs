@@ -6,7 +6,7 @@ use std::sync::Arc;
 use numpy::IntoPyArray;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyBytes, PyDict};
 use viscocontact::contact::Settings;
 use viscocontact::output::{Metadata, read_states, write_states};
 use viscocontact::run::Stepping;
@@ -43,56 +43,39 @@ pub struct ElasticStates {
 }
 
 impl ElasticStates {
-    fn made<'py>(
-        py: Python<'py>,
-        maker: &'static str,
-        arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
-        states: vc::Result<Arc<st::ElasticStates>>,
-    ) -> PyResult<ElasticStates> {
-        Ok(ElasticStates { states: states.or_raise()?, recipe: Some(Recipe::new(py, maker, arguments)?) })
+    fn by(recipe: Recipe, states: Arc<st::ElasticStates>) -> ElasticStates {
+        ElasticStates { states, recipe: Some(recipe) }
     }
+}
+
+makers! {ElasticStates, py:
+    /// A sphere of `radius` [m] (Hertz).
+    sphere(radius: f64) = st::ElasticStates::sphere(radius);
+
+    /// A cone whose flank rises by `tan_beta` per unit of radius.
+    cone(tan_beta: f64) = st::ElasticStates::cone(tan_beta);
+
+    /// A flat circular punch of `radius` [m].
+    punch(radius: f64) = st::ElasticStates::punch(radius);
+
+    /// A body of the shape c rⁿ: `coefficient` c [m^(1−n)], `exponent` n.
+    power(coefficient: f64, exponent: f64) = st::ElasticStates::power(coefficient, exponent);
+
+    /// A true sphere of `radius` [m], up to a contact radius of 0.97 of it (Sneddon); `sphere` is its paraboloid.
+    true_sphere(radius: f64) = viscocontact_identify::tips::sphere(radius);
+
+    /// States of an upright body from rows (level [m²], approach [m], stiffness over modulus [m], contact area [m²]).
+    from_table(rows: Bound<'_, PyAny>) = {
+        let table: Vec<_> = table::<4>("rows", &rows)?.into_iter().map(|[a, b, c, d]| (a, b, c, d)).collect();
+        st::ElasticStates::from_table(&table)
+    };
+
+    /// Reads states that `save` has written. They hold no surface, so that `StatesContact.fields` is not possible.
+    load(path: PathBuf) = py.detach(|| read_states(&path));
 }
 
 #[pymethods]
 impl ElasticStates {
-    /// A sphere of `radius` [m] (Hertz).
-    #[staticmethod]
-    fn sphere(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
-        ElasticStates::made(py, "sphere", (radius,), st::ElasticStates::sphere(radius))
-    }
-
-    /// A cone whose flank rises by `tan_beta` per unit of radius.
-    #[staticmethod]
-    fn cone(py: Python<'_>, tan_beta: f64) -> PyResult<ElasticStates> {
-        ElasticStates::made(py, "cone", (tan_beta,), st::ElasticStates::cone(tan_beta))
-    }
-
-    /// A true sphere of `radius` [m], up to a contact radius of 0.97 of it (Sneddon); `sphere` is its paraboloid.
-    #[staticmethod]
-    fn true_sphere(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
-        let states = viscocontact_identify::tips::sphere(radius).or_raise()?;
-        ElasticStates::made(py, "true_sphere", (radius,), Ok(states))
-    }
-
-    /// A flat circular punch of `radius` [m].
-    #[staticmethod]
-    fn punch(py: Python<'_>, radius: f64) -> PyResult<ElasticStates> {
-        ElasticStates::made(py, "punch", (radius,), st::ElasticStates::punch(radius))
-    }
-
-    /// A body of the shape c rⁿ: `coefficient` c [m^(1−n)], `exponent` n.
-    #[staticmethod]
-    fn power(py: Python<'_>, coefficient: f64, exponent: f64) -> PyResult<ElasticStates> {
-        ElasticStates::made(py, "power", (coefficient, exponent), st::ElasticStates::power(coefficient, exponent))
-    }
-
-    /// States of an upright body from rows (level [m²], approach [m], stiffness over modulus [m], contact area [m²]).
-    #[staticmethod]
-    fn from_table(py: Python<'_>, rows: Bound<'_, PyAny>) -> PyResult<ElasticStates> {
-        let table: Vec<_> = table::<4>("rows", &rows)?.into_iter().map(|[a, b, c, d]| (a, b, c, d)).collect();
-        ElasticStates::made(py, "from_table", (rows,), st::ElasticStates::from_table(&table))
-    }
-
     /// The states of a shape on a grid, up to a `level` [m²], an `approach` [m], or what a `material` needs along a `load` to the time
     /// `until`.
     ///
@@ -173,15 +156,8 @@ impl ElasticStates {
         }
         let mut listener = Listener::new(progress);
         let states = py.detach(|| sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
-        let states = listener.result(states)?;
+        let states = listener.result(states.or_raise())?;
         Ok(ElasticStates { states, recipe: None })
-    }
-
-    /// Reads states that `save` has written. They hold no surface, so that `StatesContact.fields` is not possible.
-    #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf) -> PyResult<ElasticStates> {
-        let states = py.detach(|| read_states(&path));
-        ElasticStates::made(py, "load", (path,), states)
     }
 
     /// Writes the states as an NPZ archive.
@@ -228,30 +204,6 @@ impl ElasticStates {
     /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
     fn conductance<'py>(&self, level: &Bound<'py, PyAny>, resistivities: [f64; 2]) -> PyResult<Bound<'py, PyAny>> {
         mapped("level", level, |level| self.states.conductance(level, resistivities))
-    }
-
-    /// The grid of the sweep; None if there was none.
-    #[getter]
-    fn grid(&self) -> Option<Grid> {
-        self.states.grid().cloned().map(Grid)
-    }
-
-    /// The level from which contact only grows with the load [m²]: contacts of lower levels are refused.
-    #[getter]
-    fn first_level(&self) -> f64 {
-        self.states.first_level()
-    }
-
-    /// Poisson's ratio of the layer that was swept, which materials need to have; None of other bodies.
-    #[getter]
-    fn nu(&self) -> Option<f64> {
-        self.states.poisson_ratio()
-    }
-
-    /// Greatest error of the depth between two states, relative.
-    #[getter]
-    fn interpolation_error(&self) -> f64 {
-        self.states.interpolation_error()
     }
 
     /// The curves of many materials on this surface in one call.
@@ -332,4 +284,15 @@ impl ElasticStates {
         let bytes = bytes_of(py, "npz", |file| write_states(file, states, &Metadata::new("")))?;
         Recipe::new(py, "_of_bytes", (bytes,))?.reduce(class)
     }
+}
+
+getters! {ElasticStates.states, of:
+    /// The grid of the sweep; None if there was none.
+    grid: Option<Grid> = of.grid().cloned().map(Grid);
+    /// The level from which contact only grows with the load [m²]: contacts of lower levels are refused.
+    first_level: f64 = of.first_level();
+    /// Poisson's ratio of the layer that was swept, which materials need to have; None of other bodies.
+    nu: Option<f64> = of.poisson_ratio();
+    /// Greatest error of the depth between two states, relative.
+    interpolation_error: f64 = of.interpolation_error();
 }

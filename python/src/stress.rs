@@ -23,7 +23,7 @@ use crate::writers::{FORMATS, metadata};
 /// Parameters
 /// ----------
 /// kernel : InfluenceKernel
-///     The body, a half-space.
+///     The body, a half-space; under the pressure of another body an estimate, where this is thick.
 /// pressure : array of the shape of the grid [Pa]
 /// nu : float
 ///     Poisson's ratio.
@@ -131,7 +131,8 @@ impl SubsurfaceStress {
         })
     }
 
-    /// Writes the stress at `depths` [m] below a `contact` of this grid: `format` "npz" (`numpy.load`) or "vtk" (`.vtr`: ParaView, PyVista).
+    /// Writes the stress at `depths` [m] below a `contact` of this grid: `format` "npz" (`numpy.load`) or "vtk" (name it `.vtr`: ParaView,
+    /// PyVista). Arrays: "s11" to "s23", "von_mises", "tresca", each of shape (n1, n2, depths), "x1", "x2", "x3" and the "pressure".
     #[pyo3(signature = (path, contact, depths, *, format="npz", title="", notes=None))]
     #[allow(clippy::too_many_arguments)]
     fn write(

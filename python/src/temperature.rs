@@ -21,35 +21,25 @@ pub struct TimeTemperature {
     recipe: Recipe,
 }
 
-#[pymethods]
 impl TimeTemperature {
-    /// The law of Williams, Landel and Ferry: constants C₁, C₂ [K] about the `reference` [K].
-    #[staticmethod]
-    pub fn wlf(py: Python<'_>, c1: f64, c2: f64, reference: f64) -> PyResult<TimeTemperature> {
-        let law = rh::TimeTemperature::wlf(c1, c2, reference).or_raise()?;
-        Ok(TimeTemperature { law, recipe: Recipe::new(py, "wlf", (c1, c2, reference))? })
+    fn by(recipe: Recipe, law: rh::TimeTemperature) -> TimeTemperature {
+        TimeTemperature { law, recipe }
     }
+}
+
+makers! {TimeTemperature, py:
+    /// The law of Williams, Landel and Ferry: constants C₁, C₂ [K] about the `reference` [K].
+    wlf(c1: f64, c2: f64, reference: f64) = rh::TimeTemperature::wlf(c1, c2, reference);
 
     /// The law of Arrhenius: activation `energy` [J/mol] about the `reference` [K].
-    #[staticmethod]
-    pub fn arrhenius(py: Python<'_>, energy: f64, reference: f64) -> PyResult<TimeTemperature> {
-        let law = rh::TimeTemperature::arrhenius(energy, reference).or_raise()?;
-        Ok(TimeTemperature { law, recipe: Recipe::new(py, "arrhenius", (energy, reference))? })
-    }
+    arrhenius(energy: f64, reference: f64) = rh::TimeTemperature::arrhenius(energy, reference);
 
     /// Rows of temperature [K] and shift factor a_T, about the `reference` [K].
-    #[staticmethod]
-    fn table(py: Python<'_>, table: Bound<'_, PyAny>, reference: f64) -> PyResult<TimeTemperature> {
-        let law = rh::TimeTemperature::table(&pairs("table", &table)?, reference).or_raise()?;
-        Ok(TimeTemperature { law, recipe: Recipe::new(py, "table", (table, reference))? })
-    }
+    table(table: Bound<'_, PyAny>, reference: f64) = rh::TimeTemperature::table(&pairs("table", &table)?, reference);
+}
 
-    /// The reference temperature [K].
-    #[getter]
-    fn reference(&self) -> f64 {
-        self.law.reference()
-    }
-
+#[pymethods]
+impl TimeTemperature {
     /// The law of a published material (`published_materials`), None without one.
     #[staticmethod]
     fn published(py: Python<'_>, name: &str) -> PyResult<Option<TimeTemperature>> {
@@ -79,8 +69,13 @@ impl TimeTemperature {
     fn at(slf: Bound<'_, Self>, rheology: Bound<'_, Rheology>, temperature: f64) -> PyResult<Rheology> {
         let body = slf.get().law.at(Arc::clone(&rheology.get().body), temperature).or_raise()?;
         let recipe = Recipe::of::<TimeTemperature>(slf.py(), "at", (slf, rheology, temperature))?;
-        Ok(Rheology::by(recipe, Arc::new(body)))
+        Ok(Rheology::by(recipe, body))
     }
+}
+
+getters! {TimeTemperature.law, of:
+    /// The reference temperature [K].
+    reference: f64 = of.reference();
 }
 
 made_by_calls!(TimeTemperature);

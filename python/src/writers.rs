@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscocontact::output::{self as vo, Field, Format, Metadata};
+use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
@@ -18,16 +18,25 @@ pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Meta
     })
 }
 
-/// What becomes of files of an earlier run.
-#[derive(Clone, Copy)]
-enum Earlier {
-    Refuse,
-    Replace,
-    Continue,
-}
-
 const EARLIER: [(&str, Earlier); 3] =
     [("refuse", Earlier::Refuse), ("replace", Earlier::Replace), ("continue", Earlier::Continue)];
+
+/// The result of an expression with a contact of either kind.
+macro_rules! with_either {
+    ($given:ident, $contact:ident => $value:expr) => {
+        if let Ok(contact) = $given.cast::<ViscoelasticContact>() {
+            let held = contact.borrow();
+            let $contact = held.get()?;
+            $value.or_raise()
+        } else if let Ok(contact) = $given.cast::<StatesContact>() {
+            let held = contact.borrow();
+            let $contact = held.get()?;
+            $value.or_raise()
+        } else {
+            Err(PyTypeError::new_err("contact: a ViscoelasticContact or a StatesContact is needed"))
+        }
+    };
+}
 
 /// A run as a CSV file with a row for each step; its first line is the scene as JSON.
 ///
@@ -39,7 +48,8 @@ const EARLIER: [(&str, Earlier); 3] =
 ///     Written into the file.
 /// columns : sequence of str
 ///     Additional columns, with their units in brackets.
-/// earlier : "refuse" (default: FileExistsError), "replace" or "continue" after the state of the contact
+/// earlier : "refuse" (default: FileExistsError), "replace", or "continue"
+///     "continue" goes on after the state of the contact, as after `resume`: what the file has of later times is removed.
 #[pyclass(module = "viscocontact")]
 pub struct CsvHistory(vo::CsvHistory);
 
@@ -57,42 +67,15 @@ impl CsvHistory {
     ) -> PyResult<CsvHistory> {
         let (metadata, earlier) = (metadata(title, notes)?, choice("earlier", earlier, &EARLIER)?);
         let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-        if let Ok(contact) = contact.cast::<ViscoelasticContact>() {
-            create(path, &metadata, contact.borrow().get()?, &columns, earlier)
-        } else if let Ok(contact) = contact.cast::<StatesContact>() {
-            create(path, &metadata, contact.borrow().get()?, &columns, earlier)
-        } else {
-            Err(PyTypeError::new_err("contact: a ViscoelasticContact or a StatesContact is needed"))
-        }
+        with_either!(contact, contact => vo::CsvHistory::create(path, &metadata, contact, &columns, earlier))
+            .map(CsvHistory)
     }
 
     /// Appends the row of the last step, with the values of the additional columns.
     #[pyo3(signature = (contact, report, columns=vec![]))]
     fn record(&mut self, contact: &Bound<'_, PyAny>, report: &StepReport, columns: Vec<f64>) -> PyResult<()> {
-        if let Ok(contact) = contact.cast::<ViscoelasticContact>() {
-            self.0.record(contact.borrow().get()?, &report.0, &columns).or_raise()
-        } else if let Ok(contact) = contact.cast::<StatesContact>() {
-            self.0.record(contact.borrow().get()?, &report.0, &columns).or_raise()
-        } else {
-            Err(PyTypeError::new_err("contact: a ViscoelasticContact or a StatesContact is needed"))
-        }
+        with_either!(contact, contact => self.0.record(contact, &report.0, &columns))
     }
-}
-
-fn create(
-    path: PathBuf,
-    metadata: &Metadata,
-    contact: &impl viscocontact::contact::Contact,
-    columns: &[&str],
-    earlier: Earlier,
-) -> PyResult<CsvHistory> {
-    match earlier {
-        Earlier::Refuse => vo::CsvHistory::create(path, metadata, contact, columns),
-        Earlier::Replace => vo::CsvHistory::create_or_replace(path, metadata, contact, columns),
-        Earlier::Continue => vo::CsvHistory::create_or_continue(path, metadata, contact, columns),
-    }
-    .or_raise()
-    .map(CsvHistory)
 }
 
 pub const FORMATS: [(&str, Format); 2] = [("npz", Format::Npz), ("vtk", Format::Vtk)];
@@ -135,13 +118,8 @@ impl FrameSeries {
             Some(names) => names.iter().map(|name| choice("field", name, &FIELDS)).collect::<PyResult<Vec<_>>>()?,
             None => Field::of(contact).to_vec(),
         };
-        match choice("earlier", earlier, &EARLIER)? {
-            Earlier::Refuse => vo::FrameSeries::create(folder, format, &metadata, &fields),
-            Earlier::Replace => vo::FrameSeries::create_or_replace(folder, format, &metadata, &fields),
-            Earlier::Continue => vo::FrameSeries::create_or_continue(folder, format, &metadata, &fields, contact),
-        }
-        .or_raise()
-        .map(FrameSeries)
+        let earlier = choice("earlier", earlier, &EARLIER)?;
+        vo::FrameSeries::create(folder, format, &metadata, contact, &fields, earlier).or_raise().map(FrameSeries)
     }
 
     /// Writes the state of the contact as the next frame, and returns its path.

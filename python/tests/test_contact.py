@@ -291,6 +291,14 @@ def test_ctrl_c():
     took = interrupted(step)
     assert took < 2.0, took
     assert contact.time == 0.0
+    sliding = vc.SteadySliding(grid, rough, RUBBER, kernel=vc.InfluenceKernel.periodic(grid), tolerance=1e-12)
+
+    def slide():
+        while True:
+            sliding.at((1e-3, 0.0), vc.Load.force(0.02))
+            sliding.sweep([(1.0, 1.0), (2.0, 1.0)], [vc.Load.force(0.01), vc.Load.force(0.03)])
+
+    assert interrupted(slide) < 2.0
     small = ball(64)
     interrupted(lambda: list(small.follow(vc.Load.force(0.5), 1e9, dt=1e-3)))
     assert small.force == pytest.approx(0.5)

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
 _Array: TypeAlias = NDArray[np.float64]
-_Pair: TypeAlias = Sequence[float]
+_Numbers: TypeAlias = Sequence[float] | _Array
+_Pair: TypeAlias = _Numbers
 # None along an axis of the other kind
 _Tilts: TypeAlias = Sequence[float | None]
 _Quantity: TypeAlias = Literal["von_mises", "tresca", "mean", "principal_1", "principal_3"]
@@ -152,7 +153,7 @@ class CsvHistory:
         self,
         contact: ViscoelasticContact | StatesContact,
         report: StepReport,
-        columns: Sequence[float] = ...,
+        columns: _Numbers = ...,
     ) -> None: ...
 
 @final
@@ -256,7 +257,7 @@ class Experiment:
     @staticmethod
     def trapezoid(
         depth: float,
-        durations: Sequence[float],
+        durations: _Numbers,
         interval: float,
         tip: ElasticStates,
         *,
@@ -279,7 +280,7 @@ class Experiment:
     ) -> Experiment: ...
     @staticmethod
     def staircase(
-        depths: Sequence[float],
+        depths: _Numbers,
         rise: float,
         dwell: float,
         interval: float,
@@ -469,7 +470,7 @@ class LoadHistory:
     @staticmethod
     def sawtooth(start: Load, end: Load, period: float) -> LoadHistory: ...
     @staticmethod
-    def function(load: Callable[[float], Load], breakpoints: Sequence[float] = ...) -> LoadHistory: ...
+    def function(load: Callable[[float], Load], breakpoints: _Numbers = ...) -> LoadHistory: ...
     def at(self, t: float) -> Load: ...
     def check(self, times: ArrayLike) -> None: ...
 
@@ -860,14 +861,14 @@ class SteadySliding:
         modulus: Callable[[float], complex] | None = None,
         **options: Any,
     ) -> SteadySliding: ...
-    def at(self, velocity: _Pair, load: Load) -> SlidingReport: ...
+    def at(self, velocity: float | _Pair, load: Load) -> SlidingReport: ...
     def sweep(
         self,
         velocities: ArrayLike,
         loads: Load | Sequence[Load],
         *,
         law: TimeTemperature | None = None,
-        temperatures: Sequence[float] | None = None,
+        temperatures: _Numbers | None = None,
         progress: Callable[..., object] | None = None,
     ) -> SlidingTable: ...
     @property
@@ -928,16 +929,16 @@ class SubsurfaceStress:
     def grid(self) -> Grid: ...
     def on_plane(self, depth: float, *, quantity: _Quantity | None = None) -> _Array: ...
     def on_section(
-        self, along: int, at: float, depths: Sequence[float], *, quantity: _Quantity | None = None
+        self, along: int, at: float, depths: _Numbers, *, quantity: _Quantity | None = None
     ) -> tuple[_Array, _Array]: ...
-    def in_volume(self, depths: Sequence[float], *, quantity: _Quantity | None = None) -> _Array: ...
+    def in_volume(self, depths: _Numbers, *, quantity: _Quantity | None = None) -> _Array: ...
     def at(self, points: ArrayLike, *, quantity: _Quantity | None = None) -> _Array: ...
-    def greatest(self, depths: Sequence[float], quantity: _Quantity = "von_mises") -> dict[str, Any]: ...
+    def greatest(self, depths: _Numbers, quantity: _Quantity = "von_mises") -> dict[str, Any]: ...
     def write(
         self,
         path: _StrPath,
         contact: ViscoelasticContact,
-        depths: Sequence[float],
+        depths: _Numbers,
         *,
         format: Literal["npz", "vtk"] = "npz",
         title: str = "",
@@ -1063,7 +1064,7 @@ class TemperatureHistory:
         cls,
         law: TimeTemperature,
         temperature: float | ArrayLike | Callable[[float], float],
-        corners: Sequence[float] = ...,
+        corners: _Numbers = ...,
     ) -> TemperatureHistory: ...
     def at(self, t: ArrayLike) -> Any: ...
     def reduced_time(self, start: float, end: float) -> float: ...
@@ -1216,7 +1217,7 @@ class ViscoelasticContact:
     def passes(self) -> dict[str, Any] | None: ...
     def picture(self, field: _Field = "pressure", *, range: _Pair | None = None) -> Picture: ...
     def profile_picture(self, along: int = 0, at: float = 0.0) -> Picture: ...
-    def stress_picture(self, depths: Sequence[float], quantity: _Quantity = "von_mises", *, along: int = 0, at: float = 0.0) -> Picture: ...
+    def stress_picture(self, depths: _Numbers, quantity: _Quantity = "von_mises", *, along: int = 0, at: float = 0.0) -> Picture: ...
 
 @final
 class HeightMap(Shape):
@@ -1287,14 +1288,14 @@ def rigid_punch(radius: float, modulus: float, force: float, eccentricity: float
 def rolling_cylinder(radius: float, compliances: _Pair, force: float, reach: float) -> dict[str, float]: ...
 def patches(grid: Grid, pressure: ArrayLike, *, periodic: Sequence[bool] = ...) -> tuple[Any, list[dict[str, Any]]]: ...
 def ranked(fits: Sequence[Any]) -> list[tuple[Fit, float, float]]: ...
-def drainage_or_creep(one: Sequence[float], other: Sequence[float]) -> str: ...
+def drainage_or_creep(one: _Numbers, other: _Numbers) -> str: ...
 def write_fits(path: _StrPath, fits: Sequence[Fit]) -> None: ...
 def persson_friction(
     grid: Grid,
     surface: Shape,
     modulus: Callable[[float], complex],
     pressure: float,
-    velocity: _Pair,
+    velocity: float | _Pair,
     gamma: float,
 ) -> tuple[float, float]: ...
 def published_materials() -> dict[str, tuple[str, str]]: ...

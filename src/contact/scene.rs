@@ -66,10 +66,4 @@ impl Scene {
             Some(history) => history.length_of(clock.time, reduced, most),
         }
     }
-
-    /// The first corner of the temperature after a time, and whether the temperature jumps there.
-    pub(crate) fn next_temperature_corner(&self, after: f64) -> (f64, bool) {
-        let Some(history) = &self.temperature else { return (f64::INFINITY, false) };
-        history.next_corner(after).map_or((f64::INFINITY, false), |corner| (corner, history.jumps_at(corner)))
-    }
 }

@@ -59,7 +59,7 @@ pub enum AdhesionError {
     /// The attraction beyond the edge of the grid, which is not computed, would add more than 5 % of the force. Enlarge the grid, or choose
     /// [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends there. From 1e-3 on steps warn
     /// ([`Warnings::BEYOND_EDGE`](crate::contact::Warnings::BEYOND_EDGE)).
-    #[error("at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, where 5 % are allowed: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", rounded(*.time, TIME), rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * share)]
+    #[error("at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, where 5 % are allowed: enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there", rounded(*.time, TIME), rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * share)]
     BeyondEdge {
         /// End of the step \[s\].
         time: f64,

@@ -77,7 +77,7 @@ pub enum KernelError {
     /// It cannot be computed for a body given by the influence on its surface, nor for a body periodic along one axis with
     /// more than one cell along it.
     #[error(
-        "the stress below the surface is not known of this body ({body}): it must be a half-space, one periodic along both axes, or a line contact"
+        "the stress below the surface is not known of this body ({body}): it must be a half-space, one periodic along both axes, or a line contact of half-spaces"
     )]
     NoStress {
         /// The kernel, as its `Display` prints it.

@@ -113,8 +113,8 @@ pub enum MapError {
     },
 
     /// A file does not name the unit of its numbers: give it, as with
-    /// [`HeightMap::from_gsf_with`](crate::geometry::HeightMap::from_gsf_with).
-    #[error("the {format} file has no {key}, the unit of its numbers: give it, as with HeightMap::from_gsf_with")]
+    /// [`HeightMap::from_gsf`](crate::geometry::HeightMap::from_gsf).
+    #[error("the {format} file has no {key}, the unit of its numbers: give it, as to HeightMap::from_gsf")]
     NoUnit {
         /// The format.
         format: &'static str,

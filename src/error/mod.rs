@@ -38,6 +38,7 @@ pub use load::LoadError;
 pub use map::MapError;
 pub use material::MaterialError;
 pub use not_covered::Special;
+pub(crate) use not_covered::{ONE_PROCESS, Refusal};
 pub use output::OutputError;
 pub use ranks::RanksError;
 pub use sliding::SlidingError;
@@ -64,8 +65,7 @@ use crate::rounded::{rounded, without_noise};
 /// assert_eq!(error.to_string(), "shear modulus = -1000000.0 is not allowed: it must be finite and > 0");
 /// ```
 ///
-/// `Debug` prints the message and its causes, so that a program whose `main` returns [`Result`] ends with what to do; `{:#?}`
-/// prints the fields.
+/// `Debug` prints the message and its causes, so that a program whose `main` returns [`Result`] ends with what to do.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -12,13 +12,13 @@ use super::{Error, FileError, MapError};
 /// ```
 /// use std::io::ErrorKind;
 /// use viscocontact::prelude::*;
-/// use viscocontact::output::{CsvHistory, Metadata};
+/// use viscocontact::output::{Earlier, CsvHistory, Metadata};
 ///
 /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Elastic::new(1.0e6)?))
 ///     .build()?;
-/// match CsvHistory::create("no/such/folder/history.csv", &Metadata::new("Ball on rubber"), &contact, &[]) {
+/// match CsvHistory::create("no/such/folder/history.csv", &Metadata::new("Ball on rubber"), &contact, &[], Earlier::Refuse) {
 ///     Err(Error::Output(error)) if error.kind() == ErrorKind::NotFound => println!("create {:?} first", error.path().parent()),
 ///     other => panic!("{other:?}"),
 /// }

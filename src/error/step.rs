@@ -30,7 +30,7 @@ pub enum StepError {
     /// Enlarge the grid, or choose [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends at the edge of
     /// the grid.
     #[error(
-        "at t = {time} s the contact touches the edge of the grid on {cells} cells; {}: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", widths(*.lengths, *.needed), time = rounded(*.time, TIME))]
+        "at t = {time} s the contact touches the edge of the grid on {cells} cells; {}: enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there", widths(*.lengths, *.needed), time = rounded(*.time, TIME))]
     ContactAtEdge {
         /// End of the step \[s\].
         time: f64,

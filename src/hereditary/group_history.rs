@@ -93,6 +93,7 @@ impl GroupHistory {
         }
         for (column, &[decay, one, two, three]) in stresses.iter_mut().zip(&rule.committed.branches) {
             combine(column, decay, [one, two, three], [changes, bends, twists]);
+            rule.forget_relaxed(column);
         }
     }
 

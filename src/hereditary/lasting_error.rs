@@ -29,7 +29,8 @@ impl LastingError {
         self.u.abs()
     }
 
-    /// Takes account of the step predicted last, with such a `defect` of v. Where a motion is given, u has no error.
+    /// Takes in the step of this `defect` of v that the rule has predicted and not yet replaced by the next prediction. Where a motion is given,
+    /// u has no error.
     pub(crate) fn include(&mut self, rule: &ExponentialRule, defect: f64, motion_is_given: bool) {
         let (mut answer, mut left) = (rule.viscous(), 0.0);
         for (q, [decay, of_u, share]) in self.q.iter_mut().zip(rule.responses()) {

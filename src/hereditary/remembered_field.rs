@@ -152,6 +152,7 @@ impl RememberedField {
                     let weight = tried.map_or(0.0, |tried| tried.c * tried.branches[i][0]);
                     if waiting {
                         take_in(q, gains, committed.terms, &steps, old, weight);
+                        rule.forget_relaxed(q);
                     } else {
                         old.iter_mut().zip(&*q).for_each(|(old, &q)| *old -= weight * q);
                     }

@@ -37,7 +37,7 @@ pub(crate) struct StepContext {
     /// Events that take less time than this do not matter: an immediate dashpot presses on a body that meets a cell with a finite pressure
     /// at once, however short the step.
     pub(crate) resolution: f64,
-    /// Nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
+    /// Steps of at most this length have no estimated error on a body without elastic response, which hardly moves in them.
     pub(crate) beginning: f64,
     /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
     pub(crate) length_is_given: bool,

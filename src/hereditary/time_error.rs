@@ -19,8 +19,7 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) pressure: [&'a [f64]; 3],
     /// v = K p at the end of the step tried.
     pub(crate) potential: &'a [f64],
-    /// By what share the error of the displacement counts, which is 1 where a force is given, and the error of v, which is 1 where a motion is:
-    /// that leaves the displacement in contact no error.
+    /// Weights of the errors of u and of v: 1 and 0 under a given force, 0 and 1 under a given motion, which leaves u in contact no error.
     pub(crate) matters: [f64; 2],
     /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
     pub(crate) greatest: [f64; 2],
@@ -83,10 +82,11 @@ const LASTING_PART: f64 = 0.5;
 const TOLERATED: f64 = 0.8;
 /// The error of a step is multiplied by 1 + this weight times the excess, in tolerances.
 const LASTING_WEIGHT: f64 = 5.0;
-/// The same for a surface to come back to, whose defects are of one sign while it recovers: they count so many times as much, and
-/// the defects of earlier steps up to a few tolerances.
+/// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that recovers have one sign.
 const RECOVERING: f64 = 3.0;
+/// The weight, as that above, of the errors that earlier steps have left on the free surface.
 const SURFACE_WEIGHT: f64 = 1.0;
+/// The most of these errors that counts, in tolerances.
 const MOST_OF_SURFACE: f64 = 3.0;
 /// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that error is one of the
 /// pressure alone.

@@ -262,7 +262,12 @@ pub(super) fn check_line(grid: &Grid) -> Result<()> {
 pub(super) fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
     representable(grid)?;
     let reaches = datum >= grid.lengths()[axis];
-    within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;
+    within(
+        "datum of a line load",
+        datum,
+        reaches,
+        "finite, and no less than the length of the grid across the lines: usually the distance to the support",
+    )?;
     within("datum of a line load", datum, datum <= FARTHEST_DATUM, "at most 1e120 m")?;
     Ok(Strip { side: grid.spacing()[axis], datum })
 }

@@ -9,7 +9,7 @@
 //!
 //! v(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds   (Johnson, Contact Mechanics, 1985, section 2.3).
 
-use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2};
+use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, TAU};
 
 use crate::quadrature::GaussLegendre;
 
@@ -115,7 +115,7 @@ fn series_of_excess(z: f64) -> Option<f64> {
 
 /// The wave number \[1/m\] of the index `k` of a symbol.
 pub(crate) fn wave_number(k: usize, period: usize, side: f64) -> f64 {
-    4.0 * FRAC_PI_2 * k as f64 / (period as f64 * side)
+    TAU * k as f64 / (period as f64 * side)
 }
 
 #[cfg(test)]

@@ -82,7 +82,7 @@ fn number(value: f64) -> String {
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```
-/// use viscocontact::{output::{CsvHistory, Metadata}, prelude::*};
+/// use viscocontact::{output::{CsvHistory, Earlier, Metadata}, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
@@ -91,7 +91,7 @@ fn number(value: f64) -> String {
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-csv-{}", std::process::id()));
 /// # std::fs::create_dir_all(&folder).unwrap();
 /// # let path = folder.join("history.csv");
-/// let mut history = CsvHistory::create(&path, &Metadata::new("Ball on rubber"), &contact, &["energy [J]"])?;
+/// let mut history = CsvHistory::create(&path, &Metadata::new("Ball on rubber"), &contact, &["energy [J]"], Earlier::Refuse)?;
 /// let report = contact.step(0.0, Load::force(0.5))?;
 /// history.record(&contact, &report, &[0.5 * report.force * report.approach])?;
 /// # std::fs::remove_dir_all(&folder).unwrap();
@@ -106,66 +106,33 @@ pub struct CsvHistory {
 }
 
 impl CsvHistory {
-    /// A new file for the history of `contact`, with `additional` columns after the standard ones.
+    /// A file for the history of `contact`, with `additional` columns after the standard ones.
     ///
     /// # Errors
-    /// If the file exists ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)) or cannot be written, or the name of a column is empty, already used, or contains `#`, a
-    /// quote or a control character, which readers would misinterpret.
+    /// If the file cannot be written, exists where [`Earlier`] refuses it, is no file ([`FileError::NotAFile`](crate::FileError::NotAFile)), or no history with these
+    /// columns that could be continued; or if the name of a column is empty, already used, or contains `#`, a quote or a control character, which readers would
+    /// misinterpret.
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,
         contact: &impl Contact,
         additional: &[&str],
-    ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), Earlier::Refused)
-    }
-
-    /// [`CsvHistory::create`] in the place of an earlier file, which is emptied first.
-    ///
-    /// # Errors
-    /// As [`CsvHistory::create`], except that the file may exist; something else than a file may not
-    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
-    pub fn create_or_replace(
-        path: impl AsRef<Path>,
-        metadata: &Metadata,
-        contact: &impl Contact,
-        additional: &[&str],
-    ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), Earlier::Replaced)
-    }
-
-    /// [`CsvHistory::create`], or the history in an earlier file continued after the state of `contact`: rows of later states are cut off.
-    /// So a run that is resumed from a checkpoint, or begins, writes one file.
-    ///
-    /// # Errors
-    /// As [`CsvHistory::create_or_replace`], or if the file is no history with these columns.
-    pub fn create_or_continue(
-        path: impl AsRef<Path>,
-        metadata: &Metadata,
-        contact: &impl Contact,
-        additional: &[&str],
-    ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), Earlier::Continued)
-    }
-
-    fn begin(
-        path: &Path,
-        (metadata, contact, additional): (&Metadata, &impl Contact, &[&str]),
         earlier: Earlier,
     ) -> Result<CsvHistory> {
+        let path = path.as_ref();
         let unusable = |error| failed(path, error);
         agreed(contact, check_names(additional).map_err(unusable))?;
         let names: Vec<String> = COLUMNS.iter().chain(additional).map(|name| quoted(name)).collect();
         let names = names.join(",");
         let head = format!("# {}\n{names}\n", metadata.json(contact));
         let create = || {
-            if earlier != Earlier::Refused {
+            if earlier != Earlier::Refuse {
                 check_regular(path)?;
             }
-            if earlier == Earlier::Continued && path.exists() {
+            if earlier == Earlier::Continue && path.exists() {
                 return continued(path, &names, contact).map_err(unusable);
             }
-            let file = if earlier == Earlier::Refused { File::create_new(path) } else { File::create(path) };
+            let file = if earlier == Earlier::Refuse { File::create_new(path) } else { File::create(path) };
             let mut file = Appending::new(file.map_err(|error| unusable(or_replace(error)))?);
             if let Err(error) = file.append(head.as_bytes()) {
                 let _ = fs::remove_file(path); // report the error of the write instead
@@ -214,7 +181,7 @@ fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<App
         line.clear();
     }
     if number < 2 {
-        let reason = "it is no history with these columns: CsvHistory::create_or_replace replaces it";
+        let reason = "it is no history with these columns: Earlier::Replace replaces it";
         return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
     }
     Appending::after(file, kept.end())
@@ -223,9 +190,7 @@ fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<App
 /// The error of a file that exists names the way to replace it.
 fn or_replace(error: io::Error) -> io::Error {
     match error.kind() {
-        kind @ io::ErrorKind::AlreadyExists => {
-            io::Error::new(kind, "it exists: CsvHistory::create_or_replace replaces it")
-        }
+        kind @ io::ErrorKind::AlreadyExists => io::Error::new(kind, "it exists: Earlier::Replace replaces it"),
         _ => error,
     }
 }

@@ -14,8 +14,8 @@
 //! You choose which [`Field`]s are written. A frame is complete on disk when its `record` returns: if a run is killed,
 //! all earlier frames are readable.
 //!
-//! Files of an earlier run are replaced by these rules. Series and histories grow with a run: `create` refuses a folder with
-//! frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), and `create_or_replace` removes them first.
+//! Files of an earlier run are replaced by these rules. Series and histories grow with a run: [`Earlier`] says whether a folder
+//! with frames or an existing file is refused, removed or continued.
 //! Files that are written at once (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one
 //! is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
 //! [`FileError::NotAFile`](crate::FileError::NotAFile). While a file is being written, the process ID and `.part` are appended to its
@@ -60,12 +60,16 @@ pub use stress::write_stress;
 
 use crate::contact::Contact;
 
-/// What becomes of the files of an earlier run.
-#[derive(Clone, Copy, PartialEq)]
-enum Earlier {
-    Refused,
-    Replaced,
-    Continued,
+/// What becomes of the files of an earlier run, for [`CsvHistory::create`] and [`FrameSeries::create`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::exhaustive_enums, reason = "there is nothing else to do")]
+pub enum Earlier {
+    /// They are an error ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)).
+    Refuse,
+    /// They are removed first.
+    Replace,
+    /// They go on after the state of the contact, and what comes later is removed: so a run that is resumed from a checkpoint, or begins, writes one file or folder.
+    Continue,
 }
 
 /// The part of the rows or frames of an earlier run that ends with the state of a contact.

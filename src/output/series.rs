@@ -20,7 +20,7 @@ const COLLECTION: &str = "series.pvd";
 ///
 /// ```
 /// # #[cfg(feature = "npy")] {
-/// use viscocontact::{output::{Field, Format, FrameSeries, Metadata}, prelude::*};
+/// use viscocontact::{output::{Earlier, Field, Format, FrameSeries, Metadata}, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
@@ -28,7 +28,7 @@ const COLLECTION: &str = "series.pvd";
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-series-{}", std::process::id()));
 /// let metadata = Metadata::new("Ball on rubber");
-/// let mut series = FrameSeries::create(&folder, Format::Npz, &metadata, &[Field::Pressure])?;
+/// let mut series = FrameSeries::create(&folder, Format::Npz, &metadata, &contact, &[Field::Pressure], Earlier::Refuse)?;
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
@@ -54,55 +54,20 @@ pub struct FrameSeries {
 }
 
 impl FrameSeries {
-    /// A new series in `folder`, which is created if it does not exist.
+    /// A series of `contact` in `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// If the folder cannot be used or contains frames already ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), or a
-    /// field is requested twice.
+    /// If the folder cannot be used, contains frames where [`Earlier`] refuses them or one that cannot be read where they are continued, or a field is requested
+    /// twice.
     pub fn create(
         folder: impl AsRef<Path>,
         format: Format,
         metadata: &Metadata,
-        fields: &[Field],
-    ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Refused, None)
-    }
-
-    /// [`FrameSeries::create`] in the place of an earlier series, whose frames are removed first.
-    ///
-    /// # Errors
-    /// If the folder or its frames cannot be used, or a field is requested twice.
-    pub fn create_or_replace(
-        folder: impl AsRef<Path>,
-        format: Format,
-        metadata: &Metadata,
-        fields: &[Field],
-    ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Replaced, None)
-    }
-
-    /// [`FrameSeries::create`], or an earlier series in `folder` continued after the state of `contact`: frames of later states are
-    /// removed. So a run that is resumed from a checkpoint, or begins, writes one series.
-    ///
-    /// # Errors
-    /// As [`FrameSeries::create_or_replace`], or if a frame cannot be read.
-    pub fn create_or_continue(
-        folder: impl AsRef<Path>,
-        format: Format,
-        metadata: &Metadata,
-        fields: &[Field],
         contact: &ViscoelasticContact,
-    ) -> Result<FrameSeries> {
-        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), Earlier::Continued, Some(contact))
-    }
-
-    fn begin(
-        folder: &Path,
-        format: Format,
-        (metadata, fields): (&Metadata, &[Field]),
+        fields: &[Field],
         earlier: Earlier,
-        contact: Option<&ViscoelasticContact>,
     ) -> Result<FrameSeries> {
+        let folder = folder.as_ref();
         let unusable = |error: io::Error| failed(folder, error);
         let refused = |kind, reason: String| Err(unusable(io::Error::new(kind, reason)));
         if let Some(k) = (1..fields.len()).find(|&k| fields[..k].contains(&fields[k])) {
@@ -111,7 +76,7 @@ impl FrameSeries {
         }
         fs::create_dir_all(folder).map_err(unusable)?;
         let (mut written, mut entries) = (0, String::new());
-        if let Some(contact) = contact {
+        if earlier == Earlier::Continue {
             (written, entries) = kept(folder, format, contact).map_err(unusable)?;
         }
         let kept: Vec<String> = (0..written).map(|number| format.frame(number)).collect();
@@ -119,13 +84,12 @@ impl FrameSeries {
             let path = entry.map_err(unusable)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let is_frame = name.starts_with("frame_") && name.ends_with(&format!(".{}", format.extension()));
-            if is_frame && earlier == Earlier::Refused {
-                let reason =
-                    format!("the folder contains {name} of another run: FrameSeries::create_or_replace removes it");
+            if is_frame && earlier == Earlier::Refuse {
+                let reason = format!("the folder contains {name} of another run: Earlier::Replace removes it");
                 return refused(io::ErrorKind::AlreadyExists, reason);
             }
             let is_kept = kept.iter().any(|frame| *frame == name);
-            let is_list = earlier == Earlier::Replaced && format.has_collection() && name == COLLECTION;
+            let is_list = earlier == Earlier::Replace && format.has_collection() && name == COLLECTION;
             if is_frame && !is_kept || is_list {
                 check_regular(&path)?;
                 match fs::remove_file(&path) {

@@ -251,9 +251,9 @@ impl Rows {
         shared.call(|group| group.exchange(send, send_counts, received, receive_counts));
     }
 
-    /// Runs `job`, a call of all ranks, and returns its result. If a rank was lost, in `job` or before it, the loss is returned instead, once, and
-    /// forgotten: sums and gathered values of `job` are NaN then. It does not wait for other ranks.
-    pub(crate) fn together<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
+    /// Runs `job`, a call of all ranks, and returns its result, or the loss of a rank, in `job` or before it: sums and gathered values of `job`
+    /// are NaN then. The loss is returned once. Nothing is sent to other ranks, nor waited for.
+    pub(crate) fn unless_lost<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
         let done = job();
         match self.shared.as_ref().and_then(|shared| lock(&shared.lost).take()) {
             Some(loss) => Err(loss.into()),

@@ -19,7 +19,7 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
 
-/// The error of a step with a jump counts so many times: the state after a jump shows little of its moment, and of the energy that is lost.
+/// The error of a step with a jump is multiplied by this: the state after a jump depends little on when it jumped, and on the energy lost.
 const JUMPED: f64 = 100.0;
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
@@ -91,6 +91,7 @@ pub(super) fn adaptive_step(
         let unresolved = unresolved && error.relative.is_finite();
         if !control.judge(proposal, dt, error.relative) && !unresolved {
             events::rejected(time, time - now, error.relative, control.tolerance);
+            control.rejected += 1;
             add_work(&mut wasted, computed);
             if let Some(divided) = control.halves.as_ref().filter(|_| halves.is_some()) {
                 divided.undo(contact);

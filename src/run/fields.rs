@@ -47,13 +47,15 @@ impl<'a, C: RunContact> Run<'a, C> {
         self.stops.add(stops.into(), self.progress.start)
     }
 
-    /// Remembers the last step for the estimate of the fields.
+    /// Remembers the step just taken for the estimate of the fields, or forgets the start of one that was not.
     pub(super) fn keep_step(&mut self) {
-        if let (Some(fields), Some((_, report))) = (self.fields.as_mut(), self.last) {
-            fields.ends.push(report.time);
-            while fields.starts.len() > STARTS {
-                fields.starts.pop_front();
-            }
+        let Some(fields) = self.fields.as_mut() else { return };
+        match self.last {
+            Some((_, report)) => fields.ends.push(report.time),
+            None => drop(fields.starts.pop_back()),
+        }
+        while fields.starts.len() > STARTS {
+            fields.starts.pop_front();
         }
     }
 

@@ -224,7 +224,10 @@ impl<'a, C: RunContact> Run<'a, C> {
         self.last = None;
         self.prepare_fields()?;
         let start = self.contact.time();
-        let mut report = if self.events.is_empty() { self.take_step()? } else { self.take_until_event()? };
+        let taken = if self.events.is_empty() { self.take_step() } else { self.take_until_event() };
+        self.last = taken.as_ref().ok().copied().flatten().map(|report| (start, report));
+        self.keep_step();
+        let mut report = taken?;
         if let Some(report) = report.as_mut().filter(|report| report.time >= self.until) {
             self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
         }

@@ -42,7 +42,7 @@ impl Driven for ViscoelasticContact {
 
     fn advance(&mut self, control: &mut StepControl, course: &Course<'_>) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
-        rows.together(|| {
+        rows.unless_lost(|| {
             let (report, error) = match course.given {
                 Some((time, load)) => self.given_step(control, course, time, load)?,
                 None => adaptive_step(self, control, course)?,
@@ -77,7 +77,7 @@ impl Driven for ViscoelasticContact {
     #[cfg(feature = "checkpoint")]
     fn is_due(&self, due: bool) -> Result<bool> {
         let rows = self.computation.state.region.rows();
-        rows.together(|| Ok(rows.any(due)))
+        rows.unless_lost(|| Ok(rows.any(due)))
     }
 }
 

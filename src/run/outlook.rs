@@ -78,9 +78,9 @@ impl StepControl {
         })
     }
 
-    /// Errors of u where the next given approach follows a given force, each over the glassy compliance, that a unit of a defect of
-    /// v leaves: in this step, and in all steps of bodies that have been loaded for `age`. Bodies without elastic response have the
-    /// compliance of a `touch`.
+    /// What a unit of a defect of v has become of the error of u, over the glassy compliance, when a given force is next followed by a given
+    /// approach, under which the error of u counts: by a defect in this step alone, and in all steps since the load acts, its `age`. Bodies
+    /// without elastic response have the compliance of a `touch`.
     fn on_switch(&self, scene: &Scene, Interval { time, dt, .. }: Interval, age: f64, touch: f64) -> Result<[f64; 2]> {
         let switch = self.scale.next_switch(time);
         if switch.is_infinite() {
@@ -112,7 +112,8 @@ fn stiffness_on_jump(scene: &Scene, before: &Load, after: &Load) -> f64 {
 /// errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at the ends of a grid of length L.
 pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let clock = &tried.state.clock;
-    let is_turn = clock.last_dt > 0.0 && scene.next_temperature_corner(clock.time.next_down()).0 == clock.time;
+    let corner = scene.temperature.as_ref().and_then(|history| history.next_corner(clock.time.next_down()));
+    let is_turn = clock.last_dt > 0.0 && corner == Some(clock.time);
     let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
     let tilts = tried.trial.free.iter().any(Freedom::tilts);
     let (cells, reach) = if tilts { tried.pressed() } else { (0, None) };

@@ -124,9 +124,9 @@ impl RunScale {
         }
     }
 
-    /// Includes the force of the spring that is driven deepest, in bodies of this `compliance`: if k z, without the bodies' yielding, pressed them
-    /// down by h, the springs in series do by h z/(z + h), about. The force of a paraboloid grows with the power 3/2 of its depth, its width
-    /// with the root.
+    /// Includes the force of the spring that is driven deepest, by z, in bodies of this `compliance`. Under the force k z of a spring that stays
+    /// compressed they would yield by h; spring and bodies in series yield about h z/(z + h). The force of a paraboloid grows with the power
+    /// 3/2 of its depth, its width with the root.
     fn include_spring(&mut self, scene: &Scene, state: &State, compliance: f64, loads: &[(f64, Load)]) {
         let springs = loads.iter().filter_map(|(_, load)| match load {
             Load::Spring { stiffness, .. } => Some((self.magnitude(load), stiffness)),

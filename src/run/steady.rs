@@ -10,7 +10,6 @@ use crate::error::{Error, Result, StepError, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
 use crate::rheology::CreepSpectrum;
-use crate::run::OwnedOrBorrowed;
 
 /// Least number of the longest strides per contact length.
 const STEPS_PER_CONTACT_LENGTH: usize = 8;
@@ -52,7 +51,7 @@ impl SteadyMotion {
 /// A contact on its way to a steady state, made by [`ViscoelasticContact::toward_steady`].
 #[derive(Debug)]
 pub struct SteadyRun<'a> {
-    contact: OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>,
+    contact: &'a mut ViscoelasticContact,
     motion: SteadyMotion,
     creep: CreepSpectrum,
     /// The cell of the grid by which the shortest stride goes.
@@ -111,23 +110,12 @@ impl ViscoelasticContact {
     /// If the grid is fixed to the bodies, the velocity zero or not finite, the tolerance not in (0, 1), or the bodies flow without end:
     /// there is no steady state.
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<SteadyRun<'_>> {
-        SteadyRun::new(OwnedOrBorrowed::Borrowed(self), motion)
-    }
-
-    /// Like [`ViscoelasticContact::toward_steady`], for a run that owns the contact: it can be stored or sent to another thread.
-    ///
-    /// # Errors
-    /// As [`ViscoelasticContact::toward_steady`].
-    pub fn into_toward_steady(self, motion: SteadyMotion) -> Result<SteadyRun<'static>> {
-        SteadyRun::new(OwnedOrBorrowed::Owned(Box::new(self)), motion)
+        SteadyRun::new(self, motion)
     }
 }
 
 impl<'a> SteadyRun<'a> {
-    fn new(
-        contact: OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>,
-        motion: SteadyMotion,
-    ) -> Result<SteadyRun<'a>> {
+    fn new(contact: &'a mut ViscoelasticContact, motion: SteadyMotion) -> Result<SteadyRun<'a>> {
         if contact.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a motion to its steady state" });
         }
@@ -210,12 +198,7 @@ impl<'a> SteadyRun<'a> {
 
     /// The contact.
     pub fn contact(&self) -> &ViscoelasticContact {
-        &self.contact
-    }
-
-    /// The contact, of a run that owns it ([`ViscoelasticContact::into_toward_steady`]) or a copy of it.
-    pub fn into_contact(self) -> ViscoelasticContact {
-        self.contact.into_owned()
+        self.contact
     }
 
     /// Change of the pressure over the last contact length, Σ |Δp| over Σ p; infinite before the first full length.
@@ -262,7 +245,7 @@ impl<'a> SteadyRun<'a> {
         let SteadyMotion { axis, tolerance, max_distance, .. } = self.motion;
         let (change, distance) = (self.change, self.distance());
         let most = max_distance.unwrap_or(MAX_GRID_LENGTHS * self.contact.grid().lengths()[axis.index()]);
-        let mut shortfall = Shortfall { contact: &mut self.contact, creep: &self.creep, cell: self.cell };
+        let mut shortfall = Shortfall { contact: self.contact, creep: &self.creep, cell: self.cell };
         let remaining = shortfall.outstanding();
         self.outstanding = remaining;
         let (time, reach) = shortfall.slowest(distance);

@@ -214,7 +214,7 @@ impl StepControl {
     }
 
     /// Chooses the length of the next step after the one proposed, of length `dt`, with the given error, which grows with the power
-    /// `order` of the length. Returns whether the step is accepted.
+    /// `order` of the length. Returns whether the error allows the step.
     pub(super) fn judge(&mut self, Proposal { order, dashpot, .. }: Proposal, dt: f64, error: f64) -> bool {
         let (ratio, order) = ((error / self.tolerance).max(1e-10), f64::from(order));
         let accepted = ratio <= 1.0;
@@ -227,8 +227,6 @@ impl StepControl {
         self.next = Some(dt * factor.clamp(MAX_SHRINKAGE, if accepted { growth } else { SAFETY }));
         if accepted {
             self.last = ratio.max(1e-3);
-        } else {
-            self.rejected += 1;
         }
         accepted
     }

@@ -1,8 +1,6 @@
 //! What a motion passes over: influences of cells and waves, and how they creep.
 
-use std::cell::Cell;
 use std::f64::consts::{FRAC_1_PI, TAU};
-use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use num_complex::Complex64;
@@ -12,6 +10,7 @@ use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
 use crate::error::{Error, Result, SlidingError, Special};
+use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
 use crate::numeric::EULER;
 
@@ -28,11 +27,7 @@ pub(super) struct Bodies {
     pub(super) rows: [OnceLock<Vec<Row>>; 2],
 }
 
-impl fmt::Debug for Bodies {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.kernel.fmt(f)
-    }
-}
+debug_by!(self: Bodies => kernel: self.kernel);
 
 impl Bodies {
     /// The bodies under a pressure with this velocity \[m/s\].
@@ -62,24 +57,31 @@ impl Bodies {
     }
 
     fn over_period(&self, velocity: [f64; 2]) -> Result<MovingBodies> {
-        let refused = Cell::new(None);
-        let displaces = |k: [usize; 2], q: [f64; 2]| {
-            let omega = q[0] * velocity[0] + q[1] * velocity[1];
-            let compliance = match &self.layer {
-                Some(layer) if k != [0, 0] => layer.compliance(&self.creep, q[0].hypot(q[1]), omega),
-                _ => self.kernel.of_wave(k) * self.creep.at(omega),
-            };
-            if !(compliance.re > 0.0 && compliance.im.is_finite() || compliance == Complex64::ZERO) {
-                refused.set(Some(omega.abs()));
+        let cells @ [n1, _] = self.kernel.grid().cells();
+        let (mut factors, mut loss) = (Vec::new(), [Vec::new(), Vec::new()]);
+        for (k, q) in wave_numbers(self.kernel.grid()).into_iter().enumerate() {
+            let k = [(k % n1).min(n1 - k % n1), k / n1];
+            // a wave of alternating cells is its own mirror image: it moves both ways
+            let signs = [0, 1].map(|axis| if 2 * k[axis] == cells[axis] { &[1.0, -1.0][..] } else { &[1.0] });
+            let both = signs[0].iter().flat_map(|s1| signs[1].iter().map(move |s2| [s1 * q[0], s2 * q[1]]));
+            let (mut factor, mut lost) = (Complex64::ZERO, [0.0; 2]);
+            for q in both {
+                let omega = q[0] * velocity[0] + q[1] * velocity[1];
+                let own = match &self.layer {
+                    Some(layer) if k != [0, 0] => layer.compliance(&self.creep, q[0].hypot(q[1]), omega),
+                    _ => self.kernel.of_wave(k) * self.creep.at(omega),
+                } / (signs[0].len() * signs[1].len()) as f64;
+                if !(own.re > 0.0 && own.im.is_finite() || own == Complex64::ZERO) {
+                    let Complex64 { re, im } = self.creep.at(omega.abs());
+                    return Err(SlidingError::NotPassive { omega: omega.abs(), compliance: [re, im] }.into());
+                }
+                factor += own;
+                (0..2).for_each(|axis| lost[axis] += q[axis] * own.im);
             }
-            compliance
-        };
-        let bodies = MovingBodies::periodic(self.kernel.grid(), &displaces);
-        let refuse = |omega: f64| {
-            let compliance = self.creep.at(omega);
-            SlidingError::NotPassive { omega, compliance: [compliance.re, compliance.im] }.into()
-        };
-        refused.get().map_or(Ok(bodies), |omega| Err(refuse(omega)))
+            factors.push(factor);
+            (0..2).for_each(|axis| loss[axis].push(lost[axis]));
+        }
+        Ok(MovingBodies::of_waves(cells, factors, loss))
     }
 
     /// Coefficients of a motion along an axis on which bodies end.
@@ -117,20 +119,13 @@ impl Bodies {
             Some(layer) => layer.of_waves(&self.kernel, (axis, speed), &self.creep, &waves),
             None => (0..aside).map(|i| (0..waves.len()).map(|k| of(i, k)).collect()).collect(),
         };
-        let mut coefficients = Coefficients::zero(aside, 2 * n - 1);
-        for (i, own) in table.iter().enumerate() {
-            for (k, displaces) in own.iter().enumerate() {
-                // the shortest wave is its own mirror image
-                let both = k > 0 && 2 * k < n;
-                let [re, im] = if both { [2.0 * displaces.re, 2.0 * displaces.im] } else { [displaces.re, 0.0] };
-                for m in 0..2 * n - 1 {
-                    let (sin, cos) = (TAU * (k * (m + 1) % n) as f64 / n as f64).sin_cos();
-                    coefficients.response[i][m] += (re * cos - im * sin) / n as f64;
-                    coefficients.loss[i][m] += waves[k] * (im * cos + re * sin) / n as f64;
-                }
-            }
-        }
-        coefficients
+        // the shortest wave is its own mirror image
+        let part = |i: usize, k: usize| if 2 * k == n { table[i][k].re.into() } else { table[i][k] } / n as f64;
+        let along = |part: &dyn Fn(usize, usize) -> Complex64| {
+            let rows = real_rows(aside, n, part);
+            rows.chunks_exact(n).map(|row| (1..2 * n).map(|m| row[m % n]).collect()).collect()
+        };
+        Coefficients { response: along(&part), loss: along(&|i, k| -Complex64::I * waves[k] * part(i, k)) }
     }
 
     /// What the approach of a body that flows exceeds the one after a way of the length of the grid by, under a force:

@@ -1,13 +1,14 @@
 //! The contact problem of a steady motion: p ≥ 0, h ≥ 0, p h = 0 and the balance of the load.
 
 use std::collections::HashSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::gmres::{dot, gmres, norm};
+use super::gmres::{gmres, norm};
 use super::operator::MovingBodies;
-use super::watch::Watch;
 use crate::Grid;
-use crate::solver::{Freedom, RigidMotion};
+use crate::parallel::Rows;
+use crate::solver::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
 
 /// Sets of cells in contact that are tried.
 const MOST_SETS: usize = 60;
@@ -38,7 +39,8 @@ pub(super) struct Problem<'a> {
     pub(super) free: Freedom,
     /// Residual allowed, over the range of the gap that the contact closes.
     pub(super) tolerance: f64,
-    pub(super) watch: &'a Watch,
+    /// Set by another thread to end the search.
+    pub(super) cancelled: Option<&'a AtomicBool>,
 }
 
 /// The state of a contact problem.
@@ -61,129 +63,107 @@ impl Found {
     }
 }
 
-/// The modes of the free motion on a set of cells, orthonormal, with what their balance requires.
-struct Balance {
-    /// Values on the set, Σ p of the mode, and the motion of a unit of the mode: ω and the tilts.
-    modes: Vec<(Vec<f64>, f64, [f64; 3])>,
+/// A set of cells, and the free motion on it with its balance.
+struct Balance<'a> {
+    set: Vec<usize>,
+    modes: Modes<'a>,
+    /// The modes on the cells of the set, and their products.
+    values: Vec<[f64; 3]>,
+    gram: Gram,
 }
 
-impl Balance {
-    fn new(problem: &Problem<'_>, set: &[usize]) -> Balance {
-        let Problem { grid, free, .. } = problem;
-        let n2 = grid.cells()[1];
-        let position = |k: usize| [grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)];
-        let mut modes: Vec<(Vec<f64>, f64, [f64; 3])> = Vec::new();
-        for kind in 0..3 {
-            if !(if kind == 0 { free.translation } else { free.tilt[kind - 1] }) {
-                continue;
-            }
-            let value = |&k: &usize| if kind == 0 { 1.0 } else { position(k)[kind - 1] - free.point[kind - 1] };
-            let mut values: Vec<f64> = set.iter().map(value).collect();
-            let mut motion = [0.0; 3];
-            motion[kind] = 1.0;
-            if kind > 0 {
-                motion[0] = -free.point[kind - 1];
-            }
-            let (mut total, whole) = (if kind == 0 { free.total } else { 0.0 }, norm(&values));
-            for (other, own, of_other) in &modes {
-                let part = dot(&values, other);
-                values.iter_mut().zip(other).for_each(|(v, other)| *v -= part * other);
-                total -= part * own;
-                (0..3).for_each(|k| motion[k] -= part * of_other[k]);
-            }
-            let length = norm(&values);
-            // on a set along a line a tilt about it is none
-            if length > DEPENDENT * whole {
-                values.iter_mut().for_each(|v| *v /= length);
-                modes.push((values, total / length, motion.map(|own| own / length)));
-            }
+impl<'a> Balance<'a> {
+    fn new(problem: &Problem<'a>, set: Vec<usize>) -> Balance<'a> {
+        let modes = Modes::new(problem.grid, &Rows::all(problem.grid.cells()), problem.free);
+        let values: Vec<_> = set.iter().map(|&k| modes.at(k)).collect();
+        let mut gram = Gram::default();
+        for of in &values {
+            (0..9).for_each(|n| gram.entries[n / 3][n % 3] += of[n / 3] * of[n % 3]);
         }
-        Balance { modes }
+        Balance { set, modes, values, gram }
     }
 
-    /// Takes from a field what the free motion can close.
-    fn project(&self, field: &mut [f64]) {
-        for (values, ..) in &self.modes {
-            let part = dot(field, values);
-            field.iter_mut().zip(values).for_each(|(own, value)| *own -= part * value);
+    /// Adds the motion to a field on the set that brings its force and moments to these sums, and returns it.
+    fn bring(&self, field: &mut [f64], sums: [f64; 3]) -> ModeCoefficients {
+        let mut missing = sums;
+        for (of, value) in self.values.iter().zip(&*field) {
+            (0..3).for_each(|m| missing[m] -= of[m] * value);
         }
+        let motion = self.gram.solve(missing);
+        self.values.iter().zip(field).for_each(|(of, value)| *value += dot(*of, motion));
+        ModeCoefficients(motion)
     }
 
-    /// Adds to a pressure what it lacks of the load.
-    fn satisfy(&self, pressure: &mut [f64]) {
-        for (values, total, _) in &self.modes {
-            let missing = total - dot(pressure, values);
-            pressure.iter_mut().zip(values).for_each(|(p, value)| *p += missing * value);
-        }
+    /// The values of a field on the set.
+    fn of(&self, field: &[f64]) -> Vec<f64> {
+        self.set.iter().map(|&k| field[k]).collect()
     }
 
-    /// The motion that closes a gap on the set best.
-    fn motion(&self, gap: &[f64]) -> RigidMotion {
-        let mut sum = [0.0; 3];
-        for (values, _, motion) in &self.modes {
-            let part = dot(gap, values);
-            (0..3).for_each(|k| sum[k] += part * motion[k]);
-        }
-        RigidMotion { approach: sum[0], tilt: [sum[1], sum[2]] }
+    /// The field with these values on the set.
+    fn field(&self, values: &[f64], cells: usize) -> Vec<f64> {
+        let mut field = vec![0.0; cells];
+        self.set.iter().zip(values).for_each(|(&k, value)| field[k] = *value);
+        field
+    }
+
+    /// The root mean square of values on the set.
+    fn rms(&self, values: &[f64]) -> f64 {
+        norm(values) / (self.set.len() as f64).sqrt()
     }
 }
-
-/// A mode of which the others leave less than this part is one of them.
-const DEPENDENT: f64 = 1e-8;
 
 impl Problem<'_> {
+    /// Whether another thread ends the search.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
     /// The state, from the `guess` of a pressure, where it is positive somewhere.
     ///
     /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves with the
     /// inverse of the bodies' response, restricted to the set, as preconditioner. Cells that pull leave the set, cells that penetrate join.
     pub(super) fn solve(&self, bodies: &mut MovingBodies, guess: &[f64]) -> Found {
-        let Problem { gap, tolerance, grid, .. } = *self;
+        let Problem { gap, tolerance, grid, free, .. } = *self;
         let (cells, n2) = (gap.len(), grid.cells()[1]);
         let mut pressed: Vec<bool> = guess.iter().map(|&p| p > 0.0).collect();
         if !pressed.contains(&true) {
             pressed = self.lowest();
         }
-        let mut found = Found { pressure: guess.to_vec(), displacement: vec![0.0; cells], ..Found::default() };
-        let (mut tried, mut stands) = (HashSet::new(), false);
-        while found.sets < MOST_SETS && !self.watch.has_ended() {
+        let mut found = Found { pressure: guess.to_vec(), ..Found::default() };
+        let (hasher, mut tried, mut stands) = (BuildHasherDefault::<DefaultHasher>::default(), HashSet::new(), false);
+        while found.sets < MOST_SETS && !self.is_cancelled() {
             found.sets += 1;
             if !pressed.contains(&true) {
-                if !self.free.translation {
+                if !free.translation {
                     return Found { sets: found.sets, ..Found::apart(cells) };
                 }
                 let low = gap.iter().copied().fold(f64::INFINITY, f64::min);
                 pressed = gap.iter().map(|&h| h <= low).collect();
             }
-            let set: Vec<usize> = (0..cells).filter(|&k| pressed[k]).collect();
-            let balance = Balance::new(self, &set);
-            let mut p: Vec<f64> = set.iter().map(|&k| found.pressure[k]).collect();
-            balance.satisfy(&mut p);
-            let allowed = tolerance * self.unit(&set, &balance) * (set.len() as f64).sqrt();
+            let balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
+            let allowed = tolerance * self.unit(&balance);
+            let mut p = balance.of(&found.pressure);
+            balance.bring(&mut p, balance.modes.load().map(|unit| unit * free.total));
             let part = if stands { 0.0 } else { ROUGHLY };
-            let residual = self.solve_on(&set, &balance, [allowed, part], bodies, &mut p, &mut found.displacement);
-            let left = norm(&residual);
-            let open = |k: usize| found.displacement[k] + gap[k];
-            found.motion = balance.motion(&set.iter().map(|&k| open(k)).collect::<Vec<_>>());
+            let residual = self.solve_on(&balance, allowed, part, bodies, &mut p, &mut found);
+            let left = balance.rms(&residual);
             found.residual = tolerance * left / allowed;
-            self.watch.tried(found.residual);
-            let height = |k: usize| open(k) - found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
+            let height = |k: usize| {
+                let motion = found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
+                found.displacement[k] + gap[k] - motion
+            };
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-            let deep = -(SLACK * allowed).max(CERTAIN * left) / (set.len() as f64).sqrt();
-            let mut pulls: Vec<(f64, usize)> =
-                p.iter().zip(&set).filter(|(p, _)| **p < -ROUNDING * most).map(|(p, k)| (*p, *k)).collect();
+            let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
+            let deep = -(SLACK * allowed).max(CERTAIN * left);
             let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
-            let penetrates: Vec<(f64, usize)> = outside.filter(|(h, _)| *h < deep).collect();
+            let mut changes: [Vec<(f64, usize)>; 2] = [pulls.collect(), outside.filter(|(h, _)| *h < deep).collect()];
             // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back
-            if !stands && !penetrates.is_empty() && pulls.len() < set.len() / MANY {
-                let mut closing = vec![0.0; cells];
-                scatter(&residual, &set, &mut closing);
-                bodies.inverse.apply(&closing.clone(), &mut closing);
-                let doubt = norm(&set.iter().map(|&k| closing[k]).collect::<Vec<_>>()) / (set.len() as f64).sqrt();
-                pulls.retain(|(p, _)| *p < -doubt);
+            if !stands && !changes[1].is_empty() && changes[0].len() < p.len() / MANY {
+                let doubt = balance.rms(&balance.of(&bodies.pressure(&balance.field(&residual, cells))));
+                changes[0].retain(|(p, _)| *p < -doubt);
             }
-            let mut changes: [Vec<(f64, usize)>; 2] = [pulls, penetrates];
-            found.pressure.fill(0.0);
-            p.iter().zip(&set).for_each(|(&p, &k)| found.pressure[k] = p.max(0.0));
+            p.iter_mut().for_each(|p| *p = p.max(0.0));
+            found.pressure = balance.field(&p, cells);
             if changes.iter().all(Vec::is_empty) {
                 found.converged = left <= 1.5 * allowed;
                 if found.converged || stands {
@@ -198,9 +178,7 @@ impl Problem<'_> {
                 next
             };
             let mut next = changed(&changes);
-            let mut hasher = DefaultHasher::new();
-            next.hash(&mut hasher);
-            if !tried.insert(hasher.finish()) {
+            if !tried.insert(hasher.hash_one(&next)) {
                 // where a set comes back, the worse half changes
                 for own in &mut changes {
                     own.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -213,58 +191,50 @@ impl Problem<'_> {
         found
     }
 
-    /// Solves for the pressure on a set down to a residual allowed, or to a part of the first one. Returns the residual left, and writes the
-    /// displacement.
+    /// Solves for the pressure on a set down to the root mean square of the residual that is `allowed`, or to a `part` of the first one. Returns the residual left,
+    /// and writes displacement and motion.
     fn solve_on(
         &self,
-        set: &[usize],
-        balance: &Balance,
-        [allowed, part]: [f64; 2],
+        balance: &Balance<'_>,
+        allowed: f64,
+        part: f64,
         bodies: &mut MovingBodies,
         pressure: &mut [f64],
-        displacement: &mut [f64],
+        found: &mut Found,
     ) -> Vec<f64> {
-        let cells = self.gap.len();
-        let (mut full, mut image) = (vec![0.0; cells], vec![0.0; cells]);
-        let (mut goal, mut cycle) = (0.0, 0);
+        let (cells, mut goal) = (self.gap.len(), 0.0);
+        let mut cycle = 0;
         loop {
             cycle += 1;
-            scatter(pressure, set, &mut full);
-            bodies.response.apply(&full, displacement);
-            let mut residual: Vec<f64> = set.iter().map(|&k| -(displacement[k] + self.gap[k])).collect();
-            balance.project(&mut residual);
+            found.displacement = bodies.displacement(&balance.field(pressure, cells));
+            let mut residual = balance.of(self.gap);
+            residual.iter_mut().zip(&balance.set).for_each(|(gap, &k)| *gap = -(found.displacement[k] + *gap));
+            found.motion = balance.modes.physical(balance.bring(&mut residual, [0.0; 3]));
             let left = norm(&residual);
             if cycle == 1 {
-                goal = allowed.max(part * left);
+                goal = (allowed * (pressure.len() as f64).sqrt()).max(part * left);
             }
-            if left <= goal || cycle == CYCLES || self.watch.has_ended() {
+            if left <= goal || cycle == CYCLES || self.is_cancelled() {
                 return residual;
             }
-            gmres(pressure, &residual, goal, |direction| {
-                if !self.watch.goes_on() {
-                    return None;
-                }
-                scatter(direction, set, &mut full);
-                bodies.inverse.apply(&full, &mut image);
-                let mut better: Vec<f64> = set.iter().map(|&k| image[k]).collect();
-                balance.project(&mut better);
-                scatter(&better, set, &mut full);
-                bodies.response.apply(&full, &mut image);
-                let mut own: Vec<f64> = set.iter().map(|&k| image[k]).collect();
-                balance.project(&mut own);
-                Some([better, own])
+            gmres(pressure, residual, goal, |direction| {
+                let mut better = balance.of(&bodies.pressure(&balance.field(direction, cells)));
+                balance.bring(&mut better, [0.0; 3]);
+                let mut image = balance.of(&bodies.displacement(&balance.field(&better, cells)));
+                balance.bring(&mut image, [0.0; 3]);
+                (!self.is_cancelled()).then_some([better, image])
             });
         }
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps
     /// where the contact is flat.
-    fn unit(&self, set: &[usize], balance: &Balance) -> f64 {
-        let mut heights: Vec<f64> = set.iter().map(|&k| self.gap[k]).collect();
-        balance.project(&mut heights);
+    fn unit(&self, balance: &Balance<'_>) -> f64 {
+        let mut heights = balance.of(self.gap);
+        balance.bring(&mut heights, [0.0; 3]);
         let finite = || self.gap.iter().copied().filter(|h| h.is_finite());
         let [low, high] = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
-        (norm(&heights) / (set.len() as f64).sqrt()).max(FLAT * (high - low)).max(ROUNDING * high.abs())
+        balance.rms(&heights).max(FLAT * (high - low)).max(ROUNDING * high.abs())
     }
 
     /// The cells of a first set: the lowest ones, those below zero under a given approach.
@@ -278,9 +248,4 @@ impl Problem<'_> {
         };
         self.gap.iter().map(|&h| h <= level).collect()
     }
-}
-
-fn scatter(values: &[f64], set: &[usize], field: &mut [f64]) {
-    field.fill(0.0);
-    values.iter().zip(set).for_each(|(&value, &k)| field[k] = value);
 }

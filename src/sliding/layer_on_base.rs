@@ -35,7 +35,6 @@ pub(super) const THINNEST: f64 = 64.0;
 pub(super) struct LayerOnBase {
     pub(super) layer: Layer,
     pub(super) base: Creep,
-    pub(super) base_poisson: f64,
 }
 
 impl Layer {
@@ -66,29 +65,26 @@ fn at_rest(material: &Material) -> Result<(f64, f64)> {
     Ok((nu, relaxed))
 }
 
-/// Wave numbers and weights of an integral over q > 0.
-fn nodes(least: f64, last: f64, longest: f64) -> Vec<(f64, f64)> {
-    let (rule, mut begin, mut length, mut nodes) = (GaussLegendre::new(POINTS), 0.0, least, Vec::new());
-    while begin < last {
-        nodes.extend(rule.points().iter().map(|(t, w)| (begin + 0.5 * length * (1.0 + t), 0.5 * length * w)));
-        begin += length;
-        length = begin.min(longest);
-    }
-    nodes
-}
-
 /// The mean of a wave over a cell, cos(qx) over |x| < side/2.
 fn of_cell(q: f64, side: f64) -> f64 {
     let half = 0.5 * q * side;
     if half < 1e-4 { 1.0 - half * half / 6.0 } else { half.sin() / half }
 }
 
+/// What even waves of these numbers and weights displace at the distances of n cells of a side.
+fn to_cells(waves: &[(f64, f64)], n: usize, side: f64) -> Mat<f64> {
+    Mat::from_fn(n, waves.len(), |i, k| {
+        let (q, weight) = waves[k];
+        FRAC_1_PI * weight * side * of_cell(q, side) * (q * side * i as f64).cos()
+    })
+}
+
 impl LayerOnBase {
     /// C₁ and C₂ at a frequency, and L of a wave qh.
     fn at(&self, creep: &Creep, omega: f64) -> (Complex64, Complex64, impl Fn(f64) -> Complex64) {
         let [own, base] = [creep.at(omega), self.base.at(omega)];
-        let mu = base / (1.0 - self.base_poisson) * ((1.0 - self.layer.poisson_ratio()) / own);
-        let layer = self.layer.oscillating(mu);
+        let base_poisson = self.layer.base_poisson().unwrap_or(0.5);
+        let layer = self.layer.oscillating(base / (1.0 - base_poisson) * ((1.0 - self.layer.poisson_ratio()) / own));
         (own, base, move |t| layer.at(t))
     }
 
@@ -125,13 +121,20 @@ impl LayerOnBase {
         parts
     }
 
-    /// Nodes along an axis of the grid.
+    /// Wave numbers and weights of an integral over q > 0, along an axis of the grid.
     fn nodes(&self, kernel: &InfluenceKernel, axis: usize, creep: &Creep, speed: f64) -> Vec<(f64, f64)> {
         let (h, lengths) = (self.layer.thickness(), kernel.grid().lengths());
         let softest = self.layer.longest_over_half_space().max(1.0);
         let reaches = [creep.reaches(speed), self.base.reaches(speed)].concat();
         let longest = reaches.iter().map(|(_, reach)| *reach).fold(h * softest, f64::max);
-        nodes(FIRST / longest.max(lengths[0]).max(lengths[1]), LAST / h, PHASE / lengths[axis])
+        let (rule, mut begin, mut nodes) = (GaussLegendre::new(POINTS), 0.0, Vec::new());
+        let mut length = FIRST / longest.max(lengths[0]).max(lengths[1]);
+        while begin < LAST / h {
+            nodes.extend(rule.points().iter().map(|(t, w)| (begin + 0.5 * length * (1.0 + t), 0.5 * length * w)));
+            begin += length;
+            length = begin.min(PHASE / lengths[axis]);
+        }
+        nodes
     }
 
     /// Rows of the influence at depth 2h, of cells or of the mean wave.
@@ -171,11 +174,8 @@ impl LayerOnBase {
         };
         let mut rest = self.rest(creep, &along, &waves, (lines, true, speed));
         if !lines {
-            let to_rows = Mat::from_fn(aside.len(), m, |k, j| {
-                let (q, weight) = aside[k];
-                FRAC_1_PI * weight * side * of_cell(q, side) * (q * side * j as f64).cos()
-            });
-            rest = rest.map(|part| &part * &to_rows);
+            let to_rows = to_cells(&aside, m, side);
+            rest = rest.map(|part| &part * to_rows.transpose());
         }
         let sum = |wave: fn(f64) -> f64, of_q: fn(f64) -> f64, part: &Mat<f64>| {
             let to_cells = Mat::from_fn(2 * n - 1, along.len(), |i, k| {
@@ -207,10 +207,7 @@ impl LayerOnBase {
     ) -> Vec<Vec<Complex64>> {
         let (n, d) = (kernel.grid().cells()[1 - axis], kernel.grid().spacing()[1 - axis]);
         let along = self.nodes(kernel, 1 - axis, creep, 0.0);
-        let to_cells = Mat::from_fn(n, along.len(), |i, k| {
-            let (q, weight) = along[k];
-            FRAC_1_PI * weight * d * of_cell(q, d) * (q * d * i as f64).cos()
-        });
+        let to_cells = to_cells(&along, n, d);
         let [re, im] = self.rest(creep, &along, waves, (true, false, speed)).map(|part| &to_cells * &part);
         let own = kernel.rows_along(1 - axis, Some(0.0)).unwrap_or_default();
         let (below, at_datum) = (self.below(kernel, 1 - axis), self.at_datum(kernel, 1 - axis, creep));

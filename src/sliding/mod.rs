@@ -16,21 +16,20 @@ mod layer_on_base;
 mod operator;
 mod search;
 mod sweep;
-mod watch;
 
 pub use crate::error::SlidingError;
 pub use sweep::{SlidingSweep, SlidingTable, SweptState};
-pub use watch::SlidingProgress;
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use num_complex::Complex64;
 
 use crate::contact::{Builder, Frame, ViscoelasticContact};
 use crate::error::{Error, Result, Special, StepError, finite};
 use crate::kernel::HalfSpace;
-use crate::load::{Load, Tilt};
+use crate::load::Load;
 use crate::memory;
 use crate::rheology::{Elastic, Material};
 use crate::rounded::rounded;
@@ -40,8 +39,6 @@ use contact_problem::{Found, Problem};
 use creep::Creep;
 use layer_on_base::{LayerOnBase, THINNEST};
 use operator::MovingBodies;
-use search::Mesh;
-use watch::{Watch, Watcher};
 
 /// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
 ///
@@ -65,13 +62,12 @@ use watch::{Watch, Watcher};
 /// assert!(sliding.contact().contact_area() < 1.0e-6);
 /// # Ok::<(), Error>(())
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct SteadySliding {
     /// Shows the state; it has no past, and takes no steps.
     contact: ViscoelasticContact,
     bodies: Arc<Bodies>,
-    meshes: Vec<Mesh>,
-    watcher: Watcher,
+    cancelled: Option<Arc<AtomicBool>>,
 }
 
 /// The state of a steady motion, in numbers.
@@ -123,25 +119,16 @@ impl fmt::Display for SlidingReport {
     }
 }
 
-/// Fails by the first of these that is the case, with what is not covered, and the cure.
-fn refuse<const N: usize>(cases: [(bool, &'static str, &'static str); N]) -> Result<()> {
-    let refuse = |(_, what, cure)| Err(Error::not_covered(Special::SteadyMotion, what, cure));
-    cases.into_iter().find(|(is, ..)| *is).map_or(Ok(()), refuse)
-}
-
 /// Whether a gap differs more from the end of a periodic axis to its beginning than anywhere between neighbours along the axis.
 fn jumps(gap: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> bool {
     (0..2).filter(|&axis| periodic[axis] && cells[axis] > 2).any(|axis| {
         let (n, stride) = (cells[axis], if axis == 0 { cells[1] } else { 1 });
-        let mut most = [0.0_f64; 2];
-        for k in 0..gap.len() {
-            let is_last = k / stride % n + 1 == n;
-            let next = if is_last { k - (n - 1) * stride } else { k + stride };
-            let rise = (gap[next] - gap[k]).abs();
-            let most = &mut most[usize::from(is_last)];
-            *most = most.max(if rise.is_finite() { rise } else { 0.0 });
-        }
-        most[1] > JUMP * most[0]
+        let most = |at_end: bool| {
+            let own = (0..gap.len()).filter(|k| (k / stride % n + 1 == n) == at_end);
+            let rise = own.map(|k| (gap[if at_end { k - (n - 1) * stride } else { k + stride }] - gap[k]).abs());
+            rise.filter(|rise| rise.is_finite()).fold(0.0, f64::max)
+        };
+        most(true) > JUMP * most(false)
     })
 }
 
@@ -216,7 +203,7 @@ impl Builder {
 
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
         let shift = "multiply the velocity by the shift factor of the temperature";
-        refuse([
+        Special::SteadyMotion.refuses([
             (self.attraction.is_some(), "a contact of surfaces that attract each other", "build it without attraction"),
             (self.temperature.is_some(), "a history of the temperature", shift),
             (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
@@ -232,7 +219,7 @@ impl Builder {
         let jumps = jumps(&contact.initial_gap().above, grid.cells(), periodic);
         let by_modulus = modulus.is_some() && periodic != [true; 2];
         let measured = "a modulus over frequency, of a body that is not periodic along both axes,";
-        refuse([
+        Special::SteadyMotion.refuses([
             (!has_rows, "a body of coefficients", "take InfluenceKernel::from_spectrum or a layer"),
             (contact.bodies() > 1, "a contact of several rigid bodies", "take one"),
             (jumps, "a shape that jumps at the period of its body", "take one that repeats, or taper its ends"),
@@ -244,42 +231,26 @@ impl Builder {
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
         let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
-        refuse([(flows, "a body that flows", rest)])?;
+        Special::SteadyMotion.refuses([(flows, "a body that flows", rest)])?;
         let on_base = |base: Material| {
-            let cure = "make the layer by Layer::bonded_to_material";
+            let (what, cure) =
+                ("a base below another body than a layer", "make the layer by Layer::bonded_to_material");
             let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
-            let layer = layer.ok_or(Error::not_covered(
-                Special::SteadyMotion,
-                "a base below another body than a layer",
-                cure,
-            ))?;
+            let layer = layer.ok_or(Error::not_covered(Special::SteadyMotion, what, cure))?;
             let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
             let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
             let thin = ends().any(|axis| grid.lengths()[axis] > THINNEST * layer.thickness());
-            refuse([
+            Special::SteadyMotion.refuses([
                 (other, "a base of another ratio than the layer's", cure),
                 (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
             ])?;
-            Ok::<_, Error>(LayerOnBase {
-                layer,
-                base: series(&base)?,
-                base_poisson: layer.base_poisson().unwrap_or(0.5),
-            })
+            Ok::<_, Error>(LayerOnBase { layer, base: series(&base)? })
         };
         let layer = base.map(on_base).transpose()?;
         let bodies = Arc::new(Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() });
-        let meshes = Mesh::coarser(grid, periodic)?;
-        Ok(SteadySliding { contact, bodies, meshes, watcher: Watcher::default() })
+        Ok(SteadySliding { contact, bodies, cancelled: None })
     }
-}
-
-/// The prescribed part of a motion.
-fn prescribed(load: Load) -> RigidMotion {
-    let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
-    let approach = if let Load::Approach { approach, .. } = load { approach } else { 0.0 };
-    // the approach belongs to the point about which the body tilts
-    RigidMotion { approach, tilt }
 }
 
 impl SteadySliding {
@@ -293,49 +264,47 @@ impl SteadySliding {
     /// # Errors
     /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a spring, cannot be balanced, tilts a periodic body, or is an approach
     /// beyond full contact, or one in line contact whose datum is too near; if contact reaches the edge of the grid, or the state is not found
-    /// ([`SlidingError::NotConverged`]), or its watcher ends the search. The state found last is then kept.
+    /// ([`SlidingError::NotConverged`]), or another thread ends the search. The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
         let on_spring = matches!(load, Load::Spring { .. });
-        refuse([(on_spring, "a body on a spring", "give the force or the approach")])?;
-        let (free, given) = (self.contact.free_motion(load)?, prescribed(load));
+        Special::SteadyMotion.refuses([(on_spring, "a body on a spring", "give the force or the approach")])?;
+        let (free, lowered) = self.contact.steady_motion(load)?;
         let mut bodies = self.moving(velocity, load)?;
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
         let (gap, n2) = (self.contact.initial_gap(), grid.cells()[1]);
         let datum = gap.datum;
-        // without translation the prescribed approach counts from the plane of the gap, else the free one from first touch
-        let lowered = RigidMotion { approach: if free.translation { 0.0 } else { given.approach - datum }, ..given };
         let lower = |k: usize| lowered.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
         let heights: Vec<f64> = gap.above.iter().enumerate().map(|(k, h)| h - lower(k)).collect();
         let mean = heights.iter().sum::<f64>() / heights.len() as f64;
         if !free.translation && mean <= 0.0 && self.contact.kernel().mean_is_held() {
-            let (approach, greatest) = (given.approach, given.approach + mean);
-            return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest }));
+            let approach = lowered.approach + datum;
+            return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest: approach + mean }));
         }
-        let watch = Watch::new(&self.watcher);
-        let problem = Problem { grid: &grid, gap: &heights, free, tolerance, watch: &watch };
+        let cancelled = self.cancelled.as_deref();
+        let problem = Problem { grid: &grid, gap: &heights, free, tolerance, cancelled };
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
         } else {
-            problem.search(&mut bodies, &mut self.meshes, self.contact.pressure())
+            problem.search(&mut bodies, self.contact.pressure())
         };
         let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
-        if watch.has_ended() {
+        if problem.is_cancelled() {
             return Err(Error::Cancelled { what: "a steady motion" });
         }
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }
         self.contact.check_edge(&pressure)?;
-        let cell_area = grid.cell_area();
-        let transforms = bodies.transforms();
+        let (cell_area, transforms) = (grid.cell_area(), bodies.transforms);
         let lateral_force = bodies.drag(&pressure).map(|force| force * cell_area);
         let excess = self.bodies.excess(velocity, cell_area * pressure.iter().sum::<f64>());
         displacement.iter_mut().for_each(|u| *u -= excess);
         motion.approach -= excess;
         let motion = RigidMotion { approach: datum, tilt: [0.0; 2] } + lowered + motion;
         self.contact.show_steady(load, motion, pressure, displacement);
+        let gaps: Vec<f64> = self.contact.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
         Ok(SlidingReport {
             velocity,
             force: self.contact.force(),
@@ -343,18 +312,48 @@ impl SteadySliding {
             lateral_force,
             contact_cells: self.contact.contact_cells(),
             contact_area: self.contact.contact_area(),
-            mean_gap: self.mean_gap()?,
+            mean_gap: gaps.iter().sum::<f64>() / gaps.len() as f64,
             residual,
             sets,
             transforms,
         })
     }
 
+    /// Lets another thread end the search under way in [`SteadySliding::at`], and those of a sweep, as [`Run::cancelled_by`](crate::run::Run::cancelled_by): the
+    /// call ends in [`Error::Cancelled`], and the state found last is kept.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    ///
+    /// use viscocontact::prelude::*;
+    ///
+    /// let cancel = Arc::new(AtomicBool::new(false));
+    /// let mut sliding = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 0.01)?))
+    ///     .build_sliding()?
+    ///     .cancelled_by(Arc::clone(&cancel));
+    /// sliding.at([0.1, 0.0], Load::force(0.5))?;
+    /// cancel.store(true, Ordering::Relaxed); // by another thread
+    /// assert!(matches!(sliding.at([0.2, 0.0], Load::force(0.5)), Err(Error::Cancelled { .. })));
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> SteadySliding {
+        self.cancelled = Some(flag);
+        self
+    }
+
     /// The bodies under a pressure with this velocity, where a load has a steady state.
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
         let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
-        refuse([(drifts, "a body that flows, under an approach or at rest,", "give a force and a velocity")])?;
+        Special::SteadyMotion.refuses([(
+            drifts,
+            "a body that flows, under an approach or at rest,",
+            "give a force and a velocity",
+        )])?;
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
         let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
@@ -362,13 +361,8 @@ impl SteadySliding {
         let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
         let what =
             "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
-        refuse([(near, what, "give the force, or a datum farther away")])?;
+        Special::SteadyMotion.refuses([(near, what, "give the force, or a datum farther away")])?;
         Ok(bodies)
-    }
-
-    fn mean_gap(&self) -> Result<f64> {
-        let finite: Vec<f64> = self.contact.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
-        Ok(finite.iter().sum::<f64>() / finite.len() as f64)
     }
 
     /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.

@@ -3,8 +3,7 @@
 use num_complex::Complex64;
 
 use super::coefficients::{Row, Rules};
-use crate::Grid;
-use crate::fft::{RealPlane, wave_numbers};
+use crate::fft::RealPlane;
 use crate::kernel::{fast_length, waves_at};
 
 /// A reach beyond so many cells gives nothing.
@@ -19,12 +18,14 @@ const LONGEST: f64 = 1e200;
 ///
 /// the conjugate of the complex compliance at the frequency at which the wave passes a point. Other bodies have influence coefficients in
 /// place of waves. The real part of C is positive, so that the map is strictly monotone, and a contact has one steady state.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct MovingBodies {
-    pub(super) response: Multiplier,
-    pub(super) inverse: Multiplier,
+    response: Multiplier,
+    inverse: Multiplier,
     /// The symmetric part of −∂u/∂x of each wave along either axis, by which bodies resist.
     loss: [Vec<f64>; 2],
+    /// Pairs of a forward and an inverse transform so far.
+    pub(super) transforms: usize,
 }
 
 /// Influence coefficients of bodies along a motion, at the distances −(n − 1) to n − 1 in each row aside of the motion.
@@ -62,12 +63,9 @@ impl Coefficients {
     pub(super) fn of_waves_aside(&self, n: usize) -> Coefficients {
         let sum = |rows: &[Vec<f64>]| {
             let of = |j: usize| {
-                let mut sum = vec![0.0; rows[0].len()];
-                for (k, row) in rows.iter().enumerate() {
-                    let part = waves_at(j, k, n) / n as f64;
-                    sum.iter_mut().zip(row).for_each(|(sum, own)| *sum += part * own);
-                }
-                sum
+                let parts: Vec<f64> = (0..rows.len()).map(|k| waves_at(j, k, n) / n as f64).collect();
+                let at = |i: usize| parts.iter().zip(rows).map(|(part, row)| part * row[i]).sum();
+                (0..rows[0].len()).map(at).collect()
             };
             (0..n).map(of).collect()
         };
@@ -76,45 +74,30 @@ impl Coefficients {
 }
 
 impl MovingBodies {
-    /// Bodies that are periodic along both axes, of which `displaces` returns the compliance \[m/Pa\] of a wave \[1/m\] of these absolute numbers.
-    pub(super) fn periodic(grid: &Grid, displaces: &dyn Fn([usize; 2], [f64; 2]) -> Complex64) -> MovingBodies {
-        let cells @ [n1, _] = grid.cells();
-        let waves = wave_numbers(grid);
-        let mut loss = [Vec::with_capacity(waves.len()), Vec::with_capacity(waves.len())];
-        let factor = |(k, &q): (usize, &[f64; 2])| {
-            let k = [(k % n1).min(n1 - k % n1), k / n1];
-            // a wave of alternating cells is its own mirror image: it moves both ways
-            let signs = [0, 1].map(|axis| if 2 * k[axis] == cells[axis] { &[1.0, -1.0][..] } else { &[1.0] });
-            let both = signs[0].iter().flat_map(|s1| signs[1].iter().map(move |s2| [s1 * q[0], s2 * q[1]]));
-            let part = 1.0 / (signs[0].len() * signs[1].len()) as f64;
-            let each: Vec<_> = both.map(|q| (q, part * displaces(k, q))).collect();
-            let sum = |axis: usize| each.iter().map(|(q, own)| q[axis] * own.im).sum();
-            (0..2).for_each(|axis| loss[axis].push(sum(axis)));
-            each.iter().map(|(_, own)| own).sum()
-        };
-        let factors = waves.iter().enumerate().map(factor).collect();
-        MovingBodies::of_waves(cells, factors, loss)
-    }
-
-    /// Bodies of one factor for each wave, which the inverse divides by.
+    /// Bodies that are periodic along both axes, of one factor for each wave, which the inverse divides by.
     pub(super) fn of_waves(cells: [usize; 2], factors: Vec<Complex64>, loss: [Vec<f64>; 2]) -> MovingBodies {
-        let none = Multiplier::new(cells, cells, Vec::new());
-        let mut bodies = MovingBodies { response: none.clone(), inverse: none, loss };
-        bodies.set_waves(factors);
-        bodies
+        let inverse = factors.iter().map(|&of| if of == Complex64::ZERO { of } else { of.inv() }).collect();
+        let [response, inverse] = [factors, inverse].map(|factors| Multiplier::new(cells, cells, factors));
+        MovingBodies { response, inverse, loss, transforms: 0 }
     }
 
-    /// Takes other factors; no transform has been counted of them.
-    pub(super) fn set_waves(&mut self, factors: Vec<Complex64>) {
-        let inverse = |&of: &Complex64| if of == Complex64::ZERO { of } else { of.inv() };
-        (self.inverse.factors, self.inverse.pairs) = (factors.iter().map(inverse).collect(), 0);
-        (self.response.factors, self.response.pairs) = (factors, 0);
+    /// Bodies that are periodic along both axes, on half as many cells along each axis: those of their long waves.
+    pub(super) fn coarser(&self) -> MovingBodies {
+        let [n1, n2] = self.response.cells;
+        let [m1, m2] = [n1 / 2, n2 / 2];
+        let waves = (0..=m2 / 2).flat_map(|k2| (0..m1).map(move |k1| [k1, k2]));
+        let factors = waves.map(|[k1, k2]| {
+            let factor = self.response.factors[k2 * n1 + if 2 * k1 > m1 { n1 - m1 + k1 } else { k1 }];
+            // a wave of alternating cells moves both ways
+            if 2 * k1 == m1 || 2 * k2 == m2 { Complex64::from(factor.re) } else { factor }
+        });
+        MovingBodies::of_waves([m1, m2], factors.collect(), Default::default())
     }
 
     /// Bodies of influence coefficients that move along an axis, `backward` or not.
     ///
     /// The approximate inverse inverts the nearest circulant matrix on the grid without padding (T. F. Chan, SIAM J. Sci. Stat. Comput.
-    /// 9, 1988).
+    /// 9, 1988): along each axis that ends c_k = ((n − k) a_k + k a_(k − n))/n.
     pub(super) fn of_coefficients(
         cells: [usize; 2],
         periodic: [bool; 2],
@@ -126,24 +109,41 @@ impl MovingBodies {
             let along = if backward { -at[axis] } else { at[axis] };
             rows[at[1 - axis].unsigned_abs()][(cells[axis] as isize - 1 + along) as usize]
         };
-        let response = Multiplier::of_coefficients(cells, periodic, &|at| table(&of.response, at));
-        let lost = Multiplier::of_coefficients(cells, periodic, &|at| table(&of.loss, at)).factors;
+        let periods = [0, 1].map(|axis| match cells[axis] {
+            n if periodic[axis] || n == 1 => n,
+            n => fast_length(2 * n - 1),
+        });
+        // no cells are so far apart
+        let distance = |axis: usize, k: usize| match (k as isize, cells[axis]) {
+            (k, n) if k < n as isize => Some(k),
+            (k, n) => Some(k - periods[axis] as isize).filter(|k| k.unsigned_abs() < n),
+        };
+        let padded = |rows: &[Vec<f64>]| {
+            let at = |[i, j]: [usize; 2]| Some(table(rows, [distance(0, i)?, distance(1, j)?]));
+            Multiplier::of_values(cells, periods, &|place| at(place).unwrap_or(0.0))
+        };
+        let (response, lost) = (padded(&of.response), padded(&of.loss).factors);
         let sign = if backward { -1.0 } else { 1.0 };
         let mut loss = [vec![0.0; lost.len()], vec![0.0; lost.len()]];
         loss[axis] = lost.iter().map(|factor| sign * factor.re).collect();
-        let inverse = Multiplier::of_circulant(cells, periodic, &|at| table(&of.response, at));
-        MovingBodies { response, inverse, loss }
+        let parts = |axis: usize, k: usize| {
+            let n = cells[axis];
+            let part = if periodic[axis] { 0.0 } else { k as f64 / n as f64 };
+            [(k as isize, 1.0 - part), (k as isize - n as isize, part)].into_iter().filter(|(_, part)| *part > 0.0)
+        };
+        let mut inverse = Multiplier::of_values(cells, cells, &|[i, j]| {
+            let row = |k: isize| parts(1, j).map(|(l, part)| part * table(&of.response, [k, l])).sum::<f64>();
+            parts(0, i).map(|(k, part)| part * row(k)).sum()
+        });
+        inverse.factors.iter_mut().for_each(|factor| *factor = factor.inv());
+        MovingBodies { response, inverse, loss, transforms: 0 }
     }
 
     /// Bodies with this part of the skew-symmetric response; without any the pressure moves both ways at once.
     pub(super) fn with_skew(&self, part: f64) -> MovingBodies {
-        let Multiplier { cells, ref plane, ref factors, .. } = self.response;
-        let factors = factors.iter().map(|factor| Complex64::new(factor.re, part * factor.im)).collect();
-        MovingBodies {
-            response: Multiplier::new(cells, plane.periods(), factors),
-            inverse: Multiplier { pairs: 0, ..self.inverse.clone() },
-            loss: Default::default(),
-        }
+        let mut bodies = MovingBodies { transforms: 0, ..self.clone() };
+        bodies.response.factors.iter_mut().for_each(|factor| factor.im *= part);
+        bodies
     }
 
     /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies resist.
@@ -158,80 +158,55 @@ impl MovingBodies {
         self.loss.each_ref().map(|loss| sum(loss) / (n1 * n2) as f64)
     }
 
-    /// Pairs of transforms so far.
-    pub(super) fn transforms(&self) -> usize {
-        self.response.pairs + self.inverse.pairs
+    /// The displacement under a pressure.
+    pub(super) fn displacement(&mut self, pressure: &[f64]) -> Vec<f64> {
+        self.transforms += 1;
+        self.response.apply(pressure)
+    }
+
+    /// The pressure under which bodies are displaced so, about.
+    pub(super) fn pressure(&mut self, displacement: &[f64]) -> Vec<f64> {
+        self.transforms += 1;
+        self.inverse.apply(displacement)
+    }
+
+    /// Whether the bodies have nothing but waves of the grid.
+    pub(super) fn are_periodic(&self) -> bool {
+        self.response.plane.periods() == self.response.cells
     }
 }
 
 /// A map of fields that multiplies each wave by a factor.
 #[derive(Debug, Clone)]
-pub(super) struct Multiplier {
-    pub(super) cells: [usize; 2],
-    pub(super) plane: RealPlane,
-    pub(super) factors: Vec<Complex64>,
+struct Multiplier {
+    cells: [usize; 2],
+    plane: RealPlane,
+    factors: Vec<Complex64>,
     coefficients: Vec<Complex64>,
-    /// Pairs of a forward and an inverse transform so far.
-    pub(super) pairs: usize,
 }
 
 impl Multiplier {
     /// Fields on `cells`, padded to `periods`.
     fn new(cells: [usize; 2], periods: [usize; 2], factors: Vec<Complex64>) -> Multiplier {
         let plane = RealPlane::new(periods);
-        Multiplier { cells, coefficients: vec![Complex64::ZERO; plane.coefficients()], plane, factors, pairs: 0 }
+        Multiplier { cells, coefficients: vec![Complex64::ZERO; plane.coefficients()], plane, factors }
     }
 
-    /// The factors of a plane of values.
-    fn of_plane(
-        cells: [usize; 2],
-        periods: [usize; 2],
-        plane: &[f64],
-        factor: impl Fn(Complex64) -> Complex64,
-    ) -> Multiplier {
-        let mut transform = RealPlane::new(periods);
-        let mut coefficients = vec![Complex64::ZERO; transform.coefficients()];
-        transform.forward(plane.chunks_exact(periods[1]), &mut coefficients);
-        Multiplier::new(cells, periods, coefficients.into_iter().map(factor).collect())
+    /// The convolution with a plane of values.
+    fn of_values(cells: [usize; 2], periods: [usize; 2], value: &dyn Fn([usize; 2]) -> f64) -> Multiplier {
+        let mut of = Multiplier::new(cells, periods, Vec::new());
+        let places = (0..periods[0]).flat_map(|i| (0..periods[1]).map(move |j| [i, j]));
+        let plane: Vec<f64> = places.map(value).collect();
+        of.plane.forward(plane.chunks_exact(periods[1]), &mut of.coefficients);
+        Multiplier { factors: of.coefficients.clone(), ..of }
     }
 
-    /// The convolution with coefficients of distances in cells.
-    fn of_coefficients(cells: [usize; 2], periodic: [bool; 2], at: &dyn Fn([isize; 2]) -> f64) -> Multiplier {
-        let padded = |n: usize| if n == 1 { 1 } else { fast_length(2 * n - 1) };
-        let periods = [0, 1].map(|axis| if periodic[axis] { cells[axis] } else { padded(cells[axis]) });
-        let mut plane = vec![0.0; periods[0] * periods[1]];
-        let distances = |axis: usize| if periodic[axis] { 0 } else { 1 - cells[axis] as isize }..cells[axis] as isize;
-        for i in distances(0) {
-            for j in distances(1) {
-                let [row, column] = [i.rem_euclid(periods[0] as isize), j.rem_euclid(periods[1] as isize)];
-                plane[row as usize * periods[1] + column as usize] = at([i, j]);
-            }
-        }
-        Multiplier::of_plane(cells, periods, &plane, |factor| factor)
-    }
-
-    /// The inverse of the nearest circulant matrix: along each axis that ends c_k = ((n − k) a_k + k a_(k − n))/n.
-    fn of_circulant(cells: [usize; 2], periodic: [bool; 2], at: &dyn Fn([isize; 2]) -> f64) -> Multiplier {
-        let parts = |axis: usize, k: usize| {
-            let n = cells[axis];
-            let part = if periodic[axis] { 0.0 } else { k as f64 / n as f64 };
-            [(k as isize, 1.0 - part), (k as isize - n as isize, part)].into_iter().filter(|(_, part)| *part > 0.0)
-        };
-        let indices = (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| [i, j]));
-        let mean = |[i, j]: [usize; 2]| {
-            let row = |k: isize| parts(1, j).map(|(l, part)| part * at([k, l])).sum::<f64>();
-            parts(0, i).map(|(k, part)| part * row(k)).sum::<f64>()
-        };
-        let plane: Vec<f64> = indices.map(mean).collect();
-        Multiplier::of_plane(cells, cells, &plane, |factor| factor.inv())
-    }
-
-    pub(super) fn apply(&mut self, field: &[f64], out: &mut [f64]) {
-        let [_, n2] = self.cells;
+    fn apply(&mut self, field: &[f64]) -> Vec<f64> {
+        let (n2, mut out) = (self.cells[1], vec![0.0; field.len()]);
         self.plane.forward(field.chunks_exact(n2), &mut self.coefficients);
         let scale = 1.0 / self.plane.periods().iter().product::<usize>() as f64;
         self.coefficients.iter_mut().zip(&self.factors).for_each(|(own, factor)| *own *= scale * factor);
         self.plane.inverse(&mut self.coefficients, out.chunks_exact_mut(n2));
-        self.pairs += 1;
+        out
     }
 }

@@ -1,9 +1,8 @@
 //! Steady motions at many velocities, loads and temperatures.
 
 use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-use super::search::Mesh;
 use super::{SlidingReport, SteadySliding};
 use crate::error::{Error, Result};
 use crate::load::Load;
@@ -99,7 +98,7 @@ impl SteadySliding {
         let told = Mutex::new((progress, 0, false));
         let chain = |k: usize| {
             let ((temperature, shift), load) = chains[k];
-            let (mut own, mut states) = (self.another()?, Vec::new());
+            let (mut own, mut states) = (self.clone(), Vec::new());
             for &velocity in &sweep.velocities {
                 let report = SlidingReport { velocity, ..own.at(velocity.map(|v| v * shift), load)? };
                 let state = SweptState { temperature, load, report };
@@ -124,13 +123,6 @@ impl SteadySliding {
             table.0.extend(states);
         }
         Ok(table)
-    }
-
-    /// The same motion on its own, over the same bodies.
-    fn another(&self) -> Result<SteadySliding> {
-        let (contact, bodies, watcher) = (self.contact.clone(), Arc::clone(&self.bodies), self.watcher.clone());
-        let meshes = Mesh::coarser(contact.grid(), contact.kernel().periodic_axes())?;
-        Ok(SteadySliding { contact, bodies, meshes, watcher })
     }
 }
 

@@ -22,7 +22,7 @@ pub(crate) use extension::{Extension, HaloExchange, HaloRows};
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK};
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution, Solve, Stop};
-pub(crate) use rigid_motion::{Freedom, ModeCoefficients, Modes, RigidMotion};
+pub(crate) use rigid_motion::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 use bands::BandSums;
@@ -33,6 +33,6 @@ use outcome::ResidualSums;
 use passes::{Passes, Search, add};
 use preconditioner::Preconditioner;
 use resting_position::RestingPosition;
-use rigid_motion::{Gram, Line, dot};
+use rigid_motion::Line;
 use row_segments::{Cut, PIECE_CELLS, Piece, RowSegments};
 use trace::Trace;

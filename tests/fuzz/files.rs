@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_npy};
+use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata, write_npy};
 use viscocontact::prelude::*;
 
 use crate::engine::{Outcome, Target, Verdict};
@@ -112,7 +112,7 @@ fn frames(source: &mut Source) -> Verdict {
         if twice && !error.to_string().is_empty() { Ok(Outcome::Refused) } else { Err(error.to_string()) }
     };
     if source.chance(0.5) {
-        match FrameSeries::create(folder.path("npz"), Format::Npz, &scene, &chosen) {
+        match FrameSeries::create(folder.path("npz"), Format::Npz, &scene, &contact, &chosen, Earlier::Refuse) {
             Ok(mut series) => {
                 let path = series.record(&contact).map_err(|error| error.to_string())?;
                 let length = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
@@ -124,7 +124,7 @@ fn frames(source: &mut Source) -> Verdict {
         }
     }
     if source.chance(0.5) {
-        match FrameSeries::create(folder.path("vtk"), Format::Vtk, &scene, &chosen) {
+        match FrameSeries::create(folder.path("vtk"), Format::Vtk, &scene, &contact, &chosen, Earlier::Refuse) {
             Ok(mut series) => {
                 let path = series.record(&contact).map_err(|error| error.to_string())?;
                 let file = std::fs::read(path).map_err(|error| error.to_string())?;
@@ -146,7 +146,9 @@ fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Metadata,
     let names: Vec<String> = (0..source.below(3)).map(|k| name(k, source)).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let path = folder.path("history.csv");
-    let Ok(mut history) = CsvHistory::create(&path, scene, contact, &names) else { return Ok(Outcome::Refused) };
+    let Ok(mut history) = CsvHistory::create(&path, scene, contact, &names, Earlier::Refuse) else {
+        return Ok(Outcome::Refused);
+    };
     let mut contact = contact.clone();
     let Ok(report) = contact.step(0.5, contact.load()) else { return Ok(Outcome::Refused) };
     let further: Vec<f64> = names.iter().map(|_| source.anything()).collect();

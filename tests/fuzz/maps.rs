@@ -68,7 +68,7 @@ fn gsf(source: &mut Source) -> Verdict {
     map(source).write_gsf(&mut file).map_err(|error| error.to_string())?;
     // the head ends with zeros
     let head = file.iter().position(|&byte| byte == 0).unwrap_or(0) + 4;
-    read(&file, Some(head), source, |file| HeightMap::from_gsf(file))
+    read(&file, Some(head), source, |file| HeightMap::from_gsf(file, None))
 }
 
 fn sdf(source: &mut Source) -> Verdict {
@@ -254,7 +254,7 @@ fn operations(source: &mut Source) -> Verdict {
     }
     let mut file = Vec::new();
     if map.write_gsf(&mut file).is_ok() {
-        let back = HeightMap::from_gsf(&file[..]).map_err(|error| format!("its own GSF: {error}"))?;
+        let back = HeightMap::from_gsf(&file[..], None).map_err(|error| format!("its own GSF: {error}"))?;
         look(back)?;
     }
     Ok(Outcome::Accepted)

@@ -9,8 +9,8 @@ fn main() -> viscocontact::Result<()> {
         .material(Material::incompressible(Elastic::new(1.0e6)?))
         .build()?;
     if let Some(path) = std::env::args_os().nth(1) {
-        use viscocontact::output::{CsvHistory, Metadata};
-        CsvHistory::create(path, &Metadata::new("Ball on rubber"), &contact, &[])?;
+        use viscocontact::output::{CsvHistory, Earlier, Metadata};
+        CsvHistory::create(path, &Metadata::new("Ball on rubber"), &contact, &[], Earlier::Refuse)?;
     }
     contact.step(0.0, Load::force(100.0)).map(drop)
 }

@@ -146,7 +146,7 @@ mod outputs {
     use std::fs;
     use std::io::ErrorKind::AlreadyExists;
 
-    use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata};
+    use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata};
 
     use super::*;
     use crate::common::temporary::Temporary;
@@ -157,13 +157,19 @@ mod outputs {
         let folder = Temporary::folder("replaced");
         let mut contact = contact();
         let report = contact.step(0.0, Load::force(0.5)).unwrap();
-        let metadata = || Metadata::new("Ball on rubber");
+        let metadata = Metadata::new("Ball on rubber");
         let count = |name: &str| fs::read_dir(folder.join(name)).unwrap().count();
 
         let (archives, images, table) = (folder.join("npz"), folder.join("vtk"), folder.join("history.csv"));
-        let mut first = FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
-        let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
+        let series = |format: Format, fields: &[Field], earlier: Earlier| {
+            let folder = if format == Format::Npz { &archives } else { &images };
+            FrameSeries::create(folder, format, &metadata, &contact, fields, earlier)
+        };
+        let history =
+            |names: &[&str], earlier: Earlier| CsvHistory::create(&table, &metadata, &contact, names, earlier);
+        let [mut first, mut second] =
+            [Format::Npz, Format::Vtk].map(|format| series(format, &[Field::Pressure], Earlier::Refuse).unwrap());
+        let mut third = history(&[], Earlier::Refuse).unwrap();
         for _ in 0..3 {
             first.record(&contact).unwrap();
             second.record(&contact).unwrap();
@@ -171,40 +177,35 @@ mod outputs {
         }
         fs::write(archives.join("notes.txt"), "kept").unwrap();
         let before = fs::read(&table).unwrap();
-        for error in [
-            FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap_err(),
-            FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap_err(),
-            CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
+        for (named, error) in [
+            ("frame_000000.npz", series(Format::Npz, &[Field::Pressure], Earlier::Refuse).unwrap_err()),
+            ("vtk", series(Format::Vtk, &[Field::Pressure], Earlier::Refuse).unwrap_err()),
+            ("history.csv", history(&[], Earlier::Refuse).unwrap_err()),
         ] {
             assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
-            let named = ["frame_000000.npz", "vtk", "history.csv"];
-            assert!(named.iter().any(|name| messages(&error).concat().contains(name)), "{:?}", messages(&error));
+            assert!(messages(&error).concat().contains(named), "{:?}", messages(&error));
         }
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!([count("npz"), count("vtk")], [4, 4]);
 
         // an invalid request removes nothing
-        let twice = FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).unwrap_err();
+        let twice = series(Format::Npz, &[Field::Gap; 2], Earlier::Replace).unwrap_err();
         assert!(messages(&twice).concat().contains("gap is requested twice"), "{:?}", messages(&twice));
-        assert_eq!(
-            CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).unwrap_err().kind(),
-            ErrorKind::File
-        );
+        assert_eq!(history(&["a", "a"], Earlier::Replace).unwrap_err().kind(), ErrorKind::File);
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!(count("npz"), 4);
 
-        let mut first =
-            FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = FrameSeries::create_or_replace(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
-        CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
+        let replaced = [Format::Npz, Format::Vtk].map(|format| series(format, &[Field::Pressure], Earlier::Replace));
+        history(&[], Earlier::Replace).unwrap();
         assert_eq!([count("npz"), count("vtk")], [1, 0]);
-        first.record(&contact).unwrap();
-        second.record(&contact).unwrap();
+        for series in replaced {
+            series.unwrap().record(&contact).unwrap();
+        }
         assert_eq!([count("npz"), count("vtk")], [2, 2]);
         assert_eq!(fs::read_to_string(&table).unwrap().lines().count(), 2);
         assert_eq!(fs::read_to_string(archives.join("notes.txt")).unwrap(), "kept");
 
-        let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
+        let error = CsvHistory::create(&archives, &metadata, &contact, &[], Earlier::Replace).unwrap_err();
         assert!(matches!(error, Error::File(FileError::NotAFile { .. })), "{error}");
     }
 }

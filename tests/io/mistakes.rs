@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::spheres::{builder_of, builder_on, sphere};
-use viscocontact::output::{Field, Format, FrameSeries, Metadata};
+use viscocontact::output::{Earlier, Field, Format, FrameSeries, Metadata};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{Experiment, Units};
 use viscocontact::{Result, TextFormat};
@@ -90,8 +90,9 @@ fn folder() -> PathBuf {
 fn frames_again() -> Result<FrameSeries> {
     let (folder, metadata) = (folder().join("frames"), Metadata::new(""));
     let fields = [Field::Pressure];
-    FrameSeries::create_or_replace(&folder, Format::Npz, &metadata, &fields)?.record(&contact()?)?;
-    FrameSeries::create(&folder, Format::Npz, &metadata, &fields)
+    let again = |earlier| FrameSeries::create(&folder, Format::Npz, &metadata, &contact()?, &fields, earlier);
+    again(Earlier::Replace)?.record(&contact()?)?;
+    again(Earlier::Refuse)
 }
 
 fn resumed() -> Result<()> {
@@ -159,7 +160,7 @@ const MISTAKES: &[Mistake] = &[
 ("a load too great for the grid",
     || contact()?.step(0.0, Load::force(20.0)).map(drop),
     "at t = 0 s the contact touches the edge of the grid on 124 cells; the grid is 0.004 m × 0.004 m, the load needs about \
-     0.0065 m × 0.0065 m: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"),
+     0.0065 m × 0.0065 m: enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there"),
 ("a load beside the punch",
     || punch()?.step(0.0, Load::eccentric_force(1.0, [1.5e-3, 0.0])).map(drop),
     "at t = 0 s the load acts at (0.0015, 0) m, outside the convex hull of the cells that body 0 may touch: it would tip \
@@ -244,14 +245,13 @@ const MISTAKES: &[Mistake] = &[
     "shortest wavelength = 1e-6 m is not allowed: it must be at least two cells of the grid, which are 2.5e-4 m along x1: take \
      a longer wavelength, or 8000 cells along x1"),
 ("a history in a file that exists",
-    || CsvHistory::create(path("taken.csv")?, &Metadata::new(""), &contact()?, &[]).map(drop),
-    "FOLDER/taken.csv cannot be written: it exists: CsvHistory::create_or_replace replaces it"),
+    || CsvHistory::create(path("taken.csv")?, &Metadata::new(""), &contact()?, &[], Earlier::Refuse).map(drop),
+    "FOLDER/taken.csv cannot be written: it exists: Earlier::Replace replaces it"),
 ("frames in a folder that holds frames",
     || frames_again().map(drop),
-    "FOLDER/frames cannot be written: the folder contains frame_000000.npz of another run: FrameSeries::create_or_replace \
-     removes it"),
+    "FOLDER/frames cannot be written: the folder contains frame_000000.npz of another run: Earlier::Replace removes it"),
 ("a history in a folder that is not there",
-    || CsvHistory::create("no/such/history.csv", &Metadata::new(""), &contact()?, &[]).map(drop),
+    || CsvHistory::create("no/such/history.csv", &Metadata::new(""), &contact()?, &[], Earlier::Refuse).map(drop),
     "no/such/history.csv cannot be written: the folder no/such does not exist: create it first"),
 ("a picture in a format that is not drawn",
     || viscocontact::plot::Map::pressure(&contact()?)?.save("pressure.pdf").map(drop),

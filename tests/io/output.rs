@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use viscocontact::ErrorKind;
 use viscocontact::observe::StressVolume;
-use viscocontact::output::{Field, Metadata};
+use viscocontact::output::{Field, Format, Metadata};
 use viscocontact::prelude::*;
 
 /// A punch that is off the origin and of another number of cells along x1 than along x2, so that no two axes,
@@ -19,6 +19,14 @@ fn punch() -> ViscoelasticContact {
 
 fn scene() -> Metadata {
     Metadata::new("A \"punch\" <on> & µm, \u{1d11e}").note("line\nend", "\\ tab\t").note("operator", "-->]]>")
+}
+
+fn series(folder: impl AsRef<Path>, format: Format, contact: &ViscoelasticContact, fields: &[Field]) -> FrameSeries {
+    FrameSeries::create(folder, format, &scene(), contact, fields, Earlier::Refuse).unwrap()
+}
+
+fn history(path: impl AsRef<Path>, contact: &ViscoelasticContact, additional: &[&str]) -> CsvHistory {
+    CsvHistory::create(path, &scene(), contact, additional, Earlier::Refuse).unwrap()
 }
 
 /// The jump and two steps of a hold; `after` sees the state after each.
@@ -64,7 +72,7 @@ fn text_of(path: &Path) -> String {
 mod npy {
     use std::io::Read;
 
-    use viscocontact::output::{Format, FrameSeries, write_npy};
+    use viscocontact::output::write_npy;
 
     use super::*;
 
@@ -114,8 +122,8 @@ mod npy {
     #[test]
     fn archives_hold_what_was_computed() {
         let folder = Temporary::folder("npz");
-        let mut series = FrameSeries::create(&folder, Format::Npz, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
+        let mut series = series(&folder, Format::Npz, &contact, &Field::ALL);
         run(&mut contact, |contact, _| {
             let path = series.record(contact).unwrap();
             let mut archive = Archive(zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap());
@@ -151,7 +159,8 @@ mod npy {
     #[test]
     fn a_frame_that_fails_is_not_there_and_not_counted() {
         let folder = Temporary::folder("npz-fails");
-        let mut series = FrameSeries::create(folder.join("run"), Format::Npz, &scene(), &[Field::Pressure]).unwrap();
+        let (inside, fields) = (folder.join("run"), [Field::Pressure]);
+        let mut series = series(inside, Format::Npz, &punch(), &fields);
         fs::remove_dir_all(folder.join("run")).unwrap();
         let error = series.record(&punch()).unwrap_err();
         assert!(matches!(&error, Error::Output(error) if error.path().ends_with("frame_000000.npz")), "{error}");
@@ -176,8 +185,6 @@ mod npy {
 }
 
 mod vtk {
-    use viscocontact::output::{Format, FrameSeries};
-
     use super::*;
 
     /// An image, read by its tags.
@@ -249,8 +256,8 @@ mod vtk {
     #[test]
     fn images_hold_what_was_computed() {
         let folder = Temporary::folder("vtk");
-        let mut series = FrameSeries::create(&folder, Format::Vtk, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
+        let mut series = series(&folder, Format::Vtk, &contact, &Field::ALL);
         let mut listed = Vec::new();
         run(&mut contact, |contact, _| {
             let image = Image::open(&series.record(contact).unwrap());
@@ -285,13 +292,14 @@ mod vtk {
             assert_eq!(lines.collect::<Vec<_>>(), listed);
         });
         assert_eq!(folder.names(), ["frame_000000.vti", "frame_000001.vti", "frame_000002.vti", "series.pvd"]);
-        assert!(matches!(FrameSeries::create(&folder, Format::Vtk, &scene(), &[]), Err(Error::Output(_))));
+        let again = FrameSeries::create(&folder, Format::Vtk, &scene(), &contact, &[], Earlier::Refuse);
+        assert!(matches!(again, Err(Error::Output(_))));
     }
 
     #[test]
     fn fields_are_chosen() {
         let folder = Temporary::folder("vtk-few");
-        let mut series = FrameSeries::create(&folder, Format::Vtk, &scene(), &[Field::Gap]).unwrap();
+        let mut series = series(&folder, Format::Vtk, &punch(), &[Field::Gap]);
         let image = Image::open(&series.record(&punch()).unwrap());
         assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
         assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
@@ -299,8 +307,6 @@ mod vtk {
 }
 
 mod csv {
-    use viscocontact::output::CsvHistory;
-
     use super::*;
 
     #[test]
@@ -308,7 +314,7 @@ mod csv {
         let folder = Temporary::folder("csv");
         let path = folder.join("history.csv");
         let mut contact = punch();
-        let mut history = CsvHistory::create(&path, &scene(), &contact, &["energy, total [J]", "odd"]).unwrap();
+        let mut history = history(&path, &contact, &["energy, total [J]", "odd"]);
         let mut steps = 0;
         run(&mut contact, |contact, report| {
             history.record(contact, report, &[0.1 * report.force, f64::NAN]).unwrap();
@@ -353,7 +359,7 @@ mod csv {
         let folder = Temporary::folder("csv-bad");
         let (path, contact) = (folder.join("history.csv"), punch());
         for names in [&["a", "a"][..], &["time [s]"], &[""], &["a#b"], &["a\nb"], &["\"a\""]] {
-            let error = CsvHistory::create(&path, &scene(), &contact, names).unwrap_err();
+            let error = CsvHistory::create(&path, &scene(), &contact, names, Earlier::Refuse).unwrap_err();
             assert!(
                 matches!(&error, Error::Output(error) if error.io_error().to_string().contains("column")),
                 "{error}"
@@ -361,7 +367,8 @@ mod csv {
         }
         assert!(folder.names().is_empty());
         fs::write(&path, "years of work").unwrap();
-        assert_eq!(CsvHistory::create(&path, &scene(), &contact, &[]).unwrap_err().kind(), ErrorKind::File);
+        let refused = CsvHistory::create(&path, &scene(), &contact, &[], Earlier::Refuse).unwrap_err();
+        assert_eq!(refused.kind(), ErrorKind::File);
         assert_eq!(text_of(&path), "years of work");
     }
 }
@@ -372,14 +379,13 @@ mod csv {
 #[ignore = "tests/read_back.sh runs it"]
 fn a_run_for_other_readers() {
     use viscocontact::observe::Stress;
-    use viscocontact::output::{CsvHistory, Format, FrameSeries, write_npy, write_stress};
+    use viscocontact::output::{write_npy, write_stress};
 
     let folder = PathBuf::from(std::env::var_os("READ_BACK_FOLDER").expect("READ_BACK_FOLDER names a folder"));
     let mut contact = punch();
-    let mut archives = FrameSeries::create(&folder, Format::Npz, &scene(), &Field::ALL).unwrap();
-    let mut images = FrameSeries::create(&folder, Format::Vtk, &scene(), &Field::ALL).unwrap();
-    let mut history =
-        CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &["twice, force [N]"]).unwrap();
+    let mut archives = series(&folder, Format::Npz, &contact, &Field::ALL);
+    let mut images = series(&folder, Format::Vtk, &contact, &Field::ALL);
+    let mut history = history(folder.join("history.csv"), &contact, &["twice, force [N]"]);
     let mut frame = 0;
     run(&mut contact, |contact, report| {
         archives.record(contact).unwrap();
@@ -424,11 +430,11 @@ fn a_run_for_other_readers() {
 #[test]
 #[ignore = "full_disks_leave_whole_files_and_print_nothing runs it"]
 fn a_run_without_room() {
-    use viscocontact::output::{CsvHistory, Format, FrameSeries, write_npy};
+    use viscocontact::output::write_npy;
 
     let folder = PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
     let mut contact = sphere_on(Grid::square(96, 4.0e-3).unwrap(), maxwell(), Settings::default());
-    let mut history = CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &[]).unwrap();
+    let mut history = history(folder.join("history.csv"), &contact, &[]);
     let report = contact.step(0.0, Load::force(0.1)).unwrap();
     let rows = (0..1000).take_while(|_| history.record(&contact, &report, &[]).is_ok()).count();
     for _ in 0..20 {
@@ -437,8 +443,8 @@ fn a_run_without_room() {
     drop(history);
     fs::write(folder.join("rows"), rows.to_string()).unwrap();
     // all fields of 73 KB, and none, which is small enough
-    let mut archives = FrameSeries::create(folder.join("npz"), Format::Npz, &scene(), &Field::ALL).unwrap();
-    let mut images = FrameSeries::create(folder.join("vtk"), Format::Vtk, &scene(), &Field::ALL).unwrap();
+    let mut archives = series(folder.join("npz"), Format::Npz, &contact, &Field::ALL);
+    let mut images = series(folder.join("vtk"), Format::Vtk, &contact, &Field::ALL);
     for _ in 0..2 {
         assert!(matches!(archives.record(&contact), Err(Error::Output(_))));
         assert!(matches!(images.record(&contact), Err(Error::Output(_))));
@@ -446,7 +452,7 @@ fn a_run_without_room() {
         assert!(matches!(written, Err(Error::Output(_))));
     }
     assert_eq!((archives.frames(), images.frames()), (0, 0));
-    let mut few = FrameSeries::create(folder.join("few"), Format::Npz, &scene(), &[]).unwrap();
+    let mut few = series(folder.join("few"), Format::Npz, &contact, &[]);
     few.record(&contact).unwrap();
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::sync::Arc;
 
 use crate::common::{Temporary, builder_on, zener};
-use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
+use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;
 
@@ -18,16 +18,18 @@ fn a_file_that_one_rank_cannot_write_is_an_error_on_all() {
         let mut contact = builder_on(Grid::square(128, 4.0e-3)?, zener()).ranks(Arc::clone(&ranks)).build()?;
         let report = contact.step(0.0, Load::force(1.0))?;
         let mut errors = Vec::new();
-        errors.push(CsvHistory::create(root.join("old.csv"), &metadata(), &contact, &[]).err());
+        errors.push(CsvHistory::create(root.join("old.csv"), &metadata(), &contact, &[], Earlier::Refuse).err());
         let bad = if ranks.rank() == 1 { "a # b" } else { "ab" };
-        errors.push(CsvHistory::create(root.join("new.csv"), &metadata(), &contact, &[bad]).err());
+        errors.push(CsvHistory::create(root.join("new.csv"), &metadata(), &contact, &[bad], Earlier::Refuse).err());
         errors.push(write_field_npy(root.join("none/gap.npy"), &contact, Field::Gap).err());
-        let mut csv = CsvHistory::create(root.join("new.csv"), &metadata(), &contact, &[])?;
+        let mut csv = CsvHistory::create(root.join("new.csv"), &metadata(), &contact, &[], Earlier::Refuse)?;
         errors.push(csv.record(&contact, &report, if ranks.rank() == 2 { &[1.0] } else { &[] }).err());
         csv.record(&contact, &report, &[])?;
         let series = root.join("series");
-        let mut npz = FrameSeries::create(&series, Format::Npz, &metadata(), &[Field::Pressure])?;
-        let mut vtk = FrameSeries::create(&series, Format::Vtk, &metadata(), &[Field::Pressure])?;
+        let mut npz =
+            FrameSeries::create(&series, Format::Npz, &metadata(), &contact, &[Field::Pressure], Earlier::Refuse)?;
+        let mut vtk =
+            FrameSeries::create(&series, Format::Vtk, &metadata(), &contact, &[Field::Pressure], Earlier::Refuse)?;
         // all have made theirs
         contact.moment();
         if ranks.rank() == 0 {

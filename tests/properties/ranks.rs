@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::any_scene::{AnyScene, Course, Stepper};
 use crate::common::{Temporary, chosen_scenes, from_environment};
-use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
+use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::Threads;
 use viscocontact::prelude::*;
 
@@ -94,10 +94,18 @@ fn restored_snapshots_are_the_same_on_all_ranks() {
 fn write(scene: &AnyScene, mut contact: ViscoelasticContact, folder: &Path) -> Result<Vec<f64>, Error> {
     fs::create_dir_all(folder).unwrap();
     let metadata = || Metadata::new("Ranks").note("batch", "7");
-    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &metadata(), &Field::ALL)?;
-    let mut vtk =
-        FrameSeries::create_or_replace(folder.join("vtk"), Format::Vtk, &metadata(), &[Field::Gap, Field::Pressure])?;
-    let mut csv = CsvHistory::create(folder.join("history.csv"), &metadata(), &contact, &["twice [N]"])?;
+    let mut npz =
+        FrameSeries::create(folder.join("npz"), Format::Npz, &metadata(), &contact, &Field::ALL, Earlier::Refuse)?;
+    let mut vtk = FrameSeries::create(
+        folder.join("vtk"),
+        Format::Vtk,
+        &metadata(),
+        &contact,
+        &[Field::Gap, Field::Pressure],
+        Earlier::Replace,
+    )?;
+    let mut csv =
+        CsvHistory::create(folder.join("history.csv"), &metadata(), &contact, &["twice [N]"], Earlier::Refuse)?;
     let mut areas = Vec::new();
     let (_, error) = scene.drive(&mut contact, 0, &mut |stepper, report| {
         let contact = stepper.contact();

@@ -1,13 +1,18 @@
 //! Steady motions as one problem, against dense ones, closed forms and limits. `SLIDING_SCENES` (60) random sliders and rollers, `SLIDING_SEED` (1).
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use super::steady::Scene;
 use crate::common::steady_sliding::Time;
 use crate::common::{Draws, from_environment};
 use viscocontact::Special;
-use viscocontact::analytic::SlidingLimits;
+use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
+use viscocontact::rheology::TimeTemperature;
 use viscocontact::sliding::SlidingSweep;
 
 /// Waves of an indenter over its period of 1 m: numbers along x1 and x2, phase, height.
@@ -18,18 +23,19 @@ fn rubber() -> Material {
     Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &[(2e-6, 1e-3), (3e-6, 0.1), (4e-6, 30.0)]).unwrap())
 }
 
-fn wavy(cells: usize) -> SteadySliding {
+fn on_waves(cells: usize, material: Material) -> Builder {
     let grid = Grid::square(cells, 1.0).unwrap();
-    let height = |x1: f64, x2: f64| {
-        WAVES.iter().map(|[a, b, phase, h]| h * (TAU * (a * x1 + b * x2) + phase).cos()).sum::<f64>()
-    };
+    let wave = |[a, b, phase, h]: [f64; 4], x1: f64, x2: f64| h * (TAU * (a * x1 + b * x2) + phase).cos();
+    let height = move |x1: f64, x2: f64| WAVES.map(|own| wave(own, x1, x2)).iter().sum::<f64>();
     ViscoelasticContact::builder(grid.clone())
         .geometry(&FnGeometry::new(height))
-        .material(rubber())
+        .material(material)
         .kernel(InfluenceKernel::periodic(&grid).unwrap())
         .settings(Settings::default().with_tolerance(1e-10))
-        .build_sliding()
-        .unwrap()
+}
+
+fn wavy(cells: usize) -> SteadySliding {
+    on_waves(cells, rubber()).build_sliding().unwrap()
 }
 
 /// C(iω) of the contact from the series, an eighth of J: an incompressible body has C = J/4.
@@ -72,15 +78,8 @@ fn slow_and_fast_motions_are_elastic() {
         for (speed, compliance) in velocities {
             let report = sliding.at([0.61 * speed, 0.79 * speed], load).unwrap();
             let contact = sliding.contact();
-            let mut elastic = ViscoelasticContact::builder(contact.grid().clone())
-                .geometry(&FnGeometry::new(|x1, x2| {
-                    WAVES.iter().map(|[a, b, phase, h]| h * (TAU * (a * x1 + b * x2) + phase).cos()).sum::<f64>()
-                }))
-                .material(Material::incompressible(Elastic::new(1.0 / compliance).unwrap()))
-                .kernel(contact.kernel().clone())
-                .settings(Settings::default().with_tolerance(1e-10))
-                .build()
-                .unwrap();
+            let body = Material::incompressible(Elastic::new(1.0 / compliance).unwrap());
+            let mut elastic = on_waves(32, body).build().unwrap();
             elastic.step(0.0, load).unwrap();
             assert!((report.force / elastic.force() - 1.0).abs() < 1e-7, "{load} {speed}");
             assert!((report.approach - elastic.approach()).abs() < 1e-11, "{load} {speed}");
@@ -139,97 +138,6 @@ fn random_motions_are_those_of_a_dense_problem() {
     assert_eq!(compared, scenes);
     for (error, most) in worst.into_iter().zip([1e-6, 1e-7, 1e-7, 1e-12]) {
         assert!(error < most, "{worst:?}");
-    }
-}
-
-/// A rolling cylinder against its closed form, at memories from a hundredth of the contact to 10⁵ times its length; the error falls with the mesh.
-#[test]
-fn a_rolling_cylinder_is_hunters() {
-    let (radius, c0, c1, force) = (1.0, 0.25e-6, 2.25e-6, 5.0e3);
-    let half = (4.0_f64 * radius * (c0 + c1) * force / PI).sqrt();
-    let body = || GeneralizedKelvin::new(4.0 * c0, 0.0, &[(4.0 * c1, 1.0)]).unwrap();
-    let friction = |cells: usize, reach: f64, axis: Axis| {
-        let grid = Grid::new([cells, 1], [3.0 * half, 1.0]).unwrap();
-        let cylinder = Cylinder::new(radius).unwrap();
-        let mut sliding = ViscoelasticContact::builder(grid.clone())
-            .geometry(&cylinder)
-            .material(Material::incompressible(body()))
-            .kernel(InfluenceKernel::line(&grid, 100.0).unwrap())
-            .settings(Settings::default().with_tolerance(1e-9))
-            .build_sliding()
-            .unwrap();
-        let velocity = if axis == Axis::X1 { [reach, 0.0] } else { [0.0, reach] };
-        let report = sliding.at(velocity, Load::force(force)).unwrap();
-        println!("l/w {}, {cells} cells: {} sets, {} transforms", reach / half, report.sets, report.transforms);
-        assert!(report.transforms <= 600);
-        [report.friction(), sliding.contact().lateral_force(&cylinder)[0] / force]
-    };
-    // the closed form (`RollingCylinder`) with 40 digits: of a long memory most cancel
-    for (over_half, exact, most) in [
-        (0.01, 0.00112916499941, 5e-5),
-        (0.05, 0.0055210009519, 2e-5),
-        (0.5, 0.0417296683762, 2e-5),
-        (5.0, 0.0350524117689, 2e-5),
-        (100.0, 0.00347562378807, 2e-5),
-        (1e3, 0.000478290020837, 2e-5),
-        (1e5, 7.39727865853e-6, 3e-3),
-    ] {
-        let reach = over_half * half;
-        let errors = [256, 2048].map(|cells| friction(cells, reach, Axis::X1).map(|found| found / exact - 1.0));
-        println!("l/w {over_half}: {errors:?}");
-        assert!(errors[1].iter().all(|error| error.abs() < most), "{over_half}: {errors:?}");
-    }
-    // along the lines nothing resists
-    assert!(friction(256, half, Axis::X2).iter().all(|friction| friction.abs() < 1e-12));
-}
-
-/// The friction of a ball and of a cylinder, over three retardation times, reaches the closed forms of slow and fast motion in the order of their remainders.
-#[test]
-fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
-    let (radius, terms) = (10e-3, [(3e-6, 0.3), (2e-6, 1.0), (1e-6, 2.0)]);
-    let body = || Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &terms).unwrap());
-    // the reach of the longest time over half the contact with the relaxed body, of the shortest with the glassy one; the order, and the greatest remainder
-    for (line, fast, [far, near], orders, most) in [
-        (true, false, [0.2, 0.025], 0.98..1.02, 0.012),
-        (false, false, [0.2, 0.05], 0.98..1.08, 0.027),
-        (true, true, [16.0, 128.0], 1.98..2.08, 5e-5),
-        // but for the logarithm
-        (false, true, [64.0, 512.0], 0.98..1.08, 8e-3),
-    ] {
-        let (compliance, time, length) = if fast { (0.25e-6, 0.3, 4.0) } else { (1.75e-6, 2.0, 2.6) };
-        let (force, half) = if line {
-            (500.0, f64::sqrt(4.0 * 500.0 * radius * compliance / PI))
-        } else {
-            (1.0, f64::cbrt(0.75 * radius * compliance))
-        };
-        let (counts, shape): ([usize; 2], Box<dyn Geometry>) = if line {
-            ([2048, 1], Box::new(Cylinder::new(radius).unwrap()))
-        } else {
-            ([128; 2], Box::new(Sphere::new(radius).unwrap()))
-        };
-        let grid = Grid::new(counts, [length * half, if line { 1.0 } else { length * half }]).unwrap();
-        let kernel = if line { InfluenceKernel::line(&grid, 1.0) } else { InfluenceKernel::half_space(&grid) };
-        let mut sliding = ViscoelasticContact::builder(grid)
-            .geometry(&shape)
-            .material(body())
-            .kernel(kernel.unwrap())
-            .settings(Settings::default().with_tolerance(1e-9))
-            .build_sliding()
-            .unwrap();
-        let limits = match line {
-            true => SlidingLimits::cylinder(radius, &body(), force),
-            false => SlidingLimits::ellipsoid([radius; 2], &body(), force),
-        };
-        let limits = limits.unwrap();
-        let [greater, less] = [far, near].map(|reach| {
-            let speed = reach * half / time;
-            let exact = if fast { limits.fast(speed) } else { limits.slow(speed) };
-            (sliding.at([speed, 0.0], Load::force(force)).unwrap().friction() / exact - 1.0).abs()
-        });
-        let log = if fast && !line { f64::ln(far) / f64::ln(near) } else { 1.0 };
-        let order = (greater / less / log).ln() / f64::ln(far / near).abs();
-        println!("line {line}, fast {fast}: remainders {greater:e} {less:e}, order {order}");
-        assert!(orders.contains(&order) && less < most, "line {line}, fast {fast}: {greater:e} {less:e} {order}");
     }
 }
 
@@ -299,48 +207,41 @@ fn a_steady_state_is_read_like_a_contact() {
     assert!((ahead.2[0] + back.2[0]).abs() < 1e-8 && (ahead.2[1] - back.2[1]).abs() < 1e-8, "{ahead:?} {back:?}");
 }
 
-/// A watcher sees the sets and iterations of a search, and ends it at any of them: the state found last is kept, and the search repeated is the search that was not
-/// watched.
+/// Another thread ends a search within it, or a sweep: the state found last is kept, and the search repeated finds what one finds that was not ended.
 #[test]
-fn a_search_is_watched_and_ended() {
-    use std::ops::ControlFlow;
-    use std::sync::atomic::{AtomicUsize, Ordering};
-    use std::sync::{Arc, Mutex};
-
+fn a_search_is_ended_by_another_thread() {
     let (velocity, load) = ([3.0, 1.0], Load::force(40.0));
-    let mut plain = wavy(32);
-    let exact = plain.at(velocity, load).unwrap();
-    let (seen, left) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicUsize::new(usize::MAX)));
-    let (sees, leaves) = (Arc::clone(&seen), Arc::clone(&left));
-    let mut watched = wavy(32).watched_by(move |progress| {
-        sees.lock().unwrap().push(*progress);
-        let left = leaves.load(Ordering::Relaxed);
-        leaves.store(left.saturating_sub(1), Ordering::Relaxed);
-        if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    let flag = Arc::new(AtomicBool::new(false));
+    let mut sliding = wavy(512).cancelled_by(Arc::clone(&flag));
+    let ended = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_millis(100));
+            flag.store(true, Ordering::Relaxed);
+        });
+        sliding.at(velocity, load)
     });
-    assert_eq!(watched.at(velocity, load).unwrap(), exact);
-    let all = std::mem::take(&mut *seen.lock().unwrap());
-    assert!(all.len() > 10 && all.iter().enumerate().all(|(k, progress)| progress.iterations == k));
-    assert!(all.windows(2).all(|two| two[0].sets <= two[1].sets));
-    assert!(all[0].residual.is_infinite() && all[all.len() - 1].residual < 1e-3, "{:?}", all[all.len() - 1]);
-    let mut fresh = wavy(32);
-    let (before, _) = (fresh.at([0.0; 2], Load::force(10.0)).unwrap(), left.store(usize::MAX, Ordering::Relaxed));
-    let again = watched.at([0.0; 2], Load::force(10.0)).unwrap();
-    assert!((again.approach - before.approach).abs() < 1e-10);
-    let pressure = watched.contact().pressure().to_vec();
-    for ends in [0, 1, 5, 12] {
-        left.store(ends, Ordering::Relaxed);
-        seen.lock().unwrap().clear();
-        let ended = watched.at(velocity, load);
-        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ends}: {ended:?}");
-        assert_eq!(seen.lock().unwrap().len(), ends + 1, "no iteration follows the last");
-        assert_eq!(watched.contact().pressure(), pressure, "the state found last is kept");
-        let ended = watched.sweep(&SlidingSweep::new([velocity], [load]));
-        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ends}: {ended:?}");
+    assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ended:?}");
+    let mut sliding = wavy(32).cancelled_by(Arc::clone(&flag));
+    flag.store(false, Ordering::Relaxed);
+    sliding.at([0.0; 2], Load::force(10.0)).unwrap();
+    let pressure = sliding.contact().pressure().to_vec();
+    flag.store(true, Ordering::Relaxed);
+    let swept = sliding.sweep(&SlidingSweep::new([velocity], [load])).map(drop);
+    for ended in [sliding.at(velocity, load).map(drop), swept] {
+        assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ended:?}");
+        assert_eq!(sliding.contact().pressure(), pressure, "the state found last is kept");
     }
-    left.store(usize::MAX, Ordering::Relaxed);
-    let found = watched.at(velocity, load).unwrap();
-    assert!((found.friction() - exact.friction()).abs() < 1e-8 * exact.friction());
+    flag.store(false, Ordering::Relaxed);
+    // a sweep whose report of progress sets the flag ends within the next state
+    let states = [[0.0; 2], velocity];
+    let swept = sliding.sweep_with(&SlidingSweep::new(states, [load]), |_, _| {
+        flag.store(true, Ordering::Relaxed);
+        ControlFlow::Continue(())
+    });
+    assert!(matches!(swept, Err(Error::Cancelled { .. })), "{swept:?}");
+    flag.store(false, Ordering::Relaxed);
+    let [found, exact] = [sliding, wavy(32)].map(|mut own| own.at(velocity, load).unwrap().friction());
+    assert!((found - exact).abs() < 1e-8 * exact);
 }
 
 #[test]
@@ -394,10 +295,6 @@ fn what_is_not_steady_is_refused() {
 /// A sweep has the states of single problems, at each temperature those of the shifted velocity; it ends where its progress says so, and its file can be read back.
 #[test]
 fn a_sweep_is_its_states() {
-    use std::ops::ControlFlow;
-
-    use viscocontact::rheology::TimeTemperature;
-
     let law = TimeTemperature::wlf(8.61, 200.4, 298.15).unwrap();
     let (velocities, loads) = ([[1e-2, 0.0], [1.0, 1.0], [30.0, -4.0]], [Load::force(20.0), Load::force(60.0)]);
     let kelvins = [273.15, 313.15];

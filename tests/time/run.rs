@@ -453,8 +453,9 @@ fn a_resumed_run_continues_its_files() {
                 if saved.exists() {
                     contact.resume(&saved).unwrap();
                 }
-                let mut table = CsvHistory::create_or_continue(table, &metadata, &contact, &[]).unwrap();
-                let mut series = FrameSeries::create_or_continue(frames, format, &metadata, &fields, &contact).unwrap();
+                let mut table = CsvHistory::create(table, &metadata, &contact, &[], Earlier::Continue).unwrap();
+                let mut series =
+                    FrameSeries::create(frames, format, &metadata, &contact, &fields, Earlier::Continue).unwrap();
                 let mut run = contact.follow(&load, stepping, 1.0);
                 let mut steps = run.progress().steps as usize;
                 loop {

@@ -235,7 +235,8 @@ fn histories_of_states_are_written_and_drawn() {
     let folder = Temporary::folder("states-history");
     let path = folder.join("history.csv");
     let mut contact = StatesContact::new(&rough_states(false), &material()).unwrap();
-    let mut table = CsvHistory::create(&path, &Metadata::new("rough"), &contact, &["level [m2]"]).unwrap();
+    let mut table =
+        CsvHistory::create(&path, &Metadata::new("rough"), &contact, &["level [m2]"], Earlier::Refuse).unwrap();
     let mut history = History::new();
     for step in 0..6 {
         let (dt, load) = load(step);

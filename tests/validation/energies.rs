@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::{Energies, EnergyBalance, Frame};
-use viscocontact::output::{CsvHistory, Metadata};
+use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::prelude::*;
 
 use crate::common::temporary::Temporary;
@@ -163,7 +163,9 @@ fn energies_are_columns_of_histories() {
     let mut contact = contact_of(&ball, 24);
     let mut balance = EnergyBalance::new(&contact).unwrap();
     let path = folder.join("history.csv");
-    let mut history = CsvHistory::create(&path, &Metadata::new("energies"), &contact, &EnergyBalance::COLUMNS).unwrap();
+    let mut history =
+        CsvHistory::create(&path, &Metadata::new("energies"), &contact, &EnergyBalance::COLUMNS, Earlier::Refuse)
+            .unwrap();
     let report = contact.step(0.0, Load::force(0.5)).unwrap();
     let energies = balance.record(&contact, &report).unwrap();
     history.record(&contact, &report, &energies.values()).unwrap();

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::least_squares::{Minimum, square};
 use crate::model::Scale;
 use crate::parameters::Parameter;
-use crate::problem::Problem;
+use crate::problem::{Part, Problem};
 
 /// A parameter is at a limit if its coordinate would have to change by so much for an effect of one standard deviation: by a factor of e¹⁰.
 const NO_EFFECT: f64 = 10.0;
@@ -62,11 +62,11 @@ pub(super) fn limit(name: &str, value: f64) -> &'static str {
 /// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ: correlations of neighbours are included with falling weights (W. K. Newey & K. D. West,
 /// 1987), over as many lags as is best for autoregressive residuals (D. W. K. Andrews, 1991). Each residual is divided by 1 less its leverage (J. G.
 /// MacKinnon & H. White, 1985).
-pub(super) fn sandwich(minimum: &Minimum, inverse: &Mat<f64>, lengths: &[usize]) -> Mat<f64> {
+pub(super) fn sandwich(problem: &Problem, minimum: &Minimum, inverse: &Mat<f64>) -> Mat<f64> {
     let count = inverse.nrows();
     let mut middle = Mat::<f64>::zeros(count, count);
     let mut first = 0;
-    for &len in lengths {
+    for len in problem.parts.iter().map(Part::len) {
         let residuals = &minimum.residuals[first..first + len];
         let row = |k: usize| minimum.jacobian.row(first + k);
         let factor = |k: usize| {

@@ -7,18 +7,19 @@ mod reweigh;
 mod search;
 mod variants;
 
-use faer::Mat;
+use std::sync::atomic::Ordering;
+
 use viscocontact::rheology::Material;
 
-use crate::error::{Error, Result};
-use crate::experiment::Curve;
+use crate::bounds::Bounds;
+use crate::error::{Error, Result, within};
+use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
-use crate::least_squares::square;
+use crate::least_squares::{Minimum, square};
 use crate::model::{Model, Scale};
-use crate::noise::CurveNoise;
-use crate::parameters::{Kind, Parameter};
-use crate::problem::Problem;
+use crate::parameters::Parameter;
+use crate::problem::{Part, Problem};
 use crate::series::Prony;
 use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
@@ -54,22 +55,23 @@ pub struct Estimate {
 pub struct Fit {
     identification: Identification,
     curves: Vec<Curve>,
-    values: Vec<f64>,
+    /// The problem that was solved, with the noise that was found.
+    pub(crate) problem: Problem,
+    /// Values of all parameters.
+    pub(crate) values: Vec<f64>,
     prony: Prony,
     estimates: Vec<Estimate>,
-    covariance: Mat<f64>,
+    /// Covariance of the estimates.
+    spread: Bounds,
     samples: Vec<Vec<Sample>>,
     forces: Vec<Vec<f64>>,
-    /// Measured less modelled force, by curve, and the same made white.
+    /// Measured less modelled force, by curve.
     residuals: Vec<Vec<f64>>,
-    white: Vec<Vec<f64>>,
     sigma: f64,
-    noise: Vec<CurveNoise>,
+    /// Degrees of freedom of intervals.
+    freedom: f64,
     sum: f64,
-    log_weight: f64,
     iterations: usize,
-    work: usize,
-    window: [f64; 2],
     /// The least sum of squares of a model that this one contains.
     contained: Option<(Model, f64)>,
 }
@@ -77,84 +79,83 @@ pub struct Fit {
 impl Fit {
     pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
         let Found { minimum, contained } = found;
-        let values = problem.values(&minimum.coordinates);
+        let Minimum { coordinates, residuals, jacobian, iterations } = &minimum;
+        let values = problem.values(coordinates);
         let prony = problem.prony(&values)?;
-        let count = minimum.coordinates.len();
-        let points = problem.len();
+        let (count, points, sum) = (coordinates.len(), problem.len(), square(residuals));
         if points <= count {
             return Err(Error::TooFewPoints { points, parameters: count });
         }
-        let sum = square(&minimum.residuals);
         let freedom = (points - count) as f64;
-        let sigma = match identification.sigma() {
-            Some(sigma) => sigma,
-            None if identification.is_robust() => robust_deviation(&problem, &minimum.residuals, freedom),
-            None => (sum / freedom).sqrt(),
-        };
+        let sigma = identification.sigma().unwrap_or_else(|| match identification.is_robust() {
+            true => robust_deviation(&problem, residuals, freedom),
+            false => (sum / freedom).sqrt(),
+        });
         let free: Vec<Parameter> = problem.free().cloned().collect();
-        let scales = problem.scales(&values);
-        let (weighted, _) = inverse(&free, &minimum.jacobian, sigma)?;
-        let lengths: Vec<usize> = problem.parts.iter().map(|part| part.len()).collect();
-        let sandwich = &scales * sandwich(&minimum, &weighted, &lengths) * scales.transpose();
-        let (inverse, limits) = inverse(&free, &problem.without_outliers().jacobian(&minimum.coordinates)?, sigma)?;
-        let covariance = &scales * &inverse * scales.transpose();
-        let quantile = student(0.95, if identification.sigma().is_some() { 1e6 } else { freedom });
-        let mut at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
-        let estimates = free.iter().enumerate().map(|(k, parameter)| {
+        let scales = problem.scales(coordinates);
+        let (weighted, _) = inverse(&free, jacobian, sigma)?;
+        let sandwich = &scales * sandwich(&problem, &minimum, &weighted) * scales.transpose();
+        let all = match identification.is_robust() {
+            true => &problem.without_outliers().jacobian(coordinates)?,
+            false => jacobian,
+        };
+        let (inverse, limits) = inverse(&free, all, sigma)?;
+        let names = free.iter().map(|parameter| parameter.name.clone()).collect();
+        let spread = Bounds::of(names, &scales * inverse * scales.transpose(), sigma);
+        // of slow residuals so many are independent, and their standard deviation is known as that of half as many (F. E. Satterthwaite, 1946)
+        let independent = |part: &Part| {
+            let phi = part.whitening.correlation().unwrap_or_default();
+            0.5 * part.len() as f64 * (1.0 - phi) / (1.0 + phi)
+        };
+        let freedom = match identification.sigma() {
+            _ if identification.fits_correlation() => problem.parts.iter().map(independent).sum::<f64>().min(freedom),
+            Some(_) => 1e6,
+            None => freedom,
+        };
+        let quantile = student(0.95, freedom.max(1.0));
+        let at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
+        let estimate = |((k, parameter), at): ((usize, &Parameter), usize)| {
             // a coordinate at its limit has no deviation; its parameter may have that of another
             let is_known = (0..count).any(|j| scales[(k, j)] != 0.0 && !limits[j]);
-            let deviation = if is_known { sigma * covariance[(k, k)].sqrt() } else { f64::INFINITY };
-            let value = values[at.next().unwrap_or_default()];
+            let known = |variance: f64| if is_known { variance.sqrt() } else { f64::INFINITY };
+            let (value, deviation) = (values[at], known(spread.covariance[k][k]));
             let on_scale = parameter.scale.forward(value);
             Estimate {
                 name: parameter.name.clone(),
                 value,
                 scale: parameter.scale,
                 deviation,
-                robust_deviation: if is_known { sandwich[(k, k)].sqrt() } else { f64::INFINITY },
+                robust_deviation: known(sandwich[(k, k)]),
                 interval: [-quantile, quantile].map(|quantile| parameter.scale.back(on_scale + quantile * deviation)),
                 limit: limits[k].then(|| limit(&parameter.name, value)),
             }
-        });
-        let estimates = estimates.collect();
-        let (mut samples, mut forces, mut residuals, mut white) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        };
+        let estimates = free.iter().enumerate().zip(at).map(estimate).collect();
+        let (mut samples, mut forces, mut residuals) = (Vec::new(), Vec::new(), Vec::new());
         for (curve, part) in problem.parts.iter().enumerate() {
             let response = problem.samples(curve, &values, &prony)?;
             let force = problem.measured(curve, &values, response.iter().map(|sample| sample.force));
-            let residual: Vec<f64> = part.data.iter().zip(&force).map(|(data, force)| data - force).collect();
-            let mut of_curve = residual.clone();
-            part.whiten(&mut of_curve);
+            residuals.push(part.curve.force.iter().zip(&force).map(|(data, force)| data - force).collect());
             samples.push(response);
             forces.push(force);
-            residuals.push(residual);
-            white.push(of_curve);
         }
-        let noise = problem.parts.iter().map(|part| CurveNoise {
-            correlation: part.whitening.correlation(),
-            scale: part.scale,
-            outliers: part.outliers.clone(),
-        });
-        let noise = noise.collect();
-        let curve =
-            |part: &crate::problem::Part| Curve { experiment: part.experiment.clone(), force: part.data.clone() };
+        let curves = problem.parts.iter().map(|part| part.curve.clone()).collect();
+        let (identification, iterations) = (identification.clone(), *iterations);
         Ok(Fit {
-            identification: identification.clone(),
-            curves: problem.parts.iter().map(curve).collect(),
+            identification,
+            curves,
+            problem,
             values,
             prony,
             estimates,
-            covariance: Mat::from_fn(count, count, |i, j| sigma * sigma * covariance[(i, j)]),
+            spread,
             samples,
             forces,
             residuals,
-            white,
             sigma,
-            noise,
+            freedom,
             sum,
-            log_weight: problem.parts.iter().map(|part| part.log_weight()).sum(),
-            iterations: minimum.iterations,
-            work: problem.work.get(),
-            window: problem.window,
+            iterations,
             contained,
         })
     }
@@ -176,14 +177,12 @@ impl Fit {
 
     /// Covariance of two parameters, on their scales.
     pub fn covariance(&self, one: &str, other: &str) -> Option<f64> {
-        let at = |name: &str| self.estimates.iter().position(|estimate| estimate.name == name);
-        Some(self.covariance[(at(one)?, at(other)?)])
+        self.spread.of_both(one, other)
     }
 
     /// Correlation of two parameters.
     pub fn correlation(&self, one: &str, other: &str) -> Option<f64> {
-        let variance = |name: &str| self.covariance(name, name);
-        Some(self.covariance(one, other)? / (variance(one)? * variance(other)?).sqrt())
+        self.spread.correlation(one, other)
     }
 
     /// The contact modulus E*(t) at a time after a sudden step \[Pa\].
@@ -193,26 +192,21 @@ impl Fit {
 
     /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\].
     pub fn modulus_band(&self, t: f64) -> [f64; 2] {
-        let modulus = self.modulus(t);
-        let (count, window) = (self.model().parameters().len(), self.window());
-        // derivatives of ln E by the free parameters of the material
         let names = self.model().parameters();
+        // derivatives of ln E by the free parameters of the material
         let slope = |estimate: &Estimate| {
-            let Some(at) = names.iter().position(|name| *name == estimate.name) else { return 0.0 };
+            let at = names.iter().position(|name| *name == estimate.name)?;
             let of = |shift: f64| {
-                let mut moved = self.values[..count].to_vec();
+                let mut moved = self.values.clone();
                 moved[at] = estimate.scale.back(estimate.scale.forward(moved[at]) + shift);
-                self.model().prony(&moved, window).map_or(f64::NAN, |prony| prony.modulus(t).ln())
+                Some(self.problem.prony(&moved).ok()?.modulus(t).ln())
             };
-            let (up, down) = (of(1e-5), of(-1e-5));
-            if up.is_nan() || down.is_nan() { 0.0 } else { (up - down) / 2e-5 }
+            Some((of(1e-5)? - of(-1e-5)?) / 2e-5).filter(|slope| slope.is_finite())
         };
-        let slopes: Vec<f64> = self.estimates.iter().map(slope).collect();
-        let sum: f64 = (0..slopes.len())
-            .flat_map(|i| (0..slopes.len()).map(move |j| (i, j)))
-            .map(|(i, j)| slopes[i] * slopes[j] * self.covariance[(i, j)])
-            .sum();
-        [modulus, sum.max(0.0).sqrt()]
+        let slopes: Vec<f64> = self.estimates.iter().map(|estimate| slope(estimate).unwrap_or_default()).collect();
+        let row = |(slope, row): (&f64, &Vec<f64>)| slope * row.iter().zip(&slopes).map(|(c, s)| c * s).sum::<f64>();
+        let variance: f64 = slopes.iter().zip(&self.spread.covariance).map(row).sum();
+        [self.modulus(t), variance.max(0.0).sqrt()]
     }
 
     /// The shear modulus G(t) = E*(t) (1 − ν)/2 for a known constant Poisson's ratio \[Pa\]. One contact cannot tell ν.
@@ -220,7 +214,7 @@ impl Fit {
     /// # Errors
     /// If the ratio is outside (−1, 0.5].
     pub fn shear_modulus(&self, t: f64, poisson: f64) -> Result<f64> {
-        crate::error::within("Poisson's ratio", poisson, poisson > -1.0 && poisson <= 0.5, "> -1 and at most 0.5")?;
+        within("Poisson's ratio", poisson, poisson > -1.0 && poisson <= 0.5, "> -1 and at most 0.5")?;
         Ok(0.5 * self.modulus(t) * (1.0 - poisson))
     }
 
@@ -238,7 +232,7 @@ impl Fit {
         self.samples.get(curve).map_or(&[], Vec::as_slice)
     }
 
-    /// Force of the fit at each sample of a curve, offset, drift and drag included \[N\].
+    /// Force of the fit at each sample of a curve, offset, drift, tilt and drag included \[N\].
     pub fn force(&self, curve: usize) -> &[f64] {
         self.forces.get(curve).map_or(&[], Vec::as_slice)
     }
@@ -253,6 +247,12 @@ impl Fit {
         &self.curves
     }
 
+    /// The experiment of a curve of this index.
+    pub(crate) fn experiment(&self, curve: usize) -> Result<&Experiment> {
+        within("index of the curve", curve as f64, curve < self.curves.len(), "below the number of curves")?;
+        Ok(self.curves[curve].experiment())
+    }
+
     /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
     /// Of several curves, the geometric mean; [`Fit::sigma_of`] is that of one.
     pub fn sigma(&self) -> f64 {
@@ -261,7 +261,7 @@ impl Fit {
 
     /// Standard deviation of the noise of a curve \[N\].
     pub fn sigma_of(&self, curve: usize) -> f64 {
-        self.sigma / self.noise.get(curve).map_or(1.0, |noise| noise.scale)
+        self.sigma / self.problem.parts.get(curve).map_or(1.0, |part| part.scale)
     }
 
     /// The autoregressive coefficient of the first curve, if the noise has one; [`Fit::autoregression_of`] is that of another curve.
@@ -271,7 +271,7 @@ impl Fit {
 
     /// The autoregressive coefficient of the noise of a curve, if it has one.
     pub fn autoregression_of(&self, curve: usize) -> Option<f64> {
-        self.noise.get(curve)?.correlation
+        self.problem.parts.get(curve)?.whitening.correlation()
     }
 
     /// Iterations of the search.
@@ -281,7 +281,7 @@ impl Fit {
 
     /// Work of the search: exponentials that were advanced by a sample, each derivative counted.
     pub fn work(&self) -> usize {
-        self.work
+        self.problem.work.load(Ordering::Relaxed)
     }
 
     /// Samples with the tip in contact.
@@ -291,18 +291,25 @@ impl Fit {
 
     /// Runs of residuals of one sign: few of them mean that the model is wrong.
     pub fn runs(&self) -> ResidualTest {
-        runs_test(&self.white)
+        runs_test(&self.white())
     }
 
     /// Correlation of residuals: a small probability means that the model is wrong, of the material or of the noise.
     pub fn correlations(&self) -> ResidualTest {
-        correlation_test(&self.white, self.noise.iter().filter(|noise| noise.correlation.is_some()).count())
+        let is_fitted = |part: &&Part| part.whitening.correlation().is_some();
+        correlation_test(&self.white(), self.problem.parts.iter().filter(is_fitted).count())
+    }
+
+    /// The residuals of each curve, made white.
+    fn white(&self) -> Vec<Vec<f64>> {
+        let mut white = self.residuals.clone();
+        white.iter_mut().zip(&self.problem.parts).for_each(|(residuals, part)| part.whiten(residuals));
+        white
     }
 
     /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better.
     pub fn aicc(&self) -> f64 {
-        let points = self.white.iter().map(Vec::len).sum::<usize>() as f64;
-        let known = self.identification.sigma();
+        let (points, known) = (self.problem.len() as f64, self.identification.sigma());
         // of each curve
         let of_noise = usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
         let count = (self.estimates.len() + of_noise * self.curves.len()) as f64;
@@ -310,17 +317,8 @@ impl Fit {
             Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
             None => points * ((self.sum / points).ln() + 1.0),
         };
-        misfit - self.log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
-    }
-
-    /// The problem that was solved.
-    pub(crate) fn problem(&self) -> Result<Problem> {
-        self.identification.refit_problem(&self.curves, &self.noise)
-    }
-
-    /// Values of all parameters.
-    pub(crate) fn values(&self) -> &[f64] {
-        &self.values
+        let log_weight: f64 = self.problem.parts.iter().map(Part::log_weight).sum();
+        misfit - log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)
     }
 
     /// The exponentials, with moduli of zero or more.
@@ -328,15 +326,8 @@ impl Fit {
         self.prony.positive()
     }
 
-    /// Shortest interval and longest curve \[s\].
-    pub(crate) fn window(&self) -> [f64; 2] {
-        self.window
-    }
-
     /// The value of the contact point of a curve \[m\].
     pub fn contact_point(&self, curve: usize) -> f64 {
-        let name = if self.curves.len() == 1 { "contact point".to_string() } else { format!("contact point {curve}") };
-        self.estimate(&name)
-            .map_or_else(|| self.identification.known(Kind::ContactPoint(curve)), |estimate| estimate.value)
+        self.problem.contact_point(curve, &self.values)
     }
 }

@@ -1,22 +1,23 @@
 //! Warnings, and the ranking of models.
 
-use std::fmt;
-
 use viscocontact::contact::StepReport;
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
 use crate::error::{Error, Result};
-use crate::fit::Fit;
+use crate::fit::{Estimate, Fit};
 use crate::model::Model;
-use crate::noise::CurveNoise;
 
 /// What a fit shows that a user should know.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum FitWarning {
     /// The residuals are not independent at the level of 1 %: the model of the material, of the tip or of the noise is wrong.
+    #[error(
+        "the residuals are not independent: {over_noise:.2} times the noise, {:.2} % of the greatest force; see Fit::variants for what this does to the modulus",
+        100.0 * .over_force
+    )]
     Misfit {
         /// Standard deviation of the residuals over that of the noise, from second differences of the force: 1 if the model is right.
         over_noise: f64,
@@ -24,6 +25,7 @@ pub enum FitWarning {
         over_force: f64,
     },
     /// A curve has a pull-off: the model has none, and [`Curve::until_release`](crate::Curve::until_release) leaves it out.
+    #[error("curve {curve}: a pull-off of {force:.2e} N, which the model has not: use Curve::until_release")]
     PullOff {
         /// Index of the curve.
         curve: usize,
@@ -31,16 +33,19 @@ pub enum FitWarning {
         force: f64,
     },
     /// The data determine a parameter by no better than a factor of two.
+    #[error("{parameter} is uncertain by more than a factor of two: fix it, or measure where it matters")]
     Undetermined {
         /// Name of the parameter.
         parameter: String,
     },
     /// Two parameters are correlated by more than 0.99: the data determine only a combination of them.
+    #[error("only a combination of {} and {} is determined: fix one of them", .parameters[0], .parameters[1])]
     Correlated {
         /// Names of the parameters.
         parameters: [String; 2],
     },
     /// A parameter is at a limit of the model, where the model is a simpler one.
+    #[error("{parameter} is at its limit: {limit}; take the simpler model, or measure where {parameter} acts")]
     AtLimit {
         /// Name of the parameter.
         parameter: String,
@@ -48,6 +53,7 @@ pub enum FitWarning {
         limit: &'static str,
     },
     /// The search has failed: a simpler model that this one contains fits better.
+    #[error("the search has failed: {model}, a special case, has {ratio} of the sum of squares: give start values")]
     AboveContained {
         /// The simpler model.
         model: Model,
@@ -55,62 +61,28 @@ pub enum FitWarning {
         ratio: f64,
     },
     /// The autoregressive coefficient of a curve is as great as the search allows: a model that is wrong leaves such residuals.
+    #[error(
+        "curve {curve}: the correlation of the residuals is at its bound: the model of the material or the tip is likely wrong"
+    )]
     Correlation {
         /// Index of the curve.
         curve: usize,
     },
     /// A time lies outside the times of the data, so that it is extrapolated.
+    #[error("{parameter} lies outside the times of the data: sample faster, or measure longer")]
     TimeOutside {
         /// Name of the parameter.
         parameter: String,
     },
     /// At its deepest, the contact of a curve is outside the model: too steep, too deep in its layer, on too few cells, or its modulus is none of
     /// a solid. The text is one of [`StepReport::messages`](viscocontact::contact::StepReport::messages).
+    #[error("curve {curve}: {text}")]
     Contact {
         /// Index of the curve.
         curve: usize,
         /// What is outside, with its number and its cure.
         text: String,
     },
-}
-
-impl fmt::Display for FitWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            FitWarning::Misfit { over_noise, over_force } => write!(
-                f,
-                "the residuals are not independent: {over_noise:.2} times the noise, {:.2} % of the greatest force; see Fit::variants for what this does to the modulus",
-                100.0 * over_force
-            ),
-            FitWarning::PullOff { curve, force } => {
-                write!(
-                    f,
-                    "curve {curve}: a pull-off of {force:.2e} N, which the model has not: use Curve::until_release"
-                )
-            }
-            FitWarning::Undetermined { parameter } => {
-                write!(f, "{parameter} is uncertain by more than a factor of two: fix it, or measure where it matters")
-            }
-            FitWarning::Correlated { parameters: [one, other] } => {
-                write!(f, "only a combination of {one} and {other} is determined: fix one of them")
-            }
-            FitWarning::AtLimit { parameter, limit } => write!(f, "{parameter} is at its limit: {limit}"),
-            FitWarning::AboveContained { model, ratio } => {
-                write!(
-                    f,
-                    "the search has failed: {model}, a special case, has {ratio} of the sum of squares: give start values"
-                )
-            }
-            FitWarning::Correlation { curve } => write!(
-                f,
-                "curve {curve}: the correlation of the residuals is at its bound: the model of the material or the tip is likely wrong"
-            ),
-            FitWarning::TimeOutside { parameter } => {
-                write!(f, "{parameter} lies outside the times of the data: sample faster, or measure longer")
-            }
-            FitWarning::Contact { curve, text } => write!(f, "curve {curve}: {text}"),
-        }
-    }
 }
 
 /// Probability below which a test of the residuals is a warning; there are two tests.
@@ -126,48 +98,41 @@ impl Fit {
     /// What a user should know before the parameters are used.
     pub fn warnings(&self) -> Vec<FitWarning> {
         let mut warnings = Vec::new();
-        if self.runs().probability < UNLIKELY && self.runs().statistic < 0.0
-            || self.correlations().probability < UNLIKELY
-        {
+        let is_long = self.runs().probability < UNLIKELY && self.runs().statistic < 0.0;
+        if is_long || self.correlations().probability < UNLIKELY {
             let [over_noise, over_force] = self.misfit();
             warnings.push(FitWarning::Misfit { over_noise, over_force });
         }
         if let Some((model, sum)) = self.contained.filter(|(_, sum)| *sum < (1.0 - SAME_SUM) * self.sum) {
             warnings.push(FitWarning::AboveContained { model, ratio: sum / self.sum });
         }
-        let is_bound = |noise: &CurveNoise| noise.correlation.is_some_and(|phi| phi > GREAT_CORRELATION);
-        let bound = self
-            .noise
-            .iter()
-            .enumerate()
-            .filter(|(_, noise)| self.identification.fits_correlation() && is_bound(noise));
-        warnings.extend(bound.map(|(curve, _)| FitWarning::Correlation { curve }));
-        let pulled = self.curves().iter().enumerate();
-        warnings.extend(pulled.filter_map(|(curve, of)| Some(FitWarning::PullOff { curve, force: of.pull_off()? })));
-        let limits = self.estimates().iter().filter_map(|estimate| Some((estimate, estimate.limit?)));
-        warnings
-            .extend(limits.map(|(estimate, limit)| FitWarning::AtLimit { parameter: estimate.name.clone(), limit }));
-        let of_material = self.model().parameters();
-        let material = || self.estimates().iter().filter(|e| of_material.contains(&e.name) && e.limit.is_none());
-        for estimate in material() {
-            let parameter = estimate.name.clone();
-            if estimate.deviation > FACTOR_OF_TWO {
-                warnings.push(FitWarning::Undetermined { parameter: parameter.clone() });
+        for (curve, of) in self.curves.iter().enumerate() {
+            let is_bound = self.autoregression_of(curve).is_some_and(|phi| phi > GREAT_CORRELATION);
+            if self.identification.fits_correlation() && is_bound {
+                warnings.push(FitWarning::Correlation { curve });
             }
-            let [shortest, longest] = self.window();
-            if parameter.starts_with("tau") && (estimate.value < 0.5 * shortest || estimate.value > 2.0 * longest) {
-                warnings.push(FitWarning::TimeOutside { parameter });
-            }
+            warnings.extend(of.pull_off().map(|force| FitWarning::PullOff { curve, force }));
+            warnings.extend(self.contact_warnings(curve));
         }
-        for (k, one) in self.estimates().iter().enumerate() {
-            for other in &self.estimates()[k + 1..] {
-                if self.correlation(&one.name, &other.name).is_some_and(|c| c.abs() > 0.99) {
-                    let parameters = [one.name.clone(), other.name.clone()];
-                    warnings.push(FitWarning::Correlated { parameters });
+        let ([shortest, longest], of_material) = (self.problem.window, self.model().parameters());
+        for (k, estimate) in self.estimates.iter().enumerate() {
+            let parameter = estimate.name.clone();
+            if let Some(limit) = estimate.limit {
+                warnings.push(FitWarning::AtLimit { parameter, limit });
+            } else if of_material.contains(&parameter) {
+                if estimate.deviation > FACTOR_OF_TWO {
+                    warnings.push(FitWarning::Undetermined { parameter: parameter.clone() });
+                }
+                if parameter.starts_with("tau") && (estimate.value < 0.5 * shortest || estimate.value > 2.0 * longest) {
+                    warnings.push(FitWarning::TimeOutside { parameter });
+                }
+            }
+            for Estimate { name, .. } in &self.estimates[k + 1..] {
+                if self.correlation(&estimate.name, name).is_some_and(|c| c.abs() > 0.99) {
+                    warnings.push(FitWarning::Correlated { parameters: [estimate.name.clone(), name.clone()] });
                 }
             }
         }
-        warnings.extend((0..self.curves().len()).flat_map(|curve| self.contact_warnings(curve)));
         warnings
     }
 
@@ -189,13 +154,9 @@ impl Fit {
 /// # Errors
 /// [`Error::OtherData`] if fits are of different curves, or some are robust; the error of the last candidate if all failed.
 pub fn ranked(candidates: impl IntoIterator<Item = Result<Fit>>) -> Result<Vec<(Fit, f64, f64)>> {
-    let (mut fits, mut failure) = (Vec::<Fit>::new(), None);
-    for candidate in candidates {
-        match candidate {
-            Ok(fit) => fits.push(fit),
-            Err(error) => failure = Some(error),
-        }
-    }
+    let mut failure = None;
+    let fitted = candidates.into_iter().filter_map(|candidate| candidate.map_err(|error| failure = Some(error)).ok());
+    let mut fits: Vec<Fit> = fitted.collect();
     fits.sort_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let Some(best) = fits.first() else { return failure.map_or(Ok(Vec::new()), Err) };
     let of_best = best.aicc();

@@ -1,7 +1,6 @@
 //! The noise of each curve, from the residuals of a fit.
 
-use faer::linalg::solvers::Solve;
-use faer::{Col, Mat, Side};
+use faer::{Mat, Side};
 use viscocontact::numeric::least;
 
 use crate::bounds::inverse_gram;
@@ -35,7 +34,8 @@ impl Identification {
     pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Minimum) -> Result<bool> {
         let mut bare = problem.clone();
         for part in &mut bare.parts {
-            part.weights.fill(1.0);
+            part.scale = 1.0;
+            part.outliers.fill(1.0);
             if self.fits_correlation() {
                 part.whitening = Whitening::Autoregressive(0.0);
             }
@@ -93,7 +93,6 @@ impl Identification {
             let scale = if is_unequal { mean.exp() / deviation } else { 1.0 };
             is_found &= (scale / part.scale).ln().abs() < FOUND;
             part.scale = scale;
-            part.weights = part.outliers.iter().map(|weight| scale * weight).collect();
         }
         is_found
     }
@@ -103,32 +102,25 @@ impl Identification {
 /// are those of the problem that is linearised by the rows of the Jacobian from `first` on.
 fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
     let points = residuals.len();
-    let columns: Vec<Vec<f64>> = (0..jacobian.ncols())
-        .map(|column| (0..points).map(|k| jacobian[(first + k, column)]).collect::<Vec<f64>>())
-        .filter(|column| square(column) > 0.0)
-        .map(|column| {
-            let norm = square(&column).sqrt();
-            column.into_iter().map(|slope| slope / norm).collect()
-        })
-        .collect();
+    let slopes = (0..jacobian.ncols()).map(|j| (0..points).map(|k| jacobian[(first + k, j)]).collect::<Vec<f64>>());
+    let mut columns: Vec<Vec<f64>> = slopes.filter(|column| square(column) > 0.0).collect();
     let count = columns.len();
+    columns.push(residuals.to_vec());
+    for column in &mut columns {
+        let norm = square(column).sqrt();
+        column.iter_mut().for_each(|value| *value /= norm);
+    }
     // −2 ln of the restricted likelihood
     let unlikelihood = |phi: f64| {
-        let whitening = Whitening::Autoregressive(phi);
-        let white = |column: &[f64]| {
-            let mut column = column.to_vec();
-            whitening.apply(&mut column);
-            column
-        };
-        let (residual, columns) = (white(residuals), columns.iter().map(|c| white(c)).collect::<Vec<_>>());
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let gram = Mat::from_fn(count, count, |i, j| dot(&columns[i], &columns[j]) + if i == j { 1e-12 } else { 0.0 });
-        let Ok(factor) = gram.llt(Side::Lower) else { return f64::INFINITY };
-        let right = Col::from_fn(count, |i| dot(&columns[i], &residual));
-        let solved = factor.solve(&right);
-        let sum = square(&residual) - (0..count).map(|i| solved[i] * right[i]).sum::<f64>();
-        let determinant: f64 = (0..count).map(|i| 2.0 * factor.L()[(i, i)].ln()).sum();
-        (points - count) as f64 * sum.max(f64::MIN_POSITIVE).ln() - whitening.log_weight() + determinant
+        let (whitening, mut white) = (Whitening::Autoregressive(phi), columns.clone());
+        white.iter_mut().for_each(|column| whitening.apply(column));
+        let white = Mat::from_fn(points, count + 1, |k, j| white[j][k]);
+        let ridge = Mat::<f64>::identity(count + 1, count + 1) * faer::Scale(1e-12);
+        // the last entry of the Cholesky factor is the norm of the residuals that are left, the others have the determinant
+        let Ok(factor) = (white.transpose() * &white + ridge).llt(Side::Lower) else { return f64::INFINITY };
+        let twice_ln = |i: usize| 2.0 * factor.L()[(i, i)].ln();
+        let determinant: f64 = (0..count).map(twice_ln).sum();
+        (points - count) as f64 * twice_ln(count) - whitening.log_weight() + determinant
     };
     if points <= count || square(residuals) == 0.0 {
         return 0.0;

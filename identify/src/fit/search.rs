@@ -7,7 +7,8 @@ use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
 use crate::model::Model;
 use crate::problem::Problem;
-use crate::start::{check_contact, scatter, starts};
+use crate::start::{check_contact, starts};
+use crate::statistics::scatter;
 
 /// Rounds of fits, each with the noise of the one before.
 const MAX_ROUNDS: usize = 12;
@@ -28,11 +29,9 @@ impl Identification {
     /// If no curve is given, a parameter has an unknown name or a value outside its range, a tip never touches or goes beyond its
     /// last elastic state, there are not more points than parameters, or the search does not converge.
     pub fn fit(&self, curves: &[Curve]) -> Result<Fit> {
-        let pairs = curves.iter().map(|curve| (&curve.experiment, Some(&curve.force)));
-        let mut problem = self.problem(pairs)?;
-        let free = problem.free().count();
+        let mut problem = self.problem(curves.to_vec())?;
         check_contact(&problem)?;
-        let scatters: Vec<f64> = problem.parts.iter().map(|part| scatter(&part.data)).collect();
+        let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
         self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
         if self.finds_noise(&problem) {
@@ -41,17 +40,13 @@ impl Identification {
                 if is_found {
                     break;
                 }
-                found.minimum = self.minimum(&problem, found.minimum.coordinates)?;
                 // sums of squares of other weights cannot be compared
-                found.contained = None;
+                found = Found { minimum: self.minimum(&problem, found.minimum.coordinates)?, contained: None };
             }
         }
         let fit = Fit::new(self, problem, found)?;
-        let points = fit.points_in_contact();
-        if points <= free {
-            return Err(Error::TooFewPoints { points, parameters: free });
-        }
-        Ok(fit)
+        let (points, parameters) = (fit.points_in_contact(), fit.estimates().len());
+        if points <= parameters { Err(Error::TooFewPoints { points, parameters }) } else { Ok(fit) }
     }
 
     /// The least of the minima from several starts, of which one is the minimum of each model that this one contains. Most of the search is on
@@ -70,12 +65,10 @@ impl Identification {
         let some = rough.as_ref().unwrap_or(problem);
         let mut best = self.least(some, inside.iter().cloned().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
-            let start = best.map(|minimum| minimum.coordinates);
-            best = self.least(problem, start.into_iter(), AGREED);
-            let is_above = |minimum: &Minimum| contained.is_some_and(|(_, sum)| square(&minimum.residuals) > sum);
-            if best.as_ref().map_or(true, is_above) {
+            best = self.least(problem, best.map(|minimum| minimum.coordinates).into_iter(), AGREED);
+            let sum = |found: &Result<Minimum>| found.as_ref().map_or(f64::INFINITY, |m| square(&m.residuals));
+            if contained.is_none_or(|(_, least)| sum(&best) > least) {
                 let again = self.least(problem, inside.into_iter(), AGREED);
-                let sum = |found: &Result<Minimum>| found.as_ref().map_or(f64::INFINITY, |m| square(&m.residuals));
                 best = if sum(&again) < sum(&best) { again } else { best };
             }
         }
@@ -84,23 +77,26 @@ impl Identification {
 
     /// The least of the minima from several starts; two that agree end the search.
     fn least(&self, problem: &Problem, starts: impl Iterator<Item = Vec<f64>>, agreed: f64) -> Result<Minimum> {
-        let mut found: Vec<(f64, Minimum)> = Vec::new();
-        let (mut failure, mut iterations) = (Error::NoContact { curve: 0 }, 0);
+        let mut best: Result<Minimum> = Err(Error::NoContact { curve: 0 });
+        let (mut least, mut iterations) = (f64::INFINITY, 0);
         for start in starts {
-            match self.minimum(problem, start) {
-                Ok(minimum) => {
-                    iterations += minimum.iterations;
-                    found.push((square(&minimum.residuals), minimum));
+            let minimum = match self.minimum(problem, start) {
+                Ok(minimum) => minimum,
+                Err(error) => {
+                    best = best.map_err(|_| error);
+                    continue;
                 }
-                Err(error) => failure = error,
+            };
+            iterations += minimum.iterations;
+            let sum = square(&minimum.residuals);
+            let [less, more] = if sum < least { [sum, least] } else { [least, sum] };
+            if sum < least || best.is_err() {
+                (least, best) = (least.min(sum), Ok(minimum));
             }
-            found.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let is_exact = found.first().is_some_and(|(sum, _)| *sum <= problem.rounding());
-            if is_exact || found.len() > 1 && found[1].0 <= (1.0 + agreed) * found[0].0 {
+            if less <= problem.rounding() || more <= (1.0 + agreed) * less {
                 break;
             }
         }
-        let best = found.into_iter().next().map(|(_, minimum)| Minimum { iterations, ..minimum });
-        best.ok_or(failure)
+        best.map(|minimum| Minimum { iterations, ..minimum })
     }
 }

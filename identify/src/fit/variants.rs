@@ -3,7 +3,7 @@
 use crate::fit::Fit;
 use crate::noise::Noise;
 use crate::parameters::Nuisance;
-use crate::start::scatter;
+use crate::statistics::scatter;
 
 /// A fit of the same curves with another assumption on the measurement.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Fit {
     /// What the answer depends on: the same curves with a drift, with a tilt, with correlated noise and without outliers, each alone. Where the moduli
     /// of the variants differ by more than the deviations of the fit, the difference is the uncertainty. Variants that fail are left out.
     pub fn variants(&self) -> Vec<Variant> {
-        let [first, last] = self.window();
+        let [first, last] = self.problem.window;
         let times = [first, (first * last).sqrt(), last];
         let base = &self.identification;
         let all = [

@@ -13,13 +13,14 @@
 
 mod shrinking;
 
+use crate::error::Result;
+use crate::forward::Response;
 use crate::forward::column::Columns;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::moments::Moments;
 use crate::forward::real::Real;
 use crate::forward::roots::Roots;
 use crate::forward::tip::{Elastic, Tip};
-use crate::forward::{Drive, Response, Stop};
 use crate::series::Prony;
 
 /// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
@@ -29,58 +30,66 @@ const CONVERGED: [f64; 2] = [1e-14, 1e-11];
 
 /// The end of an interval in which the contact grew.
 #[derive(Clone, Copy, Debug)]
-struct Node<T> {
-    time: T,
+struct Node<const N: usize> {
+    time: Real<N>,
     /// Depth of the tip \[m\].
-    depth: T,
+    depth: Real<N>,
     /// The column at the edge \[m\], and the elastic contact up to it.
-    extent: T,
-    elastic: Elastic<T>,
+    extent: Real<N>,
+    elastic: Elastic<N>,
     /// Whether the column at the edge has not touched before.
     fresh: bool,
 }
 
 /// The column at the edge of the contact: that which touched after a node, at a share of the time to the next.
 #[derive(Clone, Copy, Debug)]
-struct Edge<T> {
+struct Edge<const N: usize> {
     node: usize,
-    share: T,
-    extent: T,
-    elastic: Elastic<T>,
+    share: Real<N>,
+    extent: Real<N>,
+    elastic: Elastic<N>,
 }
 
 /// A contact up to the present.
-pub(super) struct Cycle<'a, T> {
-    prony: &'a Prony<T>,
+pub(super) struct Cycle<'a, const N: usize> {
+    prony: &'a Prony<Real<N>>,
     tip: &'a Tip,
+    times: &'a [f64],
     /// 1/k of the spring \[m/N\].
-    give: T,
+    give: Real<N>,
     roots: &'a mut Roots,
     /// Intervals of growth up to the edge, with the terms at each node.
-    nodes: Vec<Node<T>>,
-    past: Vec<Term<T>>,
-    edge: Edge<T>,
+    nodes: Vec<Node<N>>,
+    past: Vec<Term<N>>,
+    edge: Edge<N>,
     /// Whether the last node is the present.
     is_node: bool,
-    columns: Columns<'a, T>,
-    time: T,
-    drive: T,
-    depth: T,
-    terms: Vec<Term<T>>,
+    columns: Columns<'a, N>,
+    time: Real<N>,
+    drive: Real<N>,
+    depth: Real<N>,
+    terms: Vec<Term<N>>,
     /// Terms at another time.
-    then: Vec<Term<T>>,
-    moments: Moments<T>,
-    part: Moments<T>,
+    then: Vec<Term<N>>,
+    moments: Moments<N>,
+    part: Moments<N>,
     /// Greatest depth \[m\].
     greatest: f64,
 }
 
-impl<'a, T: Real> Cycle<'a, T> {
-    pub(super) fn new(prony: &'a Prony<T>, tip: &'a Tip, give: T, times: &'a [f64], roots: &'a mut Roots) -> Self {
-        let (zero, terms) = (T::from(0.0), vec![Term::default(); prony.moduli.len()]);
+impl<'a, const N: usize> Cycle<'a, N> {
+    pub(super) fn new(
+        prony: &'a Prony<Real<N>>,
+        tip: &'a Tip,
+        give: Real<N>,
+        times: &'a [f64],
+        roots: &'a mut Roots,
+    ) -> Self {
+        let (zero, terms) = (Real::from(0.0), vec![Term::default(); prony.moduli.len()]);
         Cycle {
             prony,
             tip,
+            times,
             give,
             roots,
             nodes: Vec::new(),
@@ -88,7 +97,7 @@ impl<'a, T: Real> Cycle<'a, T> {
             edge: Edge { node: 0, share: zero, extent: zero, elastic: tip.first() },
             is_node: true,
             columns: Columns::new(prony, times),
-            time: T::from(times[0]),
+            time: Real::from(times[0]),
             drive: zero,
             depth: zero,
             then: terms.clone(),
@@ -100,34 +109,30 @@ impl<'a, T: Real> Cycle<'a, T> {
     }
 
     /// Computes a response for each time; `record` is given each with the terms of its force.
-    pub(super) fn follow(
-        &mut self,
-        drive: Drive<'_, T>,
-        mut record: impl FnMut(Response<T>, &[Term<T>]),
-    ) -> Result<(), Stop> {
-        for (sample, (&time, &z)) in drive.times.iter().zip(drive.drive).enumerate() {
-            self.advance(sample, T::from(time), z)?;
+    pub(super) fn follow(&mut self, drive: &[Real<N>], mut record: impl FnMut(Response<N>, &[Term<N>])) -> Result<()> {
+        for (sample, (&time, &z)) in self.times.iter().zip(drive).enumerate() {
+            self.advance(sample, Real::from(time), z)?;
             let (force, depth) = (self.sum(|term| term.force), self.depth);
-            let contact_depth = if self.nodes.is_empty() { T::from(0.0) } else { self.edge.extent };
+            let contact_depth = if self.nodes.is_empty() { Real::from(0.0) } else { self.edge.extent };
             record(Response { force, depth, contact_depth }, &self.terms);
         }
         Ok(())
     }
 
-    fn sum(&self, of: impl Fn(Term<T>) -> T) -> T {
-        self.terms.iter().fold(T::from(0.0), |sum, &term| sum + of(term))
+    fn sum(&self, of: impl Fn(Term<N>) -> Real<N>) -> Real<N> {
+        self.terms.iter().fold(Real::from(0.0), |sum, &term| sum + of(term))
     }
 
     /// Σ over the terms after the present interval.
-    fn decayed(&self, of: impl Fn(Term<T>) -> T) -> T {
+    fn decayed(&self, of: impl Fn(Term<N>) -> Real<N>) -> Real<N> {
         let pairs = self.terms.iter().zip(&self.moments.decay);
-        pairs.fold(T::from(0.0), |sum, (&term, &decay)| sum + decay * of(term))
+        pairs.fold(Real::from(0.0), |sum, (&term, &decay)| sum + decay * of(term))
     }
 
     /// Σ Eᵢ M₀ of the present interval: the pressure of a column that the tip moves by 1 m.
-    fn stiffness(&self) -> T {
+    fn stiffness(&self) -> Real<N> {
         let pairs = self.prony.moduli.iter().zip(&self.moments.moments);
-        pairs.fold(T::from(0.0), |sum, (&modulus, moments)| sum + modulus * moments[0])
+        pairs.fold(Real::from(0.0), |sum, (&modulus, moments)| sum + modulus * moments[0])
     }
 
     fn springs(&self) -> bool {
@@ -135,7 +140,7 @@ impl<'a, T: Real> Cycle<'a, T> {
     }
 
     /// Advances to a sample.
-    fn advance(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
+    fn advance(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
         let is_separated = self.nodes.is_empty();
         if is_separated && !self.touches(sample, time, z) {
             (self.time, self.drive, self.depth) = (time, z, z);
@@ -147,7 +152,7 @@ impl<'a, T: Real> Cycle<'a, T> {
         let mut depth = z;
         if self.springs() {
             let excess = z - self.depth - self.give * self.decayed(|term| term.force);
-            depth = self.depth + excess / (T::from(1.0) + self.give * stiffness * unit);
+            depth = self.depth + excess / (Real::from(1.0) + self.give * stiffness * unit);
         }
         let pressure = (self.decayed(|term| term.edge) + unit * (depth - self.depth)).value();
         let scale: f64 = self.prony.moduli.iter().map(|modulus| modulus.value().abs()).sum::<f64>() * self.greatest;
@@ -164,12 +169,12 @@ impl<'a, T: Real> Cycle<'a, T> {
     }
 
     /// Whether the tip touches the surface before a sample: then the time of the touch is the present.
-    fn touches(&mut self, sample: usize, time: T, z: T) -> bool {
+    fn touches(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> bool {
         let [before, after] = self.columns.next(sample);
         if z.value() <= after.value() {
             return false;
         }
-        let (zero, one) = (T::from(0.0), T::from(1.0));
+        let (zero, one) = (Real::from(0.0), Real::from(1.0));
         // at the first sample suddenly
         let mut share = if sample == 0 { one } else { (before - self.drive) / (z - self.drive - after + before) };
         if sample > 0 && !(0.0..=1.0).contains(&share.value()) {
@@ -178,7 +183,7 @@ impl<'a, T: Real> Cycle<'a, T> {
         self.time = self.time + share * (time - self.time);
         self.drive = if sample == 0 { zero } else { self.drive + share * (z - self.drive) };
         self.depth = before + share * (after - before);
-        let elastic: Elastic<T> = self.tip.first();
+        let elastic: Elastic<N> = self.tip.first();
         for (i, term) in self.terms.iter_mut().enumerate() {
             let edge = self.columns.state(i, share);
             *term = Term { tip: edge, force: elastic.stiffness * edge, edge };
@@ -189,16 +194,16 @@ impl<'a, T: Real> Cycle<'a, T> {
     }
 
     /// The present, where the contact has grown to an edge, becomes a node.
-    fn push(&mut self, time: T, extent: T, elastic: Elastic<T>) {
+    fn push(&mut self, time: Real<N>, extent: Real<N>, elastic: Elastic<N>) {
         let fresh = self.terms.iter().all(|term| term.edge.value() == 0.0);
-        self.edge = Edge { node: self.nodes.len(), share: T::from(0.0), extent, elastic };
+        self.edge = Edge { node: self.nodes.len(), share: Real::from(0.0), extent, elastic };
         self.nodes.push(Node { time, depth: self.depth, extent, elastic, fresh });
         self.past.extend_from_slice(&self.terms);
         self.is_node = true;
     }
 
     /// The tip moves to a depth at which the contact neither grows nor shrinks.
-    fn hold(&mut self, depth: T) {
+    fn hold(&mut self, depth: Real<N>) {
         let rise = depth - self.depth;
         for (i, term) in self.terms.iter_mut().enumerate() {
             let (decay, added) = (self.moments.decay[i], self.prony.moduli[i] * rise * self.moments.moments[i][0]);
@@ -213,9 +218,9 @@ impl<'a, T: Real> Cycle<'a, T> {
     }
 
     /// The contact grows until a sample: over one free column after the other, and then over columns that have not touched.
-    fn grow(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
+    fn grow(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
         self.settle()?;
-        let (zero, one) = (T::from(0.0), T::from(1.0));
+        let (zero, one) = (Real::from(0.0), Real::from(1.0));
         let (from, length) = (self.time, time - self.time);
         // share of the interval that has passed
         let mut passed = zero;
@@ -241,7 +246,7 @@ impl<'a, T: Real> Cycle<'a, T> {
             let is_fresh = self.nodes[self.nodes.len() - 1].fresh && next.is_none();
             let (tip, depth_before) = (self.tip, self.depth);
             // the share of the way to the next column, the edge, and the growth of a contact that ends with the tip at a depth
-            let at = |depth: T| {
+            let at = |depth: Real<N>| {
                 let (share, extent) = match width {
                     Some((width, travel)) if travel.value() > 0.0 => {
                         let share = (depth - released) / travel;
@@ -250,12 +255,13 @@ impl<'a, T: Real> Cycle<'a, T> {
                     Some((width, _)) => (one, start.0 + width),
                     None => (zero, start.0 + depth - released),
                 };
-                let elastic = tip.at(extent).ok_or(Stop::Beyond(extent.value()))?;
-                let growth = Growth::new(start, (extent, elastic), depth - depth_before, is_fresh);
-                Ok((share, extent, elastic, growth))
+                tip.at(extent).map(|elastic| {
+                    let growth = Growth::new(start, (extent, elastic), depth - depth_before, is_fresh);
+                    (share, extent, elastic, growth)
+                })
             };
             let give = self.give;
-            let excess = |depth: T| {
+            let excess = |depth: Real<N>| {
                 let (share, .., growth) = at(depth)?;
                 let change = [0, 1, 2].map(|k| sums[2][k] + share * sums[3][k]);
                 Ok(z - depth - give * (past + growth.force(sums[0], sums[1], change)))
@@ -267,7 +273,7 @@ impl<'a, T: Real> Cycle<'a, T> {
                     let instant = self.prony.moduli.iter().fold(zero, |sum, &modulus| sum + modulus);
                     let gap = (self.depth - before) * (one + give * self.edge.elastic.stiffness * instant);
                     let share = if gap.value() < 0.0 { gap / (gap - left) } else { zero };
-                    let elastic = tip.at(extent).ok_or(Stop::Beyond(extent.value()))?;
+                    let elastic = tip.at(extent)?;
                     let depth = before + share * (after - before);
                     let growth = Growth::new(start, (extent, elastic), depth - self.depth, false);
                     let all = passed + share * (one - passed);
@@ -287,13 +293,13 @@ impl<'a, T: Real> Cycle<'a, T> {
                 let end = if width.is_some() {
                     after
                 } else if deepest > limit {
-                    T::from(limit)
+                    Real::from(limit)
                 } else {
                     z
                 };
                 // the spring pushes deeper than the states reach
                 if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
-                    return Err(Stop::Beyond(z.value()));
+                    return Err(tip.beyond(z.value()));
                 }
                 self.roots.solve([released, end], CONVERGED[0] * deepest.abs(), excess)?
             } else {
@@ -314,13 +320,13 @@ impl<'a, T: Real> Cycle<'a, T> {
     /// the pressure of the last edge, had it been free.
     fn append(
         &mut self,
-        time: T,
-        depth: T,
-        (extent, elastic): (T, Elastic<T>),
-        growth: Growth<T>,
-        edge: impl Fn(&Columns<'a, T>, usize, T) -> T,
+        time: Real<N>,
+        depth: Real<N>,
+        (extent, elastic): (Real<N>, Elastic<N>),
+        growth: Growth<N>,
+        edge: impl Fn(&Columns<'a, N>, usize, Real<N>) -> Real<N>,
     ) {
-        let zero = T::from(0.0);
+        let zero = Real::from(0.0);
         let (mut unit, mut pressure) = (zero, zero);
         for (i, term) in self.terms.iter().enumerate() {
             unit += self.prony.moduli[i] * self.part.moments[i][0];
@@ -337,7 +343,7 @@ impl<'a, T: Real> Cycle<'a, T> {
     }
 
     /// Makes the present a node: cuts the interval in which the column at the edge touched, and adds one in which nothing did.
-    fn settle(&mut self) -> Result<(), Stop> {
+    fn settle(&mut self) -> Result<()> {
         if self.is_node {
             return Ok(());
         }

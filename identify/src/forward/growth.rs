@@ -5,22 +5,22 @@ use crate::forward::tip::Elastic;
 
 /// One term Eᵢ exp(−t/τᵢ) of the series at one time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Term<T> {
+pub(crate) struct Term<const N: usize> {
     /// ∫ Eᵢ exp(−(t − s)/τᵢ) dδ of the tip \[Pa m\].
-    pub(super) tip: T,
+    pub(super) tip: Real<N>,
     /// Its part of the force of the columns in contact \[N\].
-    pub(crate) force: T,
+    pub(crate) force: Real<N>,
     /// Its part of the pressure of the column at the edge \[Pa m\]: the parts of all terms cancel there.
-    pub(super) edge: T,
+    pub(super) edge: Real<N>,
 }
 
 /// The columns that touch in an interval, one after the other: from the edge of the contact at its start to the edge at its end.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Growth<T> {
+pub(super) struct Growth<const N: usize> {
     /// Change of the depth of the tip \[m\].
-    rise: T,
+    rise: Real<N>,
     /// Coefficients of ξ⁰, ξ¹, ξ² of df/dδ at the edge: a parabola with the right ends and the right mean.
-    stiffness: [T; 3],
+    stiffness: [Real<N>; 3],
     /// Whether no column has touched before, so that none has a past.
     pub(super) fresh: bool,
 }
@@ -28,22 +28,22 @@ pub(super) struct Growth<T> {
 /// Extents that differ by less than this fraction have one stiffness.
 const SAME: f64 = 1e-9;
 
-impl<T: Real> Growth<T> {
-    pub(super) fn new(from: (T, Elastic<T>), to: (T, Elastic<T>), rise: T, fresh: bool) -> Growth<T> {
+impl<const N: usize> Growth<N> {
+    pub(super) fn new(from: (Real<N>, Elastic<N>), to: (Real<N>, Elastic<N>), rise: Real<N>, fresh: bool) -> Growth<N> {
         let ([a, b], width) = ([from.1.stiffness, to.1.stiffness], to.0 - from.0);
         let mean = match width.value() > SAME * to.0.value() {
             true => (to.1.force - from.1.force) / width,
-            false => T::from(0.5) * (a + b),
+            false => Real::from(0.5) * (a + b),
         };
-        let six = T::from(6.0) * mean;
-        let stiffness = [a, six - T::from(4.0) * a - T::from(2.0) * b, T::from(3.0) * (a + b) - six];
+        let six = Real::from(6.0) * mean;
+        let stiffness = [a, six - Real::from(4.0) * a - Real::from(2.0) * b, Real::from(3.0) * (a + b) - six];
         Growth { rise, stiffness, fresh }
     }
 
     /// Force of terms whose moments have the sums `modulus` Σ Eᵢ Mₖ, `start` Σ qᵢ Mₖ and `change` Σ Δqᵢ Mₖ, where q is the pressure of a
     /// column as it touches, linear in ξ from qᵢ to qᵢ + Δqᵢ:
     /// ∫ dδ/dξ f′ exp(−a (1 − ξ)) dξ + ∫ df′/dξ q(ξ) exp(−a (1 − ξ)) dξ.
-    pub(super) fn force(&self, modulus: [T; 3], start: [T; 3], change: [T; 3]) -> T {
+    pub(super) fn force(&self, modulus: [Real<N>; 3], start: [Real<N>; 3], change: [Real<N>; 3]) -> Real<N> {
         let [s0, s1, s2] = self.stiffness;
         let tip = self.rise * (s0 * modulus[0] + s1 * modulus[1] + s2 * modulus[2]);
         if self.fresh {
@@ -54,9 +54,16 @@ impl<T: Real> Growth<T> {
     }
 
     /// A term at the end of the interval, where the column at the edge has the pressure `edge`.
-    pub(super) fn after(&self, term: Term<T>, modulus: T, decay: T, moments: [T; 3], edge: T) -> Term<T> {
-        let times = |factor: T| moments.map(|moment| factor * moment);
-        let (tip, zero) = (decay * term.tip + modulus * self.rise * moments[0], T::from(0.0));
+    pub(super) fn after(
+        &self,
+        term: Term<N>,
+        modulus: Real<N>,
+        decay: Real<N>,
+        moments: [Real<N>; 3],
+        edge: Real<N>,
+    ) -> Term<N> {
+        let times = |factor: Real<N>| moments.map(|moment| factor * moment);
+        let (tip, zero) = (decay * term.tip + modulus * self.rise * moments[0], Real::from(0.0));
         if self.fresh {
             let force = decay * term.force + modulus * self.force(moments, [zero; 3], [zero; 3]);
             return Term { tip, force, edge: zero };

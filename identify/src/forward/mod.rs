@@ -8,40 +8,22 @@ mod real;
 mod roots;
 mod tip;
 
-use std::sync::Arc;
-
 use viscocontact::states::ElasticStates;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::series::Prony;
 use cycle::Cycle;
 pub(crate) use growth::Term;
-pub(crate) use real::{Dual, LANES, Real};
-pub(crate) use roots::Roots;
+pub(crate) use real::{LANES, Real};
+pub(crate) use roots::{Roots, root};
 use tip::Tip;
-
-/// A drive beyond the contact point \[m\] at times \[s\].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Drive<'a, T> {
-    pub(crate) times: &'a [f64],
-    pub(crate) drive: &'a [T],
-}
 
 /// A sample of a response, as [`Sample`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Response<T> {
-    pub(crate) force: T,
-    pub(crate) depth: T,
-    pub(crate) contact_depth: T,
-}
-
-/// Why a response cannot be computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Stop {
-    /// The depth is beyond the last elastic state.
-    Beyond(f64),
-    /// A balance has no root.
-    NoRoot,
+pub(crate) struct Response<const N: usize> {
+    pub(crate) force: Real<N>,
+    pub(crate) depth: Real<N>,
+    pub(crate) contact_depth: Real<N>,
 }
 
 /// A sample of a response.
@@ -57,9 +39,16 @@ pub struct Sample {
     pub contact_depth: f64,
 }
 
-impl From<Response<f64>> for Sample {
-    fn from(Response { force, depth, contact_depth }: Response<f64>) -> Sample {
-        Sample { force, depth, contact_depth }
+impl From<Response<0>> for Sample {
+    fn from(of: Response<0>) -> Sample {
+        Sample { force: of.force.value(), depth: of.depth.value(), contact_depth: of.contact_depth.value() }
+    }
+}
+
+impl From<&Prony> for Prony<Real<0>> {
+    fn from(of: &Prony) -> Self {
+        let real = |values: &[f64]| values.iter().map(|&value| Real::from(value)).collect();
+        Prony { moduli: real(&of.moduli), rates: real(&of.rates) }
     }
 }
 
@@ -68,35 +57,24 @@ impl From<Response<f64>> for Sample {
 pub(crate) struct Forward(Tip);
 
 impl Forward {
-    pub(crate) fn new(states: &Arc<ElasticStates>) -> Forward {
-        Forward(Tip::new(states))
+    /// The depth is 0 at the approach `surface`. `curve` is the index of the curve in errors.
+    pub(crate) fn new(curve: usize, states: &ElasticStates, surface: f64) -> Forward {
+        Forward(Tip::new(curve, states, surface))
     }
 
-    /// The response to a drive through a spring of `give` 1/k \[m/N\]. `record` is given each sample with the terms of its force.
-    /// `curve` is the index of the curve in errors. Plain numbers find `roots`, and numbers with derivatives use those of the same
-    /// evaluation with plain numbers.
-    pub(crate) fn respond<T: Real>(
+    /// The response to a drive beyond the contact point \[m\] at some times, through a spring of `give` 1/k \[m/N\]. `record` is given each sample
+    /// with the terms of its force. Plain numbers find `roots`, and numbers with derivatives use those of the same evaluation with plain numbers.
+    pub(crate) fn respond<const N: usize>(
         &self,
-        prony: &Prony<T>,
-        drive: Drive<'_, T>,
-        give: T,
-        curve: usize,
+        prony: &Prony<Real<N>>,
+        times: &[f64],
+        drive: &[Real<N>],
+        give: Real<N>,
         roots: &mut Roots,
-        record: impl FnMut(Response<T>, &[Term<T>]),
+        record: impl FnMut(Response<N>, &[Term<N>]),
     ) -> Result<()> {
-        if T::DERIVES {
-            roots.rewind()
-        } else {
-            roots.clear()
-        }
-        Cycle::new(prony, &self.0, give, drive.times, roots).follow(drive, record).map_err(|stop| match stop {
-            Stop::Beyond(depth) => Error::BeyondStates { curve, depth },
-            Stop::NoRoot => {
-                let reason =
-                    "the spring and the contact do not balance: check the stiffness of the spring and the moduli";
-                Error::NotConverged { iterations: 0, reason }
-            }
-        })
+        roots.begin(N > 0);
+        Cycle::new(prony, &self.0, give, times, roots).follow(drive, record)
     }
 }
 

@@ -6,25 +6,25 @@ use crate::forward::real::Real;
 ///
 /// The moments of ξ^k, k = 0, 1, 2, under exp(−a (1 − ξ)) over 0 < ξ < 1 with a = rate × length.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Moments<T> {
-    length: T,
-    pub(super) decay: Vec<T>,
-    pub(super) moments: Vec<[T; 3]>,
+pub(super) struct Moments<const N: usize> {
+    length: Real<N>,
+    pub(super) decay: Vec<Real<N>>,
+    pub(super) moments: Vec<[Real<N>; 3]>,
 }
 
 /// Intervals whose lengths differ by less than this fraction are equal: equal samples have times that are rounded.
 const EQUAL: f64 = 1e-10;
 
-impl<T: Real> Moments<T> {
+impl<const N: usize> Moments<N> {
     /// Computes the moments for another length of the interval. The length of an interval between samples is `fixed`: it depends
     /// on no parameter.
-    pub(super) fn set(&mut self, length: T, fixed: bool, rates: &[T]) {
+    pub(super) fn set(&mut self, length: Real<N>, fixed: bool, rates: &[Real<N>]) {
         let equal = (length.value() - self.length.value()).abs() <= EQUAL * length.value();
         if fixed && equal && self.decay.len() == rates.len() {
             return;
         }
         // an interval whose length depends on parameters is never reused
-        self.length = if fixed { length } else { T::from(f64::NAN) };
+        self.length = if fixed { length } else { Real::from(f64::NAN) };
         self.decay.clear();
         self.moments.clear();
         for &rate in rates {

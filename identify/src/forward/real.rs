@@ -1,77 +1,27 @@
 //! Numbers that carry derivatives.
 
-use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// Parameters by which one evaluation differentiates.
-pub(crate) const LANES: usize = 5;
+/// Derivatives that one evaluation carries: by parameters and, last, by the unknown of an equation.
+pub(crate) const LANES: usize = 6;
 
-/// A number of the forward model: a plain one, or one with its derivatives. Values are computed alike, bit by bit.
-pub(crate) trait Real:
-    Copy
-    + Debug
-    + Default
-    + From<f64>
-    + Add<Output = Self>
-    + AddAssign
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
-    /// Whether the number has derivatives.
-    const DERIVES: bool;
+/// A number of the forward model with its derivatives by some parameters and, last, by the unknown of an equation; a plain one has none. Values are
+/// computed alike, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Real<const N: usize> {
+    value: f64,
+    slopes: [f64; N],
+}
+
+impl<const N: usize> Real<N> {
+    pub(crate) fn new(value: f64, slopes: [f64; N]) -> Self {
+        Real { value, slopes }
+    }
 
     /// The number without its derivatives.
-    fn value(self) -> f64;
-
-    /// A function of this number with a given value and slope.
-    fn mapped(self, value: f64, slope: f64) -> Self;
-
-    /// The unknown of an equation, at its root.
-    fn unknown(root: f64) -> Self;
-
-    /// The root of an equation, from the residual at [`Real::unknown`]: by the theorem of implicit functions.
-    fn implicit(root: f64, residual: Self) -> Self;
-
-    fn exp(self) -> Self {
-        let value = self.value().exp();
-        self.mapped(value, value)
-    }
-}
-
-impl Real for f64 {
-    const DERIVES: bool = false;
-
-    fn value(self) -> f64 {
-        self
-    }
-
-    fn mapped(self, value: f64, _: f64) -> f64 {
-        value
-    }
-
-    fn unknown(root: f64) -> f64 {
-        root
-    }
-
-    fn implicit(root: f64, _: f64) -> f64 {
-        root
-    }
-}
-
-/// A value with its derivatives by some parameters and, last, by the unknown of an equation.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Dual {
-    value: f64,
-    slopes: [f64; LANES + 1],
-}
-
-impl Dual {
-    pub(crate) fn new(value: f64, slopes: [f64; LANES]) -> Dual {
-        let mut all = [0.0; LANES + 1];
-        all[..LANES].copy_from_slice(&slopes);
-        Dual { value, slopes: all }
+    #[inline(always)]
+    pub(crate) fn value(self) -> f64 {
+        self.value
     }
 
     /// Derivative by a parameter.
@@ -79,83 +29,98 @@ impl Dual {
         self.slopes[lane]
     }
 
-    fn with(self, value: f64, slope: impl Fn(usize) -> f64) -> Dual {
-        Dual { value, slopes: std::array::from_fn(slope) }
+    #[inline(always)]
+    fn with(self, value: f64, slope: impl Fn(usize) -> f64) -> Self {
+        let mut slopes = [0.0; N];
+        slopes.iter_mut().enumerate().for_each(|(k, of)| *of = slope(k));
+        Real { value, slopes }
+    }
+
+    /// A function of this number with a given value and slope.
+    #[inline(always)]
+    pub(super) fn mapped(self, value: f64, slope: f64) -> Self {
+        self.with(value, |k| slope * self.slopes[k])
+    }
+
+    pub(super) fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.mapped(value, value)
+    }
+
+    /// The unknown of an equation, at its root.
+    pub(super) fn unknown(root: f64) -> Self {
+        Real::from(root).with(root, |k| if k + 1 == N { 1.0 } else { 0.0 })
+    }
+
+    /// The root of an equation, from the residual at [`Real::unknown`]: by the theorem of implicit functions.
+    pub(super) fn implicit(root: f64, residual: Self) -> Self {
+        let by_unknown = residual.slopes.last().copied().unwrap_or_default();
+        let slope = |k: usize| if k + 1 == N || by_unknown == 0.0 { 0.0 } else { -residual.slopes[k] / by_unknown };
+        residual.with(root, slope)
     }
 }
 
-impl From<f64> for Dual {
-    fn from(value: f64) -> Dual {
-        Dual { value, slopes: [0.0; LANES + 1] }
+impl<const N: usize> Default for Real<N> {
+    fn default() -> Self {
+        Real::from(0.0)
     }
 }
 
-impl Add for Dual {
-    type Output = Dual;
-    fn add(self, other: Dual) -> Dual {
+impl<const N: usize> From<f64> for Real<N> {
+    #[inline(always)]
+    fn from(value: f64) -> Self {
+        Real { value, slopes: [0.0; N] }
+    }
+}
+
+impl<const N: usize> Add for Real<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
         self.with(self.value + other.value, |k| self.slopes[k] + other.slopes[k])
     }
 }
 
-impl AddAssign for Dual {
-    fn add_assign(&mut self, other: Dual) {
+impl<const N: usize> AddAssign for Real<N> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl Sub for Dual {
-    type Output = Dual;
-    fn sub(self, other: Dual) -> Dual {
+impl<const N: usize> Sub for Real<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
         self.with(self.value - other.value, |k| self.slopes[k] - other.slopes[k])
     }
 }
 
-impl Mul for Dual {
-    type Output = Dual;
+impl<const N: usize> Mul for Real<N> {
+    type Output = Self;
     #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of products")]
-    fn mul(self, other: Dual) -> Dual {
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
         let slope = |k: usize| self.slopes[k] * other.value + self.value * other.slopes[k];
         self.with(self.value * other.value, slope)
     }
 }
 
-impl Div for Dual {
-    type Output = Dual;
+impl<const N: usize> Div for Real<N> {
+    type Output = Self;
     #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of quotients")]
-    fn div(self, other: Dual) -> Dual {
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         self.with(value, |k| (self.slopes[k] - value * other.slopes[k]) / other.value)
     }
 }
 
-impl Neg for Dual {
-    type Output = Dual;
-    fn neg(self) -> Dual {
+impl<const N: usize> Neg for Real<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
         self.with(-self.value, |k| -self.slopes[k])
-    }
-}
-
-impl Real for Dual {
-    const DERIVES: bool = true;
-
-    fn value(self) -> f64 {
-        self.value
-    }
-
-    fn mapped(self, value: f64, slope: f64) -> Dual {
-        self.with(value, |k| slope * self.slopes[k])
-    }
-
-    fn unknown(root: f64) -> Dual {
-        let mut unknown = Dual::from(root);
-        unknown.slopes[LANES] = 1.0;
-        unknown
-    }
-
-    fn implicit(root: f64, residual: Dual) -> Dual {
-        let by_unknown = residual.slopes[LANES];
-        let slope = |k: usize| if k == LANES || by_unknown == 0.0 { 0.0 } else { -residual.slopes[k] / by_unknown };
-        residual.with(root, slope)
     }
 }
 
@@ -166,7 +131,7 @@ mod tests {
     #[test]
     fn derivatives_agree_with_differences() {
         let of = |x: f64, y: f64| (x * y).exp() / (y - x) + x;
-        let [x, y] = [Dual::new(0.7, [1.0, 0.0, 0.0, 0.0, 0.0]), Dual::new(1.9, [0.0, 1.0, 0.0, 0.0, 0.0])];
+        let [x, y] = [Real::new(0.7, [1.0, 0.0]), Real::new(1.9, [0.0, 1.0])];
         let found = (x * y).exp() / (y - x) + x;
         assert_eq!(found.value(), of(0.7, 1.9));
         let step = 1e-6;
@@ -179,9 +144,9 @@ mod tests {
     #[test]
     fn a_root_has_the_derivatives_of_its_equation() {
         // u² = x: du/dx = 1/(2u)
-        let x = Dual::new(4.0, [1.0, 0.0, 0.0, 0.0, 0.0]);
-        let u = Dual::unknown(2.0);
-        let root = Dual::implicit(2.0, u * u - x);
-        assert_eq!((root.value(), root.slope(0), root.slope(1)), (2.0, 0.25, 0.0));
+        let x = Real::new(4.0, [1.0, 0.0]);
+        let u = Real::unknown(2.0);
+        let root = Real::implicit(2.0, u * u - x);
+        assert_eq!((root.value(), root.slope(0)), (2.0, 0.25));
     }
 }

@@ -1,6 +1,6 @@
 //! Roots of the balances of a contact, found once and used again for derivatives.
 
-use crate::forward::Stop;
+use crate::error::{Error, Result};
 use crate::forward::real::Real;
 
 /// Iterations of a root.
@@ -14,51 +14,53 @@ pub(crate) struct Roots {
 }
 
 impl Roots {
-    /// Starts to find roots.
-    pub(super) fn clear(&mut self) {
-        self.found.clear();
-        self.replayed = None;
+    /// Starts to find roots, or to replay those that were found.
+    pub(super) fn begin(&mut self, replays: bool) {
+        self.replayed = replays.then_some(0);
+        if !replays {
+            self.found.clear();
+        }
     }
 
-    /// Starts to replay the roots that were found.
-    pub(super) fn rewind(&mut self) {
-        self.replayed = Some(0);
-    }
-
-    /// The root of a function that falls between two values, by the Illinois rule; the end that is nearer to a root outside.
-    pub(super) fn solve<T: Real>(
+    /// The root of a function that falls between two values, as [`root`].
+    pub(super) fn solve<const N: usize>(
         &mut self,
-        bracket: [T; 2],
+        bracket: [Real<N>; 2],
         tolerance: f64,
-        mut value: impl FnMut(T) -> Result<T, Stop>,
-    ) -> Result<T, Stop> {
-        let [low, high] = bracket.map(T::value);
+        mut value: impl FnMut(Real<N>) -> Result<Real<N>>,
+    ) -> Result<Real<N>> {
+        let [low, high] = bracket.map(Real::value);
         let at = match self.replayed {
             Some(next) => {
                 self.replayed = Some(next + 1);
-                *self.found.get(next).ok_or(Stop::NoRoot)?
+                self.found.get(next).copied().unwrap_or(f64::NAN)
             }
             None => {
-                let root = root([low, high], tolerance, |at| Ok(value(T::from(at))?.value()))?;
+                let root = root([low, high], tolerance, |at| Ok::<_, Error>(value(Real::from(at))?.value()))?;
                 self.found.push(root);
                 root
             }
         };
+        if at.is_nan() {
+            let reason = "the spring and the contact do not balance: check the stiffness of the spring and the moduli";
+            return Err(Error::NotConverged { iterations: 0, reason });
+        }
         // an end is what it depends on; a root inside depends on what its equation depends on
         let end = bracket.into_iter().find(|end| end.value() == at);
         match end {
             Some(end) => Ok(end),
-            None if T::DERIVES => Ok(T::implicit(at, value(T::unknown(at))?)),
-            None => Ok(T::from(at)),
+            None if N > 0 => Ok(Real::implicit(at, value(Real::unknown(at))?)),
+            None => Ok(Real::from(at)),
         }
     }
 }
 
-fn root(
+/// The root of a function that falls between two values, by the Illinois rule; the end that is nearer to a root outside, NaN without one.
+pub(crate) fn root<E>(
     [mut low, mut high]: [f64; 2],
     tolerance: f64,
-    mut value: impl FnMut(f64) -> Result<f64, Stop>,
-) -> Result<f64, Stop> {
+    mut value: impl FnMut(f64) -> Result<f64, E>,
+) -> Result<f64, E> {
     let (mut below, mut above) = (value(low)?, value(high)?);
     if below <= 0.0 || above >= 0.0 {
         return Ok(if below <= 0.0 { low } else { high });
@@ -80,5 +82,5 @@ fn root(
         }
         last_side = Some(side);
     }
-    Err(Stop::NoRoot)
+    Ok(f64::NAN)
 }

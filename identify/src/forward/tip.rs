@@ -1,94 +1,73 @@
-//! The elastic curve of a tip: force, stiffness and area over depth, for unit modulus.
-
-use std::sync::Arc;
+//! The elastic curve of a tip: force and stiffness over depth, for unit modulus.
 
 use viscocontact::numeric::{hermite, hermite_slope};
 use viscocontact::states::{ElasticState, ElasticStates};
 
+use crate::error::{Error, Result};
 use crate::forward::real::Real;
 
 /// Relative distance of the levels from which a slope is taken.
 const NEAR: f64 = 1e-4;
-/// Relative distance of the levels from which the growth of a slope is taken.
-const APART: f64 = 2e-3;
-/// Least depth, relative to the greatest: there the stiffness is taken of a tip that just touches.
+/// Least depth of a swept tip, relative to the greatest.
 const TOUCH: f64 = 1e-6;
+/// Cells of a contact that is a power of the depth down to a surface that is known.
+const FEW_CELLS: usize = 12;
+/// Number of the nodes, between which a cubic is exact to 1e-9.
+const NODES: usize = 2048;
+/// Exponents of two states that differ by less than this fraction are those of a closed form.
+const CLOSED: f64 = 1e-12;
+/// Greatest exponent of a flat punch, or a cell.
+const FLAT: f64 = 1.005;
 
 /// Elastic contact of unit modulus at one depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Elastic<T> {
+pub(super) struct Elastic<const N: usize> {
     /// Force over modulus \[m²\].
-    pub(super) force: T,
+    pub(super) force: Real<N>,
     /// Growth of the force with the depth \[m\].
-    pub(super) stiffness: T,
+    pub(super) stiffness: Real<N>,
 }
 
-impl<T: Real> Elastic<T> {
-    /// From force, stiffness and growth of the stiffness at a depth.
-    fn of(depth: T, [force, stiffness, growth]: [f64; 3]) -> Elastic<T> {
-        Elastic { force: depth.mapped(force, stiffness), stiffness: depth.mapped(stiffness, growth) }
-    }
-}
-
-/// The elastic states of a tip by depth.
+/// The elastic states of a tip by depth, a power of it below the first node.
 #[derive(Clone, Debug)]
 pub(super) struct Tip {
-    states: Arc<ElasticStates>,
-    /// Approach at first touch \[m\].
-    rest: f64,
+    /// Index of its curve, for errors.
+    curve: usize,
     last_depth: f64,
-    /// Force and depth of a state, and the exponent, of a closed form: the force is a power of the depth.
-    power: Option<[f64; 3]>,
-    /// ln of the force, and its slope over ln of the depth, at equal distances of ln of the depth up to the last one, of other curves.
+    /// ln of the depth of the first node, and the distance to the next one.
+    first: f64,
+    step: f64,
+    /// ln of the force, and its slope over ln of the depth.
     nodes: Vec<[f64; 2]>,
 }
 
-/// Number of the nodes, between which a cubic is exact to 1e-9.
-const NODES: usize = 2048;
-
-/// Deviation of an exponent from a state to the next below which the states are a closed form.
-const CLOSED: f64 = 1e-12;
-
 impl Tip {
-    pub(super) fn new(states: &Arc<ElasticStates>) -> Tip {
-        let rest = states.approach(0.0);
-        let last = states.states().last().map_or(0.0, |state| state.level);
-        let power = match states.states() {
-            [a, b] if rest == 0.0 => {
-                let exponent = (b.level / a.level).ln() / (b.approach / a.approach).ln();
-                let is_power =
-                    |s: &ElasticState| (s.load_stiffness * s.approach / s.level / exponent - 1.0).abs() < CLOSED;
-                (is_power(a) && is_power(b)).then_some([a.level, a.approach, exponent])
-            }
-            _ => None,
+    /// The depth is 0 at the approach `surface`.
+    pub(super) fn new(curve: usize, tip: &ElasticStates, surface: f64) -> Tip {
+        let (states, depth_of) = (tip.states(), |state: &ElasticState| state.approach - surface);
+        let exponent = |state: &ElasticState| state.load_stiffness * depth_of(state) / state.level;
+        let last_depth = states.last().map_or(0.0, |last| tip.approach(last.level) - surface);
+        let few = states.iter().find(|state| tip.grid().is_none() || state.cells >= FEW_CELLS);
+        let is_power = tip.grid().is_none() || surface < tip.approach(0.0);
+        let start = few.filter(|_| is_power);
+        let count = match states {
+            [a, b] if (exponent(a) / exponent(b) - 1.0).abs() < CLOSED => 2,
+            _ => NODES,
         };
-        let mut tip = Tip {
-            states: Arc::clone(states),
-            rest,
-            last_depth: states.approach(last) - rest,
-            power,
-            nodes: Vec::new(),
+        let first = start.map_or(TOUCH * last_depth, depth_of).ln();
+        let step = (last_depth.ln() - first) / (count - 1) as f64;
+        let node = |k: usize| {
+            let depth = (first + step * k as f64).exp();
+            let level = tip.level_at((surface + depth).min(surface + last_depth));
+            // the derivative of the curve that the states interpolate
+            let [low, high] = [1.0 - NEAR, 1.0 + NEAR].map(|factor| tip.approach(level * factor));
+            [level.ln(), 2.0 * NEAR * depth / (high - low)]
         };
-        if power.is_none() && tip.last_depth > 0.0 {
-            let node = |k: usize| {
-                let depth = tip.last_depth * (TOUCH.ln() * (1.0 - k as f64 / (NODES - 1) as f64)).exp();
-                let level = tip.states.level_at(tip.rest + depth);
-                [level.ln(), tip.stiffness(level) * depth / level]
-            };
-            tip.nodes = (0..NODES).map(node).collect();
+        let mut nodes: Vec<[f64; 2]> = (0..count).map(node).collect();
+        for (at, state) in [(0, start), (count - 1, states.last())] {
+            nodes[at] = state.map_or(nodes[at], |state| [state.level.ln(), exponent(state)]);
         }
-        tip
-    }
-
-    /// Force and stiffness at a depth between the nodes.
-    fn between(&self, depth: f64) -> Option<[f64; 2]> {
-        let step = -TOUCH.ln() / (NODES - 1) as f64;
-        let place = ((depth / self.last_depth).ln() - TOUCH.ln()) / step;
-        let k = if (0.0..(NODES - 1) as f64).contains(&place) { place as usize } else { return None };
-        let ([a, da], [b, db], t) = (*self.nodes.get(k)?, *self.nodes.get(k + 1)?, place - k as f64);
-        let (values, slopes) = ([a, b], [da * step, db * step]);
-        let (force, slope) = (hermite(values, slopes, t).exp(), hermite_slope(values, slopes, t) / step);
-        Some([force, force * slope / depth]).filter(|[force, _]| force.is_finite())
+        Tip { curve, last_depth, first, step, nodes }
     }
 
     /// Depth of the last state \[m\].
@@ -96,47 +75,37 @@ impl Tip {
         self.last_depth
     }
 
-    /// The elastic contact at a depth; `None` beyond the last state.
-    pub(super) fn at<T: Real>(&self, depth: T) -> Option<Elastic<T>> {
+    /// The error of a depth beyond the last state.
+    pub(super) fn beyond(&self, depth: f64) -> Error {
+        Error::BeyondStates { curve: self.curve, depth }
+    }
+
+    /// The elastic contact at a depth.
+    pub(super) fn at<const N: usize>(&self, depth: Real<N>) -> Result<Elastic<N>> {
         let at = depth.value();
         if at <= 0.0 {
-            return Some(self.first());
+            return Ok(self.first());
         }
-        if let Some([force, unit, exponent]) = self.power.filter(|_| at <= self.last_depth) {
-            let force = force * (at / unit).powf(exponent);
-            let stiffness = exponent * force / at;
-            return Some(Elastic::of(depth, [force, stiffness, (exponent - 1.0) * stiffness / at]));
+        if at > self.last_depth * (1.0 + NEAR) {
+            return Err(self.beyond(at));
         }
-        let [level, stiffness] = self.between(at).or_else(|| {
-            let level = self.states.level_at(self.rest + at.min(self.last_depth));
-            let inside = at <= self.last_depth * (1.0 + NEAR) && level.is_finite();
-            inside.then(|| [level, self.stiffness(level)])
-        })?;
-        // only derivatives need it
-        let growth = if T::DERIVES { self.growth(level) * stiffness } else { 0.0 };
-        Some(Elastic::of(depth, [level, stiffness, growth]))
+        let place = (at.ln() - self.first) / self.step;
+        let k = (place as usize).min(self.nodes.len() - 2);
+        let ([a, from], [b, to]) = (self.nodes[k], self.nodes[k + 1]);
+        let slope_at = |t: f64| hermite_slope([a, b], [from * self.step, to * self.step], t) / self.step;
+        let t = place.max(0.0) - k as f64;
+        let (slope, below) = (slope_at(t), place.min(0.0) * self.step);
+        let force = (hermite([a, b], [from * self.step, to * self.step], t) + slope * below).exp();
+        // the slope of a cubic is a parabola, whose differences are exact
+        let bend = if below < 0.0 { 0.0 } else { (slope_at(t + 0.5) - slope_at(t - 0.5)) / self.step };
+        let (stiffness, growth) = (force * slope / at, force * (slope * (slope - 1.0) + bend) / (at * at));
+        Ok(Elastic { force: depth.mapped(force, stiffness), stiffness: depth.mapped(stiffness, growth) })
     }
 
-    /// The elastic contact at first touch: only a flat punch is stiff there. The stiffness is a secant, since a rough or layered tip rests
-    /// at an approach that hides the digits of smaller depths.
-    pub(super) fn first<T: Real>(&self) -> Elastic<T> {
-        let depth = TOUCH * self.last_depth;
-        let stiffness = match self.power {
-            Some([.., exponent]) if exponent > 1.0 + CLOSED => 0.0,
-            _ => self.states.level_at(self.rest + depth) / depth,
-        };
-        Elastic { force: T::from(0.0), stiffness: T::from(stiffness) }
-    }
-
-    /// dS/dl at a level.
-    fn growth(&self, level: f64) -> f64 {
-        let [low, high] = [1.0 - APART, 1.0 + APART].map(|factor| self.stiffness(level * factor));
-        (high - low) / (2.0 * APART * level)
-    }
-
-    /// dl/dδ between two levels nearby: the derivative of the curve that the states interpolate.
-    fn stiffness(&self, level: f64) -> f64 {
-        let [low, high] = [1.0 - NEAR, 1.0 + NEAR].map(|factor| self.states.approach(level * factor));
-        2.0 * NEAR * level / (high - low)
+    /// The elastic contact at first touch, where only a flat punch or a cell is stiff.
+    pub(super) fn first<const N: usize>(&self) -> Elastic<N> {
+        let [force, exponent] = self.nodes[0];
+        let stiffness = if exponent < FLAT { (force - self.first).exp() } else { 0.0 };
+        Elastic { force: Real::from(0.0), stiffness: Real::from(stiffness) }
     }
 }

@@ -14,7 +14,8 @@ use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
-use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, count_within, length, positive};
+use crate::error::{AdhesionError, Error, KernelError, ONE_PROCESS, Refusal, Result, Special, StepError};
+use crate::error::{count_within, length, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
@@ -59,7 +60,7 @@ impl Builder {
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
-        rows.together(|| {
+        rows.unless_lost(|| {
             let (parts, gap, even, region) = self.shared_parts(&gaps, &rows)?;
             rows.agree(parts.footprint(1).check(&region, 0))?;
             let indenter = gap.on(&region, &self.grid, even);
@@ -96,7 +97,7 @@ impl Builder {
     fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
         // for the agreement on the grid, before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
-        anything.together(|| {
+        anything.unless_lost(|| {
             anything.agree(self.may_be_shared())?;
             let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
             let Settings { tolerance, symmetry, .. } = self.settings;
@@ -108,19 +109,18 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
-        self.special().map_or(Ok(()), |[what, _]| Err(Error::not_shared(what)))
+        Special::Ranks.refuses(self.special().map(|(is, what, _)| (is, what, ONE_PROCESS)))
     }
 
     /// What neither ranks nor surfaces that attract each other cover, and what to do.
-    fn special(&self) -> Option<[&'static str; 2]> {
+    fn special(&self) -> [Refusal; 4] {
         let Settings { solver, time_rule, frame, .. } = self.settings;
-        let refused = [
-            (self.gaps.len() > 1, ["a contact of several rigid bodies", "compute one body"]),
-            (solver != Solver::ActiveSet, ["Solver::PolonskyKeer", "take Solver::ActiveSet"]),
-            (!time_rule.needs_series(), ["a direct sum", "take TimeRule::Exponential"]),
-            (frame != Frame::Bodies, ["Frame::Indenter", "take Frame::Bodies"]),
-        ];
-        refused.into_iter().find(|(refused, _)| *refused).map(|(_, what)| what)
+        [
+            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
+            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
+            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
+            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
+        ]
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -162,7 +162,7 @@ impl Builder {
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
-            return rows.together(|| {
+            return rows.unless_lost(|| {
                 let (parts, _, _, region) = self.shared_parts(&self.gaps, &rows)?;
                 Ok(parts.footprint(1).on(&region))
             });
@@ -189,10 +189,11 @@ impl Builder {
     fn attraction_is_covered(&self) -> Result<()> {
         let cure =
             "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
-        let planned = self.planned.then_some(["a grid that was planned without attraction", cure]);
-        let shared = self.ranks.is_some().then_some(["a contact that ranks share out", "compute it in one process"]);
-        let refused = self.special().or(shared).or(planned);
-        refused.map_or(Ok(()), |[what, cure]| Err(Error::not_covered(Special::Attraction, what, cure)))
+        Special::Attraction.refuses(self.special())?;
+        Special::Attraction.refuses([
+            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
+            (self.planned, "a grid that was planned without attraction", cure),
+        ])
     }
 
     /// Material, kernel and history.

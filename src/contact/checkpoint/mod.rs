@@ -55,7 +55,7 @@ impl ViscoelasticContact {
     /// Puts a saved state in the place of this one, and returns the run that saved it.
     pub(crate) fn resume_with<P: SavedRun>(&mut self, path: &Path) -> Result<Option<P>> {
         let rows = self.computation.state.region.rows();
-        rows.together(|| {
+        rows.unless_lost(|| {
             let (mut state, progress) = self.read(path, &rows)?;
             state.sum_up();
             if state.indenter_is_new {

@@ -43,7 +43,7 @@ impl ViscoelasticContact {
         let State { region, .. } = &self.computation.state;
         let rows = region.rows();
         count_within("rank", to, to < rows.ranks(), "less than the number of ranks")?;
-        rows.together(|| {
+        rows.unless_lost(|| {
             rows.agree(exact_length("field", field.len(), region.shown_len()))?;
             let [n1, n2] = self.grid().cells();
             let brought = self.bring(field, Some(to), 0..n1, 0..n2)?;
@@ -116,7 +116,7 @@ impl ViscoelasticContact {
     /// Returns `own` if all ranks succeed, else an error on every rank.
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
-        rows.together(|| rows.agree(own))
+        rows.unless_lost(|| rows.agree(own))
     }
 
     /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.

@@ -120,7 +120,7 @@ impl ViscoelasticContact {
         for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
             let q = kernel
                 .rows()
-                .together(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
+                .unless_lost(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
                 .map_err(|(iterations, residual)| {
                     let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
                     let is_active_set = self.settings().solver == Solver::ActiveSet;
@@ -219,7 +219,7 @@ impl ViscoelasticContact {
         let rows = self.computation.state.region.rows();
         let line_of = |field: &[f64]| self.line_of(field, along, line);
         let [pressure, displacement, gap] =
-            rows.together(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&field)?]))?;
+            rows.unless_lost(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&field)?]))?;
         let traction = if self.attraction().is_some() {
             self.traction_into(&mut field)?;
             line_of(&field)?

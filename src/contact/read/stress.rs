@@ -59,7 +59,7 @@ impl StressHistory {
     ///
     /// # Errors
     /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`]), so that the bodies move under
-    /// it, or there is not enough memory.
+    /// it, the stress in the body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
     pub fn new(contact: &ViscoelasticContact) -> Result<StressHistory> {
         StressHistory::of_body(contact, 0)
     }
@@ -79,6 +79,7 @@ impl StressHistory {
             return Err(Error::WrongFrame { what: "a history of the stress" });
         }
         let law = contact.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
+        SubsurfaceStress::body_of(contact.kernel(), !law.terms.is_empty())?;
         let peak = contact.max_pressure();
         within("pressure where the history of the stress begins", peak, peak == 0.0, "0: begin before the first load")?;
         let cells = contact.grid().len();

@@ -39,7 +39,7 @@ pub(crate) struct State {
     pub(crate) previous: Equilibrium,
     pub(crate) start: StepStart,
     pub(crate) extrapolation: Extrapolation,
-    /// The greatest means of displacement and v over the contact so far, as far as errors were taken relative to them.
+    /// The greatest means of displacement and v over the contact so far: errors of smaller ones are relative to parts of these.
     pub(crate) greatest: [f64; 2],
 }
 

@@ -95,7 +95,7 @@ impl ViscoelasticContact {
 
     fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
-        rows.together(|| {
+        rows.unless_lost(|| {
             let requested = self.request_next(dt, loads);
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
             let step = rows.agree(requested)?;
@@ -120,14 +120,15 @@ impl ViscoelasticContact {
         Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, cancelled: None })
     }
 
-    /// The motion that a load leaves free to the body of a contact in steady motion, if it can be balanced.
-    pub(crate) fn free_motion(&self, load: Load) -> Result<Freedom> {
+    /// The motion that a load leaves free to the body of a contact in steady motion, if it can be balanced, and the part that it prescribes, whose approach
+    /// counts from the datum of the gap.
+    pub(crate) fn steady_motion(&self, load: Load) -> Result<(Freedom, RigidMotion)> {
         let loads = [load];
         let step = self.request(0.0, 0.0, &loads, self.settings().tolerance)?;
         validate_loads(&self.scene, &step)?;
         let mut free = self.computation.trial.free.clone();
         find_free_motions(&self.scene, &self.computation.state.region, &step, &mut free);
-        Ok(free[0])
+        Ok((free[0], step.prescribed(0)))
     }
 
     /// Rejects a pressure at an edge of the grid that is not periodic, unless the settings allow it.
@@ -161,7 +162,7 @@ impl ViscoelasticContact {
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other
         let cells = if region.is_shared() { 0 } else { region.len() };
-        let tried = rows.together(|| {
+        let tried = rows.unless_lost(|| {
             rows.same(marks(step))?;
             // ranks would see the flag in different iterations: they ask once a step
             if step.cancelled.is_some_and(|flag| rows.any(flag.load(Ordering::Relaxed))) {

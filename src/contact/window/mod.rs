@@ -27,7 +27,7 @@ pub(crate) struct Window {
     /// The number of the indenter that the gap belongs to.
     indenter: Option<u64>,
     /// Exchange of halo rows, if ranks share out the region.
-    beside: Option<(HaloExchange, HaloRows)>,
+    halo: Option<(HaloExchange, HaloRows)>,
 }
 
 #[derive(Debug, Clone)]
@@ -45,12 +45,12 @@ impl Window {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
             Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, scene.bodies))),
         };
-        let beside = HaloExchange::new(&rows, rows.cells()[1])
+        let halo = HaloExchange::new(&rows, rows.cells()[1])
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let near = scene.attraction.as_ref().and_then(|_| kernel.near());
         let inverse = scene.attraction.as_ref().and_then(|_| kernel.period_inverse());
         let mut window = Window {
-            beside,
+            halo,
             near,
             inverse,
             work,
@@ -101,7 +101,7 @@ impl Window {
 
     /// The halo row of a field before the local rows, if another rank has it.
     pub(crate) fn row_before(&mut self, field: &[f64]) -> Option<&[f64]> {
-        let (neighbours, ghosts) = self.beside.as_mut()?;
+        let (neighbours, ghosts) = self.halo.as_mut()?;
         let [rows, columns] = self.kernel.grid().cells();
         neighbours.fetch(ghosts, columns, rows, |row, out| out.copy_from_slice(&field[row * columns..][..columns]));
         ghosts.before()

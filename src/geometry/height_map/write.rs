@@ -137,7 +137,7 @@ mod tests {
     fn gsf_is_read_back_in_single_precision() {
         let (map, mut file) = (map(), Vec::new());
         map.write_gsf(&mut file).unwrap();
-        let back = HeightMap::from_gsf(&file[..]).unwrap();
+        let back = HeightMap::from_gsf(&file[..], None).unwrap();
         let single = map.heights.iter().map(|&height| f64::from(height as f32)).collect();
         let expected = HeightMap { heights: single, ..map };
         assert_eq!(bits(&back)[2..], bits(&expected)[2..]);

@@ -151,3 +151,21 @@ fn a_long_step_forgets() {
         }
     }
 }
+
+/// In a long hold stresses relax to zero, and do not stay at numbers too small to be fast.
+#[test]
+fn what_has_relaxed_is_forgotten() {
+    let times = [1e-2, 0.3, 10.0, 30.0, 100.0, 1e9];
+    let body = creep(1.0, 0.0, &times.map(|time| (0.2, time)));
+    for interpolant in INTERPOLANTS {
+        let mut cell = Cell::new(&body);
+        for _ in 0..40_000 {
+            cell.step(1.0, 1.0, interpolant);
+        }
+        let mut found = Vec::new();
+        cell.field.change_start(&mut [0.0], |values| found.extend_from_slice(values));
+        assert!(!found.iter().any(|value| value.is_subnormal()), "{interpolant:?}: {found:?}");
+        assert!(found.iter().filter(|value| **value == 0.0).count() >= 4, "{interpolant:?}: {found:?}");
+        assert!(found.iter().filter(|value| **value > 1e-10).count() >= 2, "{interpolant:?}: {found:?}");
+    }
+}

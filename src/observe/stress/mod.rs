@@ -121,16 +121,23 @@ impl SubsurfaceStress {
         pressure: &[f64],
         reduced: &[f64],
     ) -> Result<SubsurfaceStress> {
-        if kernel.half_space_below() == Some(HalfSpace::Periodic) {
-            let body = format!("{kernel}, whose Poisson's ratio changes");
-            return Err(KernelError::NoStress { body }.into());
-        }
+        SubsurfaceStress::body_of(kernel, true)?;
         SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 0.0]), ("reduced pressure", reduced, [0.0, 1.0])])
+    }
+
+    /// The half-space whose stress is known, with a constant Poisson's ratio or one that `changes`.
+    pub(crate) fn body_of(kernel: &InfluenceKernel, changes: bool) -> Result<HalfSpace> {
+        let refused = |more: &str| KernelError::NoStress { body: format!("{kernel}{more}") }.into();
+        match kernel.half_space_below() {
+            None => Err(refused("")),
+            Some(HalfSpace::Periodic) if changes => Err(refused(", whose Poisson's ratio changes")),
+            Some(body) => Ok(body),
+        }
     }
 
     fn of(kernel: &InfluenceKernel, fields: &[(&'static str, &[f64], Weights)]) -> Result<SubsurfaceStress> {
         let grid = kernel.grid().clone();
-        let body = kernel.half_space_below().ok_or_else(|| KernelError::NoStress { body: kernel.to_string() })?;
+        let body = SubsurfaceStress::body_of(kernel, false)?;
         for (name, field, _) in fields {
             exact_length(name, field.len(), grid.len())?;
             for &value in *field {
@@ -259,7 +266,7 @@ impl SubsurfaceStress {
     }
 
     fn check_depth(&self, depth: f64) -> Result<()> {
-        let near = "at least half the longer side of a cell, nearer the stress varies within a cell";
+        let near = "at least half the longest side of a cell across which the grid resolves anything (`least_depth`): nearer the stress varies within a cell";
         within("depth", depth, depth >= self.least_depth, near)?;
         within("depth", depth, depth <= GREATEST_DEPTH, "at most 1e100 m").map(drop)
     }

@@ -1,13 +1,17 @@
 //! Steps in which the contact shrinks: columns leave the tip where their pressure falls to zero.
 
 use super::{CONVERGED, Cycle, Edge, Node};
-use crate::forward::Stop;
+use crate::error::Result;
+use crate::forward::column::Column;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::real::Real;
 
-impl<T: Real> Cycle<'_, T> {
+/// Columns nearer to the last than this fraction of the greatest depth are as it is.
+const NEAR: f64 = 2e-4;
+
+impl<const N: usize> Cycle<'_, N> {
     /// The contact when the column touched that is at a share of the interval after a node; `then` has the terms.
-    pub(super) fn look(&mut self, node: usize, share: T) -> Result<Node<T>, Stop> {
+    pub(super) fn look(&mut self, node: usize, share: Real<N>) -> Result<Node<N>> {
         let count = self.terms.len();
         let past = &self.past[node * count..];
         let a = self.nodes[node];
@@ -20,7 +24,7 @@ impl<T: Real> Cycle<'_, T> {
         let [length, rise, width] =
             [b.time - a.time, b.depth - a.depth, b.extent - a.extent].map(|whole| share * whole);
         let extent = a.extent + width;
-        let elastic = self.tip.at(extent).ok_or(Stop::Beyond(extent.value()))?;
+        let elastic = self.tip.at(extent)?;
         let growth = Growth::new((a.extent, a.elastic), (extent, elastic), rise, a.fresh && b.fresh);
         self.part.set(length, false, &self.prony.rates);
         for i in 0..count {
@@ -34,9 +38,9 @@ impl<T: Real> Cycle<'_, T> {
 
     /// The pressure of a column at a sample, times the length that one sample adds to it, if the tip moves so far that the spring is
     /// balanced with the contact up to this column.
-    fn pressure(&mut self, node: usize, share: T, time: T, z: T) -> Result<[T; 3], Stop> {
+    fn pressure(&mut self, node: usize, share: Real<N>, time: Real<N>, z: Real<N>) -> Result<[Real<N>; 3]> {
         let at = self.look(node, share)?;
-        let (mut force, mut past) = (T::from(0.0), T::from(0.0));
+        let (mut force, mut past) = (Real::from(0.0), Real::from(0.0));
         for (term, &rate) in self.then.iter().zip(&self.prony.rates) {
             let decay = (-(rate * (time - at.time))).exp();
             past += decay * (term.tip - term.edge);
@@ -48,16 +52,23 @@ impl<T: Real> Cycle<'_, T> {
     }
 
     /// The contact shrinks to the column without pressure.
-    pub(super) fn shrink(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
-        let (zero, one) = (T::from(0.0), T::from(1.0));
-        self.columns.push(sample - 1, self.edge.extent, self.depth, self.terms.iter().map(|term| term.edge));
+    pub(super) fn shrink(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
+        let (zero, one) = (Real::from(0.0), Real::from(1.0));
+        let last = Column { extent: self.edge.extent, surface: self.depth, sample: sample - 1 };
+        self.columns.push(last, self.terms.iter().map(|term| term.edge));
         let (mut node, mut upper) = (self.edge.node, self.edge.share);
         loop {
-            if upper.value() > 0.0 && self.pressure(node, zero, time, z)?[0].value() >= 0.0 {
+            let [pressure, _, rise] = self.pressure(node, zero, time, z)?;
+            if upper.value() > 0.0 && pressure.value() >= 0.0 {
                 break;
             }
+            let (at, last) = (self.nodes[node], self.columns.next_extent().unwrap_or_default());
+            if node == 0 || upper.value() > 0.0 && (last - at.extent).value() > NEAR * self.greatest {
+                self.release(sample, at, time, rise);
+            }
             if node == 0 {
-                return self.separate(sample, time, z);
+                self.separate(z);
+                return Ok(());
             }
             (node, upper) = (node - 1, one);
         }
@@ -83,22 +94,23 @@ impl<T: Real> Cycle<'_, T> {
         Ok(())
     }
 
-    /// The last column leaves the tip. It is free from the sample on, where it would be without pressure.
-    fn separate(&mut self, sample: usize, time: T, z: T) -> Result<(), Stop> {
-        let zero = T::from(0.0);
-        let [.., rise] = self.pressure(0, zero, time, z)?;
-        let at = self.nodes[0];
+    /// The column of a node leaves the tip, from the last look at it. It is free from the sample on, where it would be without pressure.
+    fn release(&mut self, sample: usize, at: Node<N>, time: Real<N>, rise: Real<N>) {
         let state = |i: usize| {
             let (then, decay) = (self.then[i], (-(self.prony.rates[i] * (time - at.time))).exp());
             let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
             self.moments.decay[i] * self.terms[i].tip + moved - decay * (then.tip - then.edge)
         };
-        self.columns.push(sample, zero, self.depth + rise, (0..self.terms.len()).map(state));
+        let column = Column { extent: at.extent, surface: self.depth + rise, sample };
+        self.columns.push(column, (0..self.terms.len()).map(state));
+    }
+
+    /// The last column has left the tip.
+    fn separate(&mut self, z: Real<N>) {
         self.nodes.clear();
         self.past.clear();
         self.terms.fill(Term::default());
         self.depth = z;
         self.is_node = true;
-        Ok(())
     }
 }

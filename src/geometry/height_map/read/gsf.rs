@@ -15,68 +15,54 @@ impl HeightMap {
     /// Reads a Gwyddion Simple Field 1.0, the [format](http://gwyddion.net/documentation/user-guide-en/gsf.html) in
     /// which Gwyddion exchanges single maps: heights in single precision, NaN where nothing was measured.
     ///
-    /// The file must state lengths and units ([`LengthUnit`]), which the format makes optional;
-    /// [`HeightMap::from_gsf_with`] reads files without units. The first row is the top. `XOffset` and `YOffset` are
-    /// ignored.
-    ///
-    /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as
-    /// [`HeightMap::new`] if its map is invalid.
-    pub fn from_gsf(reader: impl Read) -> Result<HeightMap> {
-        from_gsf(reader, None)
-    }
-
-    /// As [`HeightMap::from_gsf`], for a file whose lengths or heights have no unit: they are in `unit`. Units stated
-    /// in the file take precedence.
+    /// The file must state lengths, which the format makes optional. Lengths or heights without a unit are in `fallback`; without one, the file must state its units
+    /// ([`LengthUnit`]), too. The first row is the top. `XOffset` and `YOffset` are ignored.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
     ///
     /// let mut file = b"Gwyddion Simple Field 1.0\nXRes = 1\nYRes = 2\nXReal = 5\nYReal = 10\nXYUnits = mm\n\0\0".to_vec();
     /// file.extend([1.0_f32, 2.0].iter().flat_map(|height| height.to_le_bytes()));
-    /// assert!(HeightMap::from_gsf(&file[..]).is_err());
-    /// let map = HeightMap::from_gsf_with(&file[..], LengthUnit::Micrometre)?;
+    /// assert!(HeightMap::from_gsf(&file[..], None).is_err());
+    /// let map = HeightMap::from_gsf(&file[..], Some(LengthUnit::Micrometre))?;
     /// assert_eq!(map, HeightMap::new([1, 2], [5e-3, 10e-3], vec![2e-6, 1e-6])?);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
-    /// As [`HeightMap::from_gsf`].
-    pub fn from_gsf_with(reader: impl Read, unit: LengthUnit) -> Result<HeightMap> {
-        from_gsf(reader, Some(unit))
+    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as
+    /// [`HeightMap::new`] if its map is invalid.
+    pub fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap> {
+        let file = bytes(reader, FORMAT)?;
+        let Some(rest) = file.strip_prefix(MAGIC.as_bytes()) else {
+            return Err(MapError::Magic { format: FORMAT, magic: MAGIC.trim_end() }.into());
+        };
+        let Some(end) = rest.iter().position(|&byte| byte == 0) else {
+            return Err(MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
+        };
+        // titles may contain any bytes, and units are in Latin-1 in some files
+        let (lines, _) = by_lines(&rest[..end]);
+        let header = Header::of_lines(FORMAT, &lines);
+        let unit = |key: &'static str| match (header.get(key), fallback) {
+            (Some(symbol), _) => symbol.parse(),
+            (None, Some(unit)) => Ok(unit),
+            (None, None) => Err(MapError::NoUnit { format: FORMAT, key }.into()),
+        };
+        let cells = [header.count("XRes")?, header.count("YRes")?];
+        let lengths = [header.positive("XReal")?, header.positive("YReal")?];
+        let (lateral, vertical) = (unit("XYUnits")?, unit("ZUnits")?);
+        let spacing = [0, 1].map(|axis| lateral.to_metres(lengths[axis]) / cells[axis] as f64);
+        let count = count(cells, spacing)?;
+        // one to four NUL bytes, up to a multiple of four from the start of the file
+        let header_length = MAGIC.len() + end;
+        let start = header_length + 4 - header_length % 4;
+        let padding = file.get(header_length..start).unwrap_or_default();
+        if padding.is_empty() || padding.iter().any(|&byte| byte != 0) {
+            return Err(MapError::Missing { format: FORMAT, key: "padding of NUL bytes to a multiple of four" }.into());
+        }
+        let rows = Number::little(Kind::Float, 4).decode_all(FORMAT, &file[start..], count, true)?;
+        HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| vertical.to_metres(height))
     }
-}
-
-fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap> {
-    let file = bytes(reader, FORMAT)?;
-    let Some(rest) = file.strip_prefix(MAGIC.as_bytes()) else {
-        return Err(MapError::Magic { format: FORMAT, magic: MAGIC.trim_end() }.into());
-    };
-    let Some(end) = rest.iter().position(|&byte| byte == 0) else {
-        return Err(MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
-    };
-    // titles may contain any bytes, and units are in Latin-1 in some files
-    let (lines, _) = by_lines(&rest[..end]);
-    let header = Header::of_lines(FORMAT, &lines);
-    let unit = |key: &'static str| match (header.get(key), fallback) {
-        (Some(symbol), _) => symbol.parse(),
-        (None, Some(unit)) => Ok(unit),
-        (None, None) => Err(MapError::NoUnit { format: FORMAT, key }.into()),
-    };
-    let cells = [header.count("XRes")?, header.count("YRes")?];
-    let lengths = [header.positive("XReal")?, header.positive("YReal")?];
-    let (lateral, vertical) = (unit("XYUnits")?, unit("ZUnits")?);
-    let spacing = [0, 1].map(|axis| lateral.to_metres(lengths[axis]) / cells[axis] as f64);
-    let count = count(cells, spacing)?;
-    // one to four NUL bytes, up to a multiple of four from the start of the file
-    let header_length = MAGIC.len() + end;
-    let start = header_length + 4 - header_length % 4;
-    let padding = file.get(header_length..start).unwrap_or_default();
-    if padding.is_empty() || padding.iter().any(|&byte| byte != 0) {
-        return Err(MapError::Missing { format: FORMAT, key: "padding of NUL bytes to a multiple of four" }.into());
-    }
-    let rows = Number::little(Kind::Float, 4).decode_all(FORMAT, &file[start..], count, true)?;
-    HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| vertical.to_metres(height))
 }
 
 #[cfg(test)]
@@ -96,7 +82,7 @@ mod tests {
 
     #[test]
     fn first_row_is_the_top() {
-        let map = HeightMap::from_gsf(&file(FULL, &[10.0, 20.0, 30.0, 40.0, f32::NAN, 60.0])[..]).unwrap();
+        let map = HeightMap::from_gsf(&file(FULL, &[10.0, 20.0, 30.0, 40.0, f32::NAN, 60.0])[..], None).unwrap();
         assert_eq!((map.cells, map.spacing), ([3, 2], [6e-6 / 3.0, 1e-3]));
         assert_eq!(map.heights[..2], [40e-9, 10e-9]);
         assert!(map.heights[2].is_nan());
@@ -105,21 +91,21 @@ mod tests {
         let mut latin = file(&FULL.replace("ZUnits = nm", "ZUnits = ?m"), &[1.0; 6]);
         let at = latin.iter().position(|&byte| byte == b'?').unwrap();
         latin[at] = 0xb5;
-        assert_eq!(HeightMap::from_gsf(&latin[..]).unwrap().heights, [1e-6; 6]);
+        assert_eq!(HeightMap::from_gsf(&latin[..], None).unwrap().heights, [1e-6; 6]);
     }
 
     #[test]
     fn headers_of_every_length_are_padded() {
         for length in 0..9 {
             let header = format!("{FULL}Note = {}\n", "x".repeat(length));
-            let map = HeightMap::from_gsf(&file(&header, &[1.0; 6])[..]).unwrap();
+            let map = HeightMap::from_gsf(&file(&header, &[1.0; 6])[..], None).unwrap();
             assert_eq!(map.heights, [1e-9; 6]);
         }
     }
 
     #[test]
     fn errors_of_malformed_files_name_the_defect() {
-        let read = |header: &str, heights: &[f32]| HeightMap::from_gsf(&file(header, heights)[..]).unwrap_err();
+        let read = |header: &str, heights: &[f32]| HeightMap::from_gsf(&file(header, heights)[..], None).unwrap_err();
         let six = [1.0; 6];
         let size =
             |found| MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 24, exact: true };
@@ -152,15 +138,15 @@ mod tests {
     #[test]
     fn damaged_headers_are_refused() {
         let magic = MapError::Magic { format: FORMAT, magic: "Gwyddion Simple Field 1.0" };
-        assert_eq!(HeightMap::from_gsf(&b"Gwyddion Simple Field 2.0\n"[..]).unwrap_err(), magic.clone().into());
-        assert_eq!(HeightMap::from_gsf(&b""[..]).unwrap_err(), magic.into());
+        assert_eq!(HeightMap::from_gsf(&b"Gwyddion Simple Field 2.0\n"[..], None).unwrap_err(), magic.clone().into());
+        assert_eq!(HeightMap::from_gsf(&b""[..], None).unwrap_err(), magic.into());
         let unterminated = format!("{MAGIC}{FULL}");
-        let error = HeightMap::from_gsf(unterminated.as_bytes()).unwrap_err();
+        let error = HeightMap::from_gsf(unterminated.as_bytes(), None).unwrap_err();
         assert_eq!(error, MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
         for cut in 0..4 {
             let mut truncated = format!("{MAGIC}{FULL}").into_bytes();
             truncated.extend(std::iter::repeat_n(0, cut));
-            assert!(HeightMap::from_gsf(&truncated[..]).is_err(), "{cut}");
+            assert!(HeightMap::from_gsf(&truncated[..], None).is_err(), "{cut}");
         }
     }
 
@@ -168,7 +154,7 @@ mod tests {
     fn absurd_sizes_are_refused_before_allocating() {
         for size in ["65000", "4000000000", "18446744073709551615"] {
             let header = FULL.replace("XRes = 3", &format!("XRes = {size}")).replace("YRes=2", &format!("YRes={size}"));
-            assert!(HeightMap::from_gsf(&file(&header, &[1.0; 6])[..]).is_err());
+            assert!(HeightMap::from_gsf(&file(&header, &[1.0; 6])[..], None).is_err());
         }
     }
 }

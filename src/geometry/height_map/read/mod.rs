@@ -61,7 +61,7 @@ impl HeightMap {
         let name = || path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
-            "gsf" => HeightMap::from_gsf(input::open(path)?),
+            "gsf" => HeightMap::from_gsf(input::open(path)?, None),
             "sdf" => HeightMap::from_sdf(input::open(path)?),
             "sur" | "pro" => HeightMap::from_sur(input::open(path)?),
             #[cfg(feature = "x3p")]

@@ -16,7 +16,7 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
     let xyz = b"0 0 1\n1 0 2\n2 0 nan\n0 1 4\n1 1 5\n2 1 6\n".to_vec();
     #[cfg_attr(not(any(feature = "npy", feature = "x3p")), expect(unused_mut, reason = "more with features"))]
     let mut files: Vec<(_, _, Reader)> = vec![
-        ("gsf", gsf, |file| HeightMap::from_gsf(file)),
+        ("gsf", gsf, |file| HeightMap::from_gsf(file, None)),
         ("sdf", sdf, |file| HeightMap::from_sdf(file)),
         ("sur", sur(16, &[1, 2, 3, 4, 5, 6]), |file| HeightMap::from_sur(file)),
         ("binary sdf", binary_sdf(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
