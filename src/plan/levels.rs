@@ -48,7 +48,7 @@ const ALWAYS_ADDED: usize = 48;
 const TRIED_ACROSS: [f64; 9] = [16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0];
 const SAFETY: f64 = 2.0;
 /// The pressure of an outermost cell is at most so many times the mean over its width: it is the greatest just before the next cell joins.
-const OVERSHOOT: f64 = 1.6;
+const OVERSHOOT: f64 = 2.0;
 
 /// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {

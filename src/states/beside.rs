@@ -334,6 +334,35 @@ impl Beside {
         middles.into_iter().try_for_each(|level| self.solve(level).map(drop))
     }
 
+    /// Errors of the pressure for that of the level on the curve, and for its change since `before`; and the run on the curve as it is now.
+    fn error_of_level(
+        &mut self,
+        before: &Found,
+        history: &dyn LoadHistory,
+        (time, after): (f64, bool),
+    ) -> Result<([f64; 2], Found)> {
+        let last = self.rows.len() - 1;
+        let second = |k: usize| (0..=last).filter(move |row| (row + k).is_multiple_of(2) || *row == 0 || *row == last);
+        let [even, odd] = [0, 1].map(|k| second(k).map(|row| self.rows[row]).collect());
+        let [mut even, mut odd] =
+            [self.on_curve(even, history, (time, after))?, self.on_curve(odd, history, (time, after))?];
+        let mut found = self.on_curve(self.rows.clone(), history, (time, after))?;
+        // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
+        let mut density = before.density().max(found.density()).max(even.density()).max(odd.density());
+        let level = found.contact.level();
+        let mut off = (level - even.contact.level()).abs().max((level - odd.contact.level()).abs());
+        if level == 0.0 {
+            // apart by less than what the curves may err by?
+            let [own, even, odd] = [found.clearance()?, even.clearance()?, odd.clearance()?];
+            let nearer = (own - even).abs().max((own - odd).abs()) / OF_SECOND - own;
+            let touched = found.contact.states().level_where(0.0, nearer);
+            (off, density) = (off.max(OF_SECOND * touched), density.max(self.glass));
+        }
+        let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
+        let [of_curve, change] = [amplified(off) / OF_SECOND, amplified(level - before.contact.level())];
+        Ok(([of_curve, change], found))
+    }
+
     /// The pressure at a time, after a jump of the load there or before it.
     pub(crate) fn pressure(&mut self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<FoundPressure> {
         let mut found = self.repeated.at(history, time, after)?;
@@ -354,26 +383,15 @@ impl Beside {
             if self.by_force || attempt == MOST_ATTEMPTS {
                 break;
             }
-            let last = self.rows.len() - 1;
-            let second =
-                |k: usize| (0..=last).filter(move |row| (row + k).is_multiple_of(2) || *row == 0 || *row == last);
-            let [even, odd] = [0, 1].map(|k| second(k).map(|row| self.rows[row]).collect());
-            let [mut even, mut odd] =
-                [self.on_curve(even, history, (time, after))?, self.on_curve(odd, history, (time, after))?];
-            found = self.on_curve(self.rows.clone(), history, (time, after))?;
-            // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
-            let mut density = profile.density().max(found.density()).max(even.density()).max(odd.density());
-            let level = found.contact.level();
-            let mut off = (level - even.contact.level()).abs().max((level - odd.contact.level()).abs());
-            if level == 0.0 {
-                // apart by less than what the curves may err by?
-                let [own, even, odd] = [found.clearance()?, even.clearance()?, odd.clearance()?];
-                let nearer = (own - even).abs().max((own - odd).abs()) / OF_SECOND - own;
-                let touched = found.contact.states().level_where(0.0, nearer);
-                (off, density) = (off.max(OF_SECOND * touched), density.max(self.glass));
-            }
-            let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
-            let [of_curve, change] = [amplified(off) / OF_SECOND, amplified(level - top)];
+            let ([of_curve, change], next) = match self.error_of_level(&found, history, (time, after)) {
+                // curves through fewer contacts may leave the order of levels
+                Err(Error::States(_) | Error::Step(_)) => {
+                    self.repeated.origin.exchange(self.curve_through(&self.rows)?);
+                    break;
+                }
+                other => other?,
+            };
+            found = next;
             of_level = of_curve + change;
             let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
             if of_curve > allowed && self.rows.len() < MOST_ROWS {

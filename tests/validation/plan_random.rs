@@ -447,7 +447,7 @@ fn plans_promise_the_greatest_pressure_of_smooth_shapes() {
     // a few scenes have no share to speak of
     let [not, yes] = [0, 1].map(|which| promised[1..].iter().map(|kind| kind[which]).sum::<u64>());
     assert!(
-        if count >= 40 { yes >= 2 * not } else { yes > not },
+        if count >= 40 { yes >= 4 * not } else { yes > not },
         "{not} of {} ramps and sines are not promised",
         not + yes
     );

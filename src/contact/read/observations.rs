@@ -37,7 +37,8 @@ impl ViscoelasticContact {
     /// the pressure falls to zero at the edge, and of first order where it is singular there or a shape ends between
     /// cells. The greatest pressure: from its fall to the neighbours of the peak; no figure where this is not the fall
     /// from a smooth peak, as at the tip of a cone, under the edge of a punch or at a rim of high pressure that creep
-    /// leaves. The area: from how sharply the pressure determines the edge.
+    /// leaves. The area: from how sharply the pressure determines the edge. The pressure field: from s, since nearly all of its error is in the cells
+    /// of the rim.
     ///
     /// The true errors of random scenes of all shapes, elastic and creeping, are at most three times the estimates in
     /// all but one of 3300 scenes (docs/accuracy.md). The estimates do not hold for a shape that the cells do not
