@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::contact::indenter::even_axes;
-use crate::contact::step::attraction::Passes;
+use crate::contact::step::attraction::Attracted;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
 use crate::contact::{Indenter, Region, Settings, Solver, State, Trial};
 use crate::error::{Result, count_within};
@@ -106,7 +106,7 @@ impl Footprint<'_> {
         let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
         let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
         let layout = State::layout(indenter, region.clone(), self.history, self.attracts);
-        let passes = if self.attracts { Passes::BYTES_PER_CELL } else { 0 };
+        let passes = if self.attracts { Attracted::BYTES_PER_CELL } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
