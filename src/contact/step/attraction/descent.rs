@@ -32,15 +32,19 @@ const SHORTENINGS: usize = 12;
 const ROUNDING: f64 = 1e-13;
 /// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be smaller by the same factor, since the error
 /// is r over the curvature. The least of so many iterations counts.
-const SOFT: f64 = 0.1;
+const SOFT: f64 = 0.2;
 const REMEMBERED: usize = 8;
 /// Iterations that lose cells before the edge of a line contact is moved on.
 const LOSSES: usize = 16;
 /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
 const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
-/// Where the curvature was less than this along some direction, the softest one is looked for before the step ends, so often at most, as long as it is soft.
+/// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by this factor.
+const SMOOTH: f64 = 0.1;
+/// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
+/// softer than this.
 const SUSPECT: f64 = 0.6;
+const VERY_SOFT: f64 = 0.02;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
 const UNSTABLE: f64 = -1e-4;
@@ -67,7 +71,14 @@ pub(super) struct Balance {
 
 impl Balance {
     /// q of the lift x.
-    pub(super) fn tractions(&self, inverse: &mut PeriodInverse, window: &mut Window, x: &[f64], q: &mut [f64], linear: bool) {
+    pub(super) fn tractions(
+        &self,
+        inverse: &mut PeriodInverse,
+        window: &mut Window,
+        x: &[f64],
+        q: &mut [f64],
+        linear: bool,
+    ) {
         inverse.apply(x, q, &mut window.work);
         let mean = window.kernel.rows().sum(x) / x.len() as f64;
         let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
@@ -110,8 +121,7 @@ impl AttractedStep<'_> {
         trial.solution.motions[0] = ModeCoefficients([if self.wanted.translation { motion } else { 0.0 }, 0.0, 0.0]);
     }
 
-    /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial, with a kernel and its inverse. Returns whether that took an
-    /// iteration.
+    /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial, with a kernel and its inverse.
     pub(super) fn descend_in_gap(
         &self,
         inverse: &mut PeriodInverse,
@@ -119,21 +129,20 @@ impl AttractedStep<'_> {
         window: &mut Window,
         trial: &mut Trial,
         counts: &mut Counts,
-    ) -> Result<bool> {
+    ) -> Result<()> {
         let AttractedStep { step, stop, .. } = *self;
         let (limit, time) = (self.limit(), step.interval.time);
-        let tolerance = |softness: f64| limit * (softness / SOFT).clamp(SMALLEST, 1.0);
         let balance = self.balance(window, inverse);
         if self.lift(balance, trial) || self.state.extrapolation.refresh_is_due() {
             balance.tractions(inverse, window, &trial.solution.potential, &mut trial.solution.attraction, false);
             counts.convolutions += 1;
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
-        let (mut steepest, mut has_last) = (0.0, false);
+        let (mut steepest, mut has_last, mut has_image) = (0.0, false, false);
         // of the last iterations, of all, and of the direction that was looked for
         let (mut measured, mut least, mut softest) = ([1.0_f64; REMEMBERED], 1.0_f64, None::<f64>);
         let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
-        let mut looks = 0;
+        let mut looks = if own.looks { 0 } else { LOOKS };
         for iteration in 0..=MAX_ITERATIONS {
             let mut gradient = self.gradient(balance, window, trial);
             if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
@@ -143,23 +152,24 @@ impl AttractedStep<'_> {
             let recent = measured.iter().fold(1.0_f64, |least, &soft| least.min(soft));
             let soft = if iteration < LEAST_MEASURED { own.softness } else { recent }.min(softest.unwrap_or(1.0));
             let mut leaves = None;
-            if gradient.greatest <= tolerance(soft) {
-                if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < SOFT) {
+            let share = if iteration == 0 { SMOOTH } else { 1.0 };
+            if gradient.greatest <= share * self.tolerance(soft) {
+                if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < VERY_SOFT) {
                     looks += 1;
-                    let softness = self.softest(balance, inverse, own, window, trial, counts);
+                    let softness = self.softest(balance, inverse, own, window, trial, counts, has_image);
                     gradient = self.gradient(balance, window, trial);
-                    (softest, has_last) = (Some(softness), false);
+                    (softest, has_last, has_image) = (Some(softness), false, false);
                     if softness < UNSTABLE {
                         leaves = Some((self.way_out(gradient, own, window, trial), softness));
                         softest = None;
                     }
                 }
                 let soft = soft.min(softest.unwrap_or(1.0));
-                if leaves.is_none() && gradient.greatest <= tolerance(soft) {
+                if leaves.is_none() && gradient.greatest <= self.tolerance(soft) {
                     own.softness = if iteration == 0 { own.softness } else { soft };
                     trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                     self.finish(balance, gradient.multiplier, trial);
-                    return Ok(iteration > 0);
+                    return Ok(());
                 }
             }
             if stop.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
@@ -221,6 +231,7 @@ impl AttractedStep<'_> {
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
             plain = !kept && !has_last;
             has_last = kept && leaves.is_none();
+            has_image = has_last;
             own.in_gap().traction.copy_from_slice(&trial.solution.pressure);
             let Trial { gap, solution, .. } = &*trial;
             let (x, cells) = (&solution.potential, gap.len());
@@ -234,6 +245,7 @@ impl AttractedStep<'_> {
                 self.project(balance, window.kernel.rows(), gap, lift);
                 balance.tractions(inverse, window, lift, image, false);
                 counts.convolutions += 1;
+                has_image = false;
                 // r of the last iteration stays
                 std::mem::swap(image, traction);
                 let tried = self.swap_energy(balance, own, window, trial);
@@ -250,6 +262,11 @@ impl AttractedStep<'_> {
         }
         let change = self.gradient(balance, window, trial).greatest;
         Err(AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance: limit }.into())
+    }
+
+    /// The greatest |r| that ends a descent, over the greatest traction: the error is r over the curvature.
+    pub(super) fn tolerance(&self, softness: f64) -> f64 {
+        self.limit() * (softness / SOFT).clamp(SMALLEST, 1.0)
     }
 
     /// Exchanges x and q of the trial for the tried ones; returns their energy.

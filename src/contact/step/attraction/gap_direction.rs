@@ -20,11 +20,11 @@ const SLOPE_LEFT: f64 = 0.1;
 const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
-/// The softest direction is looked for in so many turns at most, and until this multiple of what the last one gained is less than the curvature, or is clearly
-/// negative.
+/// The softest direction is looked for in at least and at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
+const LEAST_TURNS: usize = 2;
 const MOST_TURNS: usize = 20;
-const GAINS: f64 = 4.0;
 const NEGATIVE: f64 = -1e-2;
+const PRECISE: f64 = 0.5;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
@@ -180,8 +180,8 @@ impl AttractedStep<'_> {
     }
 
     /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
-    /// (Bradbury & Fletcher, Numer. Math. 9, 1966) from a random direction, which has the symmetry of no state. Writes it, with its M d/c, leading downhill,
-    /// and as long as changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
+    /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from the last direction, if it has its image, and a random one. Writes it, with its M d/c, so long that it
+    /// changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
     pub(super) fn softest(
         &self,
         balance: Balance,
@@ -190,10 +190,11 @@ impl AttractedStep<'_> {
         window: &mut Window,
         trial: &mut Trial,
         counts: &mut Counts,
+        has_image: bool,
     ) -> f64 {
         let (law, rows, c) = (self.law, window.kernel.rows().clone(), balance.compliance);
         let Trial { solution, gap, .. } = trial;
-        let (x, r, softening) = (&solution.potential, &solution.attraction, &mut solution.pressure);
+        let (x, softening) = (&solution.potential, &mut solution.pressure);
         let small = DIFFERENCE * law.range();
         for_each_band([&mut *softening], |first, [softening]| {
             for (softening, k) in softening.iter_mut().zip(first..) {
@@ -215,31 +216,20 @@ impl AttractedStep<'_> {
                 field.iter_mut().enumerate().filter(|(k, _)| is_open(*k)).for_each(|(_, y)| *y -= sum / open);
             }
         };
-        v.iter_mut().enumerate().for_each(|(k, v)| *v = softening[k] * random(k));
-        smooth(window, v);
-        balance.tractions(inverse, window, v, image, true);
+        // the first turn goes from the last direction, which has left what is stiff, to one that has the symmetry of no state
+        p.iter_mut().enumerate().for_each(|(k, p)| *p = softening[k] * random(k));
+        smooth(window, p);
+        balance.tractions(inverse, window, p, image_of_p, true);
         counts.convolutions += 2;
+        if !has_image || v.iter().enumerate().any(|(k, v)| *v != 0.0 && !is_open(k)) {
+            std::mem::swap(v, p);
+            std::mem::swap(image, image_of_p);
+            p.fill(0.0);
+            image_of_p.fill(0.0);
+        }
         let [mut softened, mut convex] = rows.sum_terms(|k| Some([softening[k] * v[k] * v[k], v[k] * image[k]]));
-        let mut before = f64::INFINITY;
-        for _ in 0..MOST_TURNS {
-            if !(softened > 0.0 && convex > 0.0) {
-                return 1.0;
-            }
-            let share = softened / convex;
-            for (k, w) in image_of_p.iter_mut().enumerate() {
-                *w = if is_open(k) { softening[k] * v[k] - share * image[k] } else { 0.0 };
-            }
-            smooth(window, image_of_p);
-            let y = &*image_of_p;
-            let [steepest] = rows.sum_terms(|k| Some([y[k] * (softening[k] * v[k] - share * image[k])]));
-            let beta = if before.is_finite() { steepest / convex / before } else { 0.0 };
-            before = steepest / convex;
-            if before <= 0.0 {
-                break;
-            }
-            p.iter_mut().zip(y).for_each(|(p, y)| *p = y + if beta > 0.0 { beta * *p } else { 0.0 });
-            balance.tractions(inverse, window, p, image_of_p, true);
-            counts.convolutions += 2;
+        let mut before = 0.0;
+        for turn in 0..MOST_TURNS {
             let [of_vp, of_pp, with_vp, with_pp] = rows.sum_terms(|k| {
                 let softened = softening[k] * p[k];
                 Some([softened * v[k], softened * p[k], p[k] * image[k], p[k] * image_of_p[k]])
@@ -249,32 +239,52 @@ impl AttractedStep<'_> {
             let e = of_vp * convex - softened * with_vp;
             let root = (b * b - 4.0 * a * e).max(0.0).sqrt();
             let t = if b < 0.0 { 2.0 * e / (-b + root) } else { -(b + root) / (2.0 * a) };
-            if !t.is_finite() {
+            if t.is_finite() {
+                for_each_band([&mut *v, &mut *image], |first, [v, image]| {
+                    for ((v, image), k) in v.iter_mut().zip(image).zip(first..) {
+                        (*v, *image) = (*v + t * p[k], *image + t * image_of_p[k]);
+                    }
+                });
+                softened += t * (2.0 * of_vp + t * of_pp);
+                convex += t * (2.0 * with_vp + t * with_pp);
+            }
+            let share = softened / convex;
+            if !(softened > 0.0 && convex > 0.0) || 1.0 - share < NEGATIVE {
                 break;
             }
-            for_each_band([&mut *v, &mut *image], |first, [v, image]| {
-                for ((v, image), k) in v.iter_mut().zip(image).zip(first..) {
-                    (*v, *image) = (*v + t * p[k], *image + t * image_of_p[k]);
-                }
-            });
-            softened += t * (2.0 * of_vp + t * of_pp);
-            convex += t * (2.0 * with_vp + t * with_pp);
-            let left = 1.0 - softened / convex;
-            let gain = softened / convex - share;
-            if left < NEGATIVE || GAINS * gain <= left.abs() {
+            for (k, w) in image_of_p.iter_mut().enumerate() {
+                *w = if is_open(k) { softening[k] * v[k] - share * image[k] } else { 0.0 };
+            }
+            smooth(window, image_of_p);
+            counts.convolutions += 1;
+            let y = &*image_of_p;
+            let [steepest] = rows.sum_terms(|k| Some([y[k] * (softening[k] * v[k] - share * image[k])]));
+            let square = steepest / convex;
+            if turn >= LEAST_TURNS && square.max(0.0).sqrt() <= PRECISE * (1.0 - share).abs() {
                 break;
             }
+            let beta = if before > 0.0 { square / before } else { 0.0 };
+            before = square;
+            p.iter_mut().zip(y).for_each(|(p, y)| *p = y + if beta > 0.0 { beta * *p } else { 0.0 });
+            balance.tractions(inverse, window, p, image_of_p, true);
+            counts.convolutions += 1;
+        }
+        if !(softened > 0.0 && convex > 0.0) {
+            return 1.0;
         }
         let most = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let [slope] = rows.sum_terms(|k| Some([(r[k] + if gap[k] + x[k] > 0.0 && (gap[k] + x[k]).is_finite() { law.traction(gap[k] + x[k]) } else { 0.0 }) * v[k]]));
-        let scale = SPAN * law.range() / most * if slope > 0.0 { -1.0 } else { 1.0 };
+        let scale = SPAN * law.range() / most;
         [v, image].into_iter().for_each(|field| field.iter_mut().for_each(|value| *value *= scale));
         1.0 - softened / convex
     }
 
-    /// How far to go along the softest direction: as far as E falls.
+    /// Turns the softest direction downhill; returns how far to go along it: as far as E falls.
     pub(super) fn way_out(&self, gradient: Gradient, own: &mut Attracted, window: &Window, trial: &Trial) -> f64 {
+        let uphill = self.slope(gradient, 0.0, own, window, trial) > 0.0;
         let InGap { direction, image, .. } = own.in_gap();
+        if uphill {
+            direction.iter_mut().chain(image.iter_mut()).for_each(|value| *value = -*value);
+        }
         let convex = window.kernel.rows().sum_of_pairs(direction, image, |d, image| d * image);
         let mut length = 1.0;
         for _ in 0..TRIES {

@@ -18,6 +18,8 @@ use crate::solver::{Counts, Solution};
 const LEAST_ACTION: f64 = 0.1;
 /// The part of the grid that cells that act may span, along each axis.
 const MAX_EXTENT: f64 = 0.8;
+/// Rounds end where the new F (z − s) changes s by this part of what the tolerance allows.
+const MOST_CHANGE: f64 = 0.3;
 /// What a round may leave of the change of F (z − s) in the round before.
 const LEAST_GAIN: f64 = 0.1;
 
@@ -36,7 +38,7 @@ impl AttractedStep<'_> {
         let solved = if window.has_near_field() {
             self.descend_in_rounds(&mut inverse, own, window, trial, counts)
         } else {
-            self.descend_in_gap(&mut inverse, own, window, trial, counts).map(|_| true)
+            self.descend_in_gap(&mut inverse, own, window, trial, counts).map(|()| true)
         };
         window.inverse = Some(inverse);
         solved
@@ -62,8 +64,7 @@ impl AttractedStep<'_> {
                 gap.iter_mut().zip(&own.far[first..]).for_each(|(gap, far)| *gap += c * far);
             });
             let before = counts.convolutions;
-            let passed =
-                window.with_near_field(|window| self.descend_in_gap(inverse, own, window, trial, counts));
+            let passed = window.with_near_field(|window| self.descend_in_gap(inverse, own, window, trial, counts));
             counts.preconditioner_applications += self.near_price() * (counts.convolutions - before);
             counts.convolutions = before;
             match passed {
@@ -73,13 +74,14 @@ impl AttractedStep<'_> {
                     self.begin_in_gap(window, trial);
                     return Ok(false);
                 }
-                Ok(iterated) if !iterated && last.is_finite() => {
-                    trial.solution.potential.iter_mut().zip(&own.far).for_each(|(v, far)| *v += far);
-                    return Ok(true);
-                }
-                Ok(_) => {}
+                Ok(()) => {}
             }
-            let change = self.correct(own, window, trial, counts);
+            let [change, most] = self.correct(own, window, trial, counts);
+            let most = c * most * self.scene.softening / self.law.traction(0.0);
+            if most <= MOST_CHANGE * self.tolerance(own.softness) {
+                trial.solution.potential.iter_mut().zip(&own.far).for_each(|(v, far)| *v += far);
+                return Ok(true);
+            }
             pays = change <= LEAST_GAIN * last;
             last = change;
         }
@@ -109,18 +111,19 @@ impl AttractedStep<'_> {
         along1.max(along2)
     }
 
-    /// F (z − s) anew; returns Σ (z + s) |ΔF (z − s)|.
-    fn correct(&self, own: &mut Attracted, window: &mut Window, trial: &Trial, counts: &mut Counts) -> f64 {
+    /// F (z − s) anew; returns Σ (z + s) |ΔF (z − s)|, and the greatest |ΔF (z − s)|.
+    fn correct(&self, own: &mut Attracted, window: &mut Window, trial: &Trial, counts: &mut Counts) -> [f64; 2] {
         let Solution { pressure, attraction, potential, .. } = &trial.solution;
         let (exact, far) = own.image_of_net(&trial.solution, window);
         counts.convolutions += 1;
-        let mut changed = 0.0;
+        let (mut changed, mut most) = (0.0, 0.0_f64);
         for (k, far) in far.iter_mut().enumerate() {
             let now = exact[k] - potential[k];
-            changed += (pressure[k] + attraction[k]) * (now - *far).abs();
+            let change = (now - *far).abs();
+            (changed, most) = (changed + (pressure[k] + attraction[k]) * change, most.max(change));
             *far = now;
         }
-        changed
+        [changed, most]
     }
 
     /// Writes N (z − s) to the potential, and what it lacks of K (z − s) to the far field.

@@ -16,6 +16,8 @@ pub(crate) struct Attracted {
     pub(super) far: Vec<f64>,
     /// The least curvature of the energy over that of its convex part, among the directions of the last descent.
     pub(super) softness: f64,
+    /// Whether a state is looked at for a direction along which the energy bends down.
+    pub(super) looks: bool,
     pub(super) has_last: bool,
     /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows before they do.
     pub(super) error: f64,
@@ -102,6 +104,7 @@ impl Attracted {
             fields: [field(), field(), field(), field()],
             far: field(),
             softness: 0.0,
+            looks: true,
             has_last: false,
             error: 1.0,
             report: PassReport::default(),
