@@ -97,7 +97,7 @@ fn of_rough(cells: usize, tabor: f64, height: f64, law: Arc<dyn Attraction>) -> 
 #[test]
 fn periodic_steps_take_few_convolutions() {
     let cells = from_environment("ADHESION_ROWS", 32) as usize;
-    let mut all = 0;
+    let (mut all, mut greatest) = (0, 0);
     for law in ["exponential", "van der Waals", "Dugdale"] {
         for (tabor, height) in [(1.0, 0.15), (1.0, 0.02), (2.0, 0.15), (2.0, 0.02)] {
             let range = 1.0 / tabor;
@@ -111,8 +111,9 @@ fn periodic_steps_take_few_convolutions() {
             let [median, nine_tenths] = [5, 9].map(|tenths| work[tenths * work.len() / 10]);
             println!("{cells}², μ = {tabor}, heights {height}, {law}: {median}/{nine_tenths}/{most}, sum {sum}");
             all += sum;
-            assert!(most <= 600 || true);
+            greatest = greatest.max(most);
         }
     }
     println!("{cells}²: {all} convolutions");
+    assert!(greatest <= 600);
 }

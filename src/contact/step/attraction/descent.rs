@@ -138,7 +138,8 @@ impl AttractedStep<'_> {
             counts.convolutions += 1;
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
-        let (mut steepest, mut has_last, mut has_image) = (0.0, false, false);
+        let (mut steepest, mut has_last) = (0.0, false);
+        own.has_last = false;
         // of the last iterations, of all, and of the direction that was looked for
         let (mut measured, mut least, mut softest) = ([1.0_f64; REMEMBERED], 1.0_f64, None::<f64>);
         let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
@@ -156,9 +157,9 @@ impl AttractedStep<'_> {
             if gradient.greatest <= share * self.tolerance(soft) {
                 if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < VERY_SOFT) {
                     looks += 1;
-                    let softness = self.softest(balance, inverse, own, window, trial, counts, has_image);
+                    let softness = self.softest(balance, inverse, own, window, trial, counts);
                     gradient = self.gradient(balance, window, trial);
-                    (softest, has_last, has_image) = (Some(softness), false, false);
+                    (softest, has_last) = (Some(softness), false);
                     if softness < UNSTABLE {
                         leaves = Some((self.way_out(gradient, own, window, trial), softness));
                         softest = None;
@@ -231,11 +232,12 @@ impl AttractedStep<'_> {
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
             plain = !kept && !has_last;
             has_last = kept && leaves.is_none();
-            has_image = has_last;
+            own.has_last = has_last;
             own.in_gap().traction.copy_from_slice(&trial.solution.pressure);
             let Trial { gap, solution, .. } = &*trial;
             let (x, cells) = (&solution.potential, gap.len());
             if let Some(profile) = front.look((gradient.greatest, curvature <= 0.0), cells, |k| gap[k] + x[k] <= 0.0) {
+                own.has_last = false;
                 let InGap { lift, image, traction, .. } = own.in_gap();
                 for (k, tried) in lift.iter_mut().enumerate() {
                     let from = profile.source(k, cells);
@@ -245,7 +247,6 @@ impl AttractedStep<'_> {
                 self.project(balance, window.kernel.rows(), gap, lift);
                 balance.tractions(inverse, window, lift, image, false);
                 counts.convolutions += 1;
-                has_image = false;
                 // r of the last iteration stays
                 std::mem::swap(image, traction);
                 let tried = self.swap_energy(balance, own, window, trial);

@@ -190,7 +190,6 @@ impl AttractedStep<'_> {
         window: &mut Window,
         trial: &mut Trial,
         counts: &mut Counts,
-        has_image: bool,
     ) -> f64 {
         let (law, rows, c) = (self.law, window.kernel.rows().clone(), balance.compliance);
         let Trial { solution, gap, .. } = trial;
@@ -204,6 +203,7 @@ impl AttractedStep<'_> {
             }
         });
         let (softening, is_open) = (&*softening, |k: usize| gap[k] + x[k] > 0.0);
+        let has_image = own.has_last;
         let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
         // K of a field, on the open cells
         let smooth = |window: &mut Window, field: &mut [f64]| {
