@@ -51,9 +51,9 @@ pub(super) struct InPasses<'a> {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PassReport {
-    /// Passes.
+    /// Passes, or iterations in the gap.
     pub passes: usize,
-    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up.
+    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up; trials of an iteration that raised it.
     pub rejected: usize,
     /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
     pub rise: f64,
