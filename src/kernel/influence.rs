@@ -145,18 +145,13 @@ impl InfluenceKernel {
         (layout, symbol)
     }
 
-    /// Whether there is a near field that is cheaper: the operator has ends along both axes.
-    pub(super) fn has_near_field(&self, cells: [usize; 2]) -> bool {
-        self.periodic == [false; 2] && !cells.contains(&1)
-    }
-
-    /// The near field of the operator: a layout without padding, and the factor of each of its waves. It is the operator between
-    /// cells that are less than half of the period apart; farther ones act as if they were nearer, the other way round.
+    /// The near field of an operator that ends: a layout without padding, and the factor of each of its waves. It is the operator between
+    /// cells that are less than half of the grid apart; farther ones act as if they were nearer, the other way round.
     pub(super) fn near(&self, cells: [usize; 2], folded: [bool; 2]) -> Option<(Layout, Symbol)> {
-        if !self.has_near_field(cells) {
+        if self.periodic == [true; 2] {
             return None;
         }
-        let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
+        let layout = Layout { cells, ends: self.ends(), folded }.ending(Ends::Closed);
         let symbol = self.symbol(layout, None);
         let most = waves(layout).map(|[k1, k2]| symbol(k1, k2)).fold(0.0, f64::max);
         // energies stay positive

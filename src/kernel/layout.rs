@@ -16,6 +16,8 @@ pub(crate) enum Ends {
     Periodic,
     /// The same cells again, after as many zeros as make the transform fast: for operators that need not be exact.
     Wrapped,
+    /// The same cells again, as if a kernel that ends were periodic.
+    Closed,
 }
 
 /// Cells, boundaries and symmetries of an operator.
@@ -44,7 +46,7 @@ impl Layout {
                     fast_length(cells)
                 }
             }
-            (Ends::Periodic, _) => cells,
+            (Ends::Periodic | Ends::Closed, _) => cells,
         }
     }
 
@@ -55,7 +57,12 @@ impl Layout {
 
     /// The layout of an operator that need not be exact: no padding but for fast transforms.
     pub(super) fn wrapped(&self) -> Layout {
-        let ends = self.ends.map(|end| if end == Ends::Free { Ends::Wrapped } else { end });
+        self.ending(Ends::Wrapped)
+    }
+
+    /// The layout with other ends where the cells end.
+    pub(super) fn ending(&self, other: Ends) -> Layout {
+        let ends = self.ends.map(|end| if end == Ends::Free { other } else { end });
         Layout { ends, ..*self }
     }
 

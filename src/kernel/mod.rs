@@ -39,6 +39,7 @@ use std::sync::{Arc, OnceLock};
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::parallel::Rows;
 use crate::{Grid, memory};
+use even_spectrum::Symbol;
 use influence::{Body, Response, magnitude};
 use layer::Remainder;
 use layout::{Ends, Layout};
@@ -121,12 +122,13 @@ pub(crate) struct LocalKernel {
     operator: Arc<SpectralOperator>,
 }
 
-/// M = K⁻¹ of bodies that are periodic along both axes, wave by wave. The mean has a stiffness of its own.
+/// M, the inverse of a kernel that is periodic along both axes, or of a near field, wave by wave. A mean without compliance has a stiffness of its
+/// own.
 #[derive(Debug, Clone)]
 pub(crate) struct PeriodInverse {
     operator: SpectralOperator,
     own: TransformWorkspace,
-    /// The stiffness that M has for the mean \[1/m\], and the compliance of K \[m\].
+    /// The stiffness that M has for the mean \[1/m\], and the compliance that its kernel has \[m\].
     pub(crate) mean: [f64; 2],
 }
 
@@ -236,23 +238,22 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field, or of the inverse of
-    /// periodic bodies. An operator that
-    /// exists already counts zero.
+    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field and its inverse, or the
+    /// inverse of periodic bodies. An operator that exists already counts zero.
     pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 3] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
         let shares = Shares::new(&layout, rows);
         let shares = shares.as_ref();
         let made = self.is_whole(&layout, rows) && self.operators[index(folded)].get().is_some();
         let operator = if made { 0 } else { layout.operator_bytes(shares) };
-        // near field and inverse have layouts of one length
-        let wrapped = layout.wrapped();
-        let of_wrapped = Shares::new(&wrapped, rows);
-        let of_wrapped = of_wrapped.as_ref();
-        let beside = wrapped.workspace_bytes(of_wrapped) - wrapped.lent_bytes(of_wrapped, (&layout, shares));
-        let wrapped = wrapped.operator_bytes(of_wrapped) + beside;
-        let has_near_field = self.has_near_field(rows.cells()) || self.periodic == [true; 2];
-        [operator + layout.workspace_bytes(shares), wrapped, if has_near_field { wrapped } else { 0 }]
+        let beside = |other: Layout| {
+            let of_other = Shares::new(&other, rows);
+            let of_other = of_other.as_ref();
+            let work = other.workspace_bytes(of_other) - other.lent_bytes(of_other, (&layout, shares));
+            other.operator_bytes(of_other) + work
+        };
+        let in_gap = if self.periodic == [true; 2] { 1 } else { 2 } * beside(layout.ending(Ends::Closed));
+        [operator + layout.workspace_bytes(shares), beside(layout.wrapped()), in_gap]
     }
 
     /// Whether rows with this layout are all of the grid, in this process.
@@ -334,21 +335,26 @@ impl LocalKernel {
         (inverse, work)
     }
 
-    /// The inverse of a kernel that is periodic along both axes.
-    pub(crate) fn period_inverse(&self) -> Option<PeriodInverse> {
-        if self.whole.periodic != [true; 2] || self.rows.are_shared() {
-            return None;
-        }
-        let (operator, own) = self.inverse();
-        let mut inverse = PeriodInverse { operator, own, mean: [0.0; 2] };
-        let (ones, mut image, mut work) = (vec![1.0; self.rows.len()], vec![0.0; self.rows.len()], self.workspace());
-        inverse.apply(&ones, &mut image, &mut work);
-        inverse.mean = [image[0], (self.whole.response)([0, 0])];
-        Some(inverse)
+    /// The inverse of a kernel that is periodic along both axes, or of the near field.
+    pub(crate) fn period_inverse(&self) -> PeriodInverse {
+        let (cells, folded) = (self.rows.cells(), self.folded);
+        let near = self.whole.near(cells, folded).map(|(layout, near)| {
+            let mean = near(0, 0);
+            let inverse: Symbol = Box::new(move |k1, k2| 1.0 / near(k1, k2));
+            (layout, inverse, mean)
+        });
+        let (layout, symbol, compliance) = near.unwrap_or_else(|| {
+            let (layout, inverse) = self.whole.inverse(cells, folded);
+            (layout, inverse, self.whole.of_wave([0, 0]))
+        });
+        let mean = [symbol(0, 0), compliance];
+        let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
+        let own = operator.workspace_beside(&self.operator);
+        PeriodInverse { operator, own, mean }
     }
 
     /// The near field, [`InfluenceKernel::near`], and its work space without tiles: those of [`LocalKernel::workspace`]
-    /// suffice. `None` of periodic bodies and of single rows.
+    /// suffice. `None` of periodic bodies.
     pub(crate) fn near(&self) -> Option<(LocalKernel, Workspace)> {
         let (layout, symbol) = self.whole.near(self.rows.cells(), self.folded)?;
         let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
@@ -373,5 +379,10 @@ impl LocalKernel {
     /// [`InfluenceKernel::convolve`] for fields of the right length.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
         self.operator.apply(pressure, displacement, &mut work.0);
+    }
+
+    /// [`LocalKernel::apply`] in place.
+    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut Workspace) {
+        self.operator.apply_in_place(field, &mut work.0);
     }
 }

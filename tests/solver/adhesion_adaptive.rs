@@ -138,9 +138,11 @@ impl Curve {
         let span = self.points[self.points.len() - 1].0;
         let mut least = off;
         for pair in self.points.windows(2).filter(|pair| (pair[0].0 - time).abs() < 0.2 * span) {
-            for k in 0..=10 {
-                let share = f64::from(k) / 10.0;
-                let (t, a) = (pair[0].0 + share * (pair[1].0 - pair[0].0), pair[0].1 + share * (pair[1].1 - pair[0].1));
+            // a jump is a segment that rises at once: samples of it would miss answers next to it
+            let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
+            for share in [(time - t0) / (t1 - t0), if a0 == a1 { 0.0 } else { (answer - a0) / (a1 - a0) }] {
+                let share = share.clamp(0.0, 1.0);
+                let (t, a) = (t0 + share * (t1 - t0), a0 + share * (a1 - a0));
                 least = least.min(((t - time).abs() / span).max((a - answer).abs() / self.scale));
             }
         }
@@ -158,7 +160,7 @@ fn adaptive_runs_follow_short_steps() {
     let (mut ratios, mut jumps, mut equivalents) = ([const { Vec::new() }; 2], 0, [0.0; 2]);
     for number in first..first + runs {
         let scene = Scene::draw(number, seed);
-        let mut curve = Curve::of(&scene, SHORT);
+        let (mut curve, mut is_fine) = (Curve::of(&scene, SHORT), false);
         for (which, tolerance) in [1e-2, 1e-3].into_iter().enumerate() {
             let mut contact = scene.build();
             let span = scene.turns[6];
@@ -190,9 +192,9 @@ fn adaptive_runs_follow_short_steps() {
                 })
             };
             let mut worst = ratio(&curve);
-            if worst[0] > 1.0 {
-                // the short steps may be too long
-                curve = Curve::of(&scene, 0.125 * SHORT);
+            if worst[0] > 1.0 || !curve.jumps.is_empty() && !is_fine {
+                // the short steps may be too long, as for what a jump loses
+                (curve, is_fine) = (Curve::of(&scene, 0.125 * SHORT), true);
                 worst = ratio(&curve);
             }
             println!("{}, {tolerance}: {worst:.2?} tolerances, {steps} steps, {work} equivalents", scene.name);

@@ -18,6 +18,7 @@ struct Pair {
     /// To the default tolerance, and to 1e-9.
     contacts: [ViscoelasticContact; 2],
     greatest: f64,
+    symmetric: bool,
 }
 
 impl Pair {
@@ -26,11 +27,16 @@ impl Pair {
         let mu = draws.scale(0.7, 1.5);
         let law = law(&mut draws, 1.0 / mu);
         let periodic = draws.chance(0.6);
-        // without symmetry, which an unstable state may keep
+        // with symmetry, which an unstable state may keep, and without
+        let symmetric = draws.chance(0.5);
+        let wavy = Wavy::new(draws.between(0.1, 0.6), SIDE / draws.between(2.0, 4.0).round()).unwrap();
         let rough = rough(&mut draws, 3, [0.05, 0.4]);
-        let shape: Box<dyn Geometry> = match periodic {
-            true => Box::new(rough),
-            false => Box::new(Sum::new(Sphere::new(1.0).unwrap(), rough)),
+        let sphere = Sphere::new(1.0).unwrap();
+        let shape: Box<dyn Geometry> = match (symmetric, periodic) {
+            (true, true) if draws.chance(0.5) => Box::new(wavy),
+            (true, _) => Box::new(Sum::new(sphere, wavy)),
+            (false, true) => Box::new(rough),
+            (false, false) => Box::new(Sum::new(sphere, rough)),
         };
         let grid = Grid::square((2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize, SIDE).unwrap();
         let kernel =
@@ -42,19 +48,23 @@ impl Pair {
                 .material(Material::incompressible(Elastic::new(0.25).unwrap()))
                 .kernel(Arc::clone(&kernel))
                 .attraction(Arc::clone(&law))
-                .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance))
+                .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(false).with_tolerance(tolerance))
                 .build()
                 .unwrap()
         });
-        let name = format!("scene {number}: μ = {mu:.2}, {law:?}, periodic {periodic}");
-        Pair { name, contacts, greatest: law.traction(0.0) }
+        let name = format!("scene {number}: μ = {mu:.2}, {law:?}, periodic {periodic}, symmetric {symmetric}");
+        Pair { name, contacts, greatest: law.traction(0.0), symmetric }
     }
 
-    /// The greatest difference of the tractions, over the greatest traction of the law.
+    /// The greatest difference of the tractions, over the greatest traction of the law; with symmetry, of the tractions in order, since states are equal
+    /// that are images of each other.
     fn difference(&self) -> f64 {
         let [rough, fine] = [0, 1].map(|which: usize| {
             let mut traction = vec![0.0; self.contacts[which].grid().len()];
             self.contacts[which].traction_into(&mut traction).unwrap();
+            if self.symmetric {
+                traction.sort_by(f64::total_cmp);
+            }
             traction
         });
         rough.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / self.greatest
@@ -69,7 +79,7 @@ fn states_beside_folds_are_states() {
     for number in first..first + scenes {
         let mut pair = Pair::draw(number, seed);
         let touch = pair.contacts[0].approach();
-        let mut at = touch - 1.0;
+        let (mut at, mut is_first) = (touch - 1.0, true);
         'scene: for to in [touch + 0.6, touch - 3.0] {
             let longest = (to - at) / 16.0;
             let (mut length, mut halvings) = (longest, 0);
@@ -93,11 +103,14 @@ fn states_beside_folds_are_states() {
                 steps += 1;
                 beside += usize::from(halvings > 0 && !jumped[1]);
                 jumps += usize::from(jumped[1]);
+                // a jump comes within a fold of its moment; undeformed bodies jump into the attraction
+                let jumps_to_it = jumped.contains(&true) || std::mem::take(&mut is_first);
+                let is_state = off < 1e-3 || jumps_to_it;
                 if off >= 1e-3 {
                     println!("{}, to {:.6} by {length:.1e}: {off:.1e}, jumps {jumped:?}", pair.name, at + length);
                 }
-                missed += usize::from(off >= 1e-3);
-                worst = worst.max(off);
+                missed += usize::from(!is_state);
+                worst = worst.max(if jumps_to_it { 0.0 } else { off });
                 at += length;
                 if off >= 1e-2 {
                     // two states: no comparison of what follows
@@ -112,6 +125,5 @@ fn states_beside_folds_are_states() {
     println!(
         "{scenes} scenes, {steps} steps, {beside} before jumps, {jumps} jumps: {missed} are off, worst {worst:.1e}"
     );
-    // states of half-spaces are as exact as the last passes show
-    assert!(beside > 0 && worst < 1e-2 && 50 * missed <= steps);
+    assert!(beside > 0 && missed == 0);
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::contact::indenter::even_axes;
-use crate::contact::step::attraction::Passes;
+use crate::contact::step::attraction::Attracted;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
 use crate::contact::{Indenter, Region, Settings, Solver, State, Trial};
 use crate::error::{Result, count_within};
@@ -28,7 +28,7 @@ use crate::{Grid, memory};
 /// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
-/// | attraction between surfaces | 62: its traction at both ends of a step and in the trial, 24, what its passes work in, 36, and the near field of the kernel, 2, and 200 to 240 bytes a column for each thread |
+/// | attraction between surfaces | 68: its traction at both ends of a step and in the trial, 24, what its steps work in, 40, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
 ///
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
@@ -106,7 +106,7 @@ impl Footprint<'_> {
         let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
         let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
         let layout = State::layout(indenter, region.clone(), self.history, self.attracts);
-        let passes = if self.attracts { Passes::BYTES_PER_CELL } else { 0 };
+        let passes = if self.attracts { Attracted::BYTES_PER_CELL } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };

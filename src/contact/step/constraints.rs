@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::Grid;
 use crate::axis::Axis;
 use crate::contact::state::net_sum;
-use crate::contact::step::edge::{MOST, attraction_beyond};
+use crate::contact::step::edge::MOST;
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
 use crate::error::{AdhesionError, Convergence, Error, Result, Special, StepError, exact_length};
 use crate::hereditary::Interval;
@@ -155,7 +155,7 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
             let (lengths, needed) = (scene.grid.lengths(), needed_lengths(scene, state, trial, step));
             return Err(Error::Step(StepError::ContactAtEdge { time, cells, lengths, needed }));
         }
-        let share = attraction_beyond(scene, state, &trial.solution);
+        let share = trial.passes.as_ref().map_or(0.0, |passes| passes.report.beyond_edge);
         if share > MOST {
             return Err(AdhesionError::BeyondEdge { time, share, lengths: scene.grid.lengths() }.into());
         }

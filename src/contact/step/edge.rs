@@ -1,6 +1,7 @@
 //! The attraction beyond the edge of the grid, which is not computed.
 
-use crate::contact::{Scene, State};
+use crate::adhesion::Attraction;
+use crate::contact::{Region, Scene};
 use crate::solver::Solution;
 
 /// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this part, or the tolerance of the solver, on.
@@ -14,9 +15,8 @@ const PART: usize = 16;
 ///
 /// Over the lines of cells beside an edge the attraction falls at some rate, at which it is continued, over no more than half a length of the grid:
 /// a surface that stays as near ends somewhere.
-pub(super) fn attraction_beyond(scene: &Scene, state: &State, solution: &Solution) -> f64 {
-    let Some(law) = &scene.attraction else { return 0.0 };
-    let (region, s, mut beyond) = (&state.region, &solution.attraction, 0.0);
+pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Region, solution: &Solution) -> f64 {
+    let (s, mut beyond) = (&solution.attraction, 0.0);
     let (cells, rows, periodic) = (region.cells(), region.rows(), scene.kernel.periodic_axes());
     for axis in (0..2).filter(|&axis| !periodic[axis]) {
         let line = |at: usize| {

@@ -46,7 +46,7 @@ use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use constraints::{find_free_motions, validate_loads};
-use edge::{attraction_beyond, least_beyond};
+use edge::least_beyond;
 use error_in_time::error_in_time;
 use gap::RigidBodies;
 use initial_guess::initial_guess;
@@ -203,8 +203,7 @@ impl ViscoelasticContact {
         let motion = |body: usize| RigidMotion { approach: -datum, tilt: [0.0; 2] } + state.current.motions[body];
         let compliance = || scene.material.contact_compliance(clock.age().max(clock.last_dt));
         let in_zone = || cells_in_zone(scene.softening, compliance(), &scene.grid);
-        let refused = scene.attraction.is_some() && scene.settings.edge == Edge::Refuse;
-        let beyond_edge = refused.then(|| attraction_beyond(scene, state, &state.current.solution));
+        let beyond_edge = self.computation.trial.passes.as_ref().map(|passes| passes.report.beyond_edge);
         let figures = Figures {
             max_slope: indenter.steepest(&scene.grid, region, pressure),
             compression: scene.compression(indenter, region, pressure, motion),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::Indenter;
-use crate::contact::step::attraction::Passes;
+use crate::contact::step::attraction::Attracted;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::solver::{Freedom, ModeCoefficients, RigidMotion, Solution};
@@ -61,7 +61,7 @@ pub(crate) struct Trial {
     pub(crate) free: Vec<Freedom>,
     pub(crate) springs: Vec<TriedSpring>,
     /// What the passes of a step work in, from the first step of surfaces that attract each other.
-    pub(crate) passes: Option<Box<Passes>>,
+    pub(crate) passes: Option<Box<Attracted>>,
     /// Length of the extrapolation of the guess, in last steps.
     pub(crate) reach: f64,
     /// Cells that are likely to be in contact, and whether they were predicted.

@@ -17,7 +17,7 @@ pub(crate) struct Window {
     pub(in crate::contact) work: Workspace,
     /// The near field of the kernel, and its work space, where surfaces attract each other.
     near: Option<(LocalKernel, Workspace)>,
-    /// The inverse of the kernel of periodic bodies whose surfaces attract each other.
+    /// The inverse of the near field, or of the kernel of periodic bodies, where surfaces attract each other.
     pub(in crate::contact) inverse: Option<PeriodInverse>,
     solver: ContactSolver,
     /// The gap of the indenter on the region, if that is not the whole grid.
@@ -48,7 +48,7 @@ impl Window {
         let halo = HaloExchange::new(&rows, rows.cells()[1])
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let near = scene.attraction.as_ref().and_then(|_| kernel.near());
-        let inverse = scene.attraction.as_ref().and_then(|_| kernel.period_inverse());
+        let inverse = scene.attraction.as_ref().map(|_| kernel.period_inverse());
         let mut window = Window {
             halo,
             near,

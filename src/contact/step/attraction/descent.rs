@@ -13,15 +13,15 @@
 use std::sync::atomic::Ordering;
 
 use super::front::Front;
-use super::{AttractedStep, GREATEST_CHANGE, Passes};
-use crate::contact::state::State;
+use super::passes::InGap;
+use super::{Attracted, AttractedStep};
 use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::kernel::PeriodInverse;
 use crate::load::Load;
 use crate::parallel::{Rows, for_each_band};
-use crate::solver::{Counts, ModeCoefficients};
+use crate::solver::{Counts, ModeCoefficients, Solution};
 
 /// Greatest number of iterations.
 const MAX_ITERATIONS: usize = 2000;
@@ -32,13 +32,22 @@ const SHORTENINGS: usize = 12;
 const ROUNDING: f64 = 1e-13;
 /// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be smaller by the same factor, since the error
 /// is r over the curvature. The least of so many iterations counts.
-const SOFT: f64 = 0.1;
+const SOFT: f64 = 0.2;
 const REMEMBERED: usize = 8;
 /// Iterations that lose cells before the edge of a line contact is moved on.
 const LOSSES: usize = 16;
 /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
 const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
+/// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by this factor.
+const SMOOTH: f64 = 0.1;
+/// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
+/// softer than this.
+const SUSPECT: f64 = 0.8;
+const VERY_SOFT: f64 = 0.02;
+const LOOKS: usize = 4;
+/// A state whose energy bends down by more than this is none.
+const UNSTABLE: f64 = -1e-4;
 /// q is computed afresh after so many iterations.
 const FRESH: usize = 50;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
@@ -62,7 +71,14 @@ pub(super) struct Balance {
 
 impl Balance {
     /// q of the lift x.
-    fn tractions(&self, inverse: &mut PeriodInverse, window: &mut Window, x: &[f64], q: &mut [f64], linear: bool) {
+    pub(super) fn tractions(
+        &self,
+        inverse: &mut PeriodInverse,
+        window: &mut Window,
+        x: &[f64],
+        q: &mut [f64],
+        linear: bool,
+    ) {
         inverse.apply(x, q, &mut window.work);
         let mean = window.kernel.rows().sum(x) / x.len() as f64;
         let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
@@ -88,24 +104,28 @@ impl AttractedStep<'_> {
         Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance] }
     }
 
-    /// Finishes z, s and K (z − s) of the trial from their guess.
-    pub(super) fn descend_in_gap(
-        &self,
-        own: &mut Passes,
-        window: &mut Window,
-        trial: &mut Trial,
-        counts: &mut Counts,
-    ) -> Result<()> {
-        let Some(mut inverse) = window.inverse.take() else { return Ok(()) };
-        let solved = self.descend_with(&mut inverse, own, window, trial, counts);
-        window.inverse = Some(inverse);
-        solved
+    /// Writes z, s, K (z − s) and the motion of the guess of a descent: extrapolated, or of undeformed bodies, which just touch under a force.
+    pub(super) fn begin_in_gap(&self, window: &Window, trial: &mut Trial) {
+        let (state, step, rows) = (self.state, self.step, self.state.region.rows());
+        self.open_gap(window, trial);
+        trial.free[0] = self.wanted;
+        self.extrapolate(trial);
+        let datum = step.indenter.gap().datum;
+        let motion = if state.is_undisturbed() {
+            let lowest = rows.least(trial.gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
+            if let Load::Spring { drive, .. } = step.loads[0] { lowest.min(drive - datum) } else { lowest }
+        } else {
+            let [now, before] = [&state.current, &state.previous].map(|state| state.motions[0].approach);
+            now + trial.reach * (now - before) - datum
+        };
+        trial.solution.motions[0] = ModeCoefficients([if self.wanted.translation { motion } else { 0.0 }, 0.0, 0.0]);
     }
 
-    fn descend_with(
+    /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial, with a kernel and its inverse.
+    pub(super) fn descend_in_gap(
         &self,
         inverse: &mut PeriodInverse,
-        own: &mut Passes,
+        own: &mut Attracted,
         window: &mut Window,
         trial: &mut Trial,
         counts: &mut Counts,
@@ -113,30 +133,45 @@ impl AttractedStep<'_> {
         let AttractedStep { step, stop, .. } = *self;
         let (limit, time) = (self.limit(), step.interval.time);
         let balance = self.balance(window, inverse);
-        self.open_gap(window, trial);
-        trial.free[0] = self.wanted;
-        trial.reach = if self.state.is_undisturbed() { 0.0 } else { self.reach() };
-        let Trial { gap, reach, solution, .. } = &mut *trial;
-        let moved = self.lift(balance, *reach, gap, [&mut solution.potential, &mut solution.attraction]);
-        if moved || self.state.extrapolation.refresh_is_due() {
+        if self.lift(balance, trial) || self.state.extrapolation.refresh_is_due() {
             balance.tractions(inverse, window, &trial.solution.potential, &mut trial.solution.attraction, false);
             counts.convolutions += 1;
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
-        let (mut steepest, mut has_last, mut softness) = (0.0, false, [1.0_f64; REMEMBERED]);
+        let (mut steepest, mut has_last) = (0.0, false);
+        own.has_last = false;
+        // of the last iterations, of all, and of the direction that was looked for
+        let (mut measured, mut least, mut softest) = ([1.0_f64; REMEMBERED], 1.0_f64, None::<f64>);
         let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
+        let mut looks = if own.looks { 0 } else { LOOKS };
         for iteration in 0..=MAX_ITERATIONS {
-            let gradient = self.gradient(balance, window, trial);
+            let mut gradient = self.gradient(balance, window, trial);
             if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
                 let what = "the residual of the contact problem";
                 return Err(Error::Step(StepError::Overflow { time, what }));
             }
-            let measured = softness.iter().fold(1.0_f64, |least, &soft| least.min(soft));
-            let soft = if iteration < LEAST_MEASURED { 0.0 } else { measured };
-            if gradient.greatest <= limit * (soft / SOFT).clamp(SMALLEST, 1.0) {
-                trial.solution.residual = gradient.greatest / limit * stop.tolerance;
-                self.finish(balance, gradient.multiplier, trial);
-                return Ok(());
+            let recent = measured.iter().fold(1.0_f64, |least, &soft| least.min(soft));
+            let soft = if iteration < LEAST_MEASURED { own.softness } else { recent }.min(softest.unwrap_or(1.0));
+            let mut leaves = None;
+            let share = if iteration == 0 { SMOOTH } else { 1.0 };
+            if gradient.greatest <= share * self.tolerance(soft) {
+                if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < VERY_SOFT) {
+                    looks += 1;
+                    let softness = self.softest(balance, inverse, own, window, trial, counts);
+                    gradient = self.gradient(balance, window, trial);
+                    (softest, has_last) = (Some(softness), false);
+                    if softness < UNSTABLE {
+                        leaves = Some((self.way_out(gradient, own, window, trial), softness));
+                        softest = None;
+                    }
+                }
+                let soft = soft.min(softest.unwrap_or(1.0));
+                if leaves.is_none() && gradient.greatest <= self.tolerance(soft) {
+                    own.softness = if iteration == 0 { own.softness } else { soft };
+                    trial.solution.residual = gradient.greatest / limit * stop.tolerance;
+                    self.finish(balance, gradient.multiplier, trial);
+                    return Ok(());
+                }
             }
             if stop.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
                 return Err(Error::Cancelled { what: "a step" });
@@ -151,30 +186,36 @@ impl AttractedStep<'_> {
             }
             own.report.passes += 1;
             counts.iterations += 1;
-            if plain {
-                let gradient = own.last[0].iter_mut().zip(&trial.solution.pressure);
-                gradient.for_each(|(direction, r)| *direction = -r);
-                steepest = 0.0;
+            let (mut length, curvature) = if let Some(leaves) = leaves {
+                leaves
             } else {
-                steepest = self.turn(balance, own, window, trial, steepest, has_last);
-            }
-            balance.tractions(inverse, window, &own.last[0], &mut own.image, true);
-            counts.convolutions += 2;
-            let (mut length, curvature) = self.length(gradient, own, window, trial);
-            softness[iteration % REMEMBERED] = curvature;
+                if plain {
+                    let opposite = own.in_gap().direction.iter_mut().zip(&trial.solution.pressure);
+                    opposite.for_each(|(direction, r)| *direction = -r);
+                    steepest = 0.0;
+                } else {
+                    steepest = self.turn(balance, own, window, trial, steepest, has_last);
+                    counts.convolutions += 1;
+                }
+                let InGap { direction, image, .. } = own.in_gap();
+                balance.tractions(inverse, window, direction, image, true);
+                counts.convolutions += 1;
+                self.length(gradient, own, window, trial)
+            };
+            measured[iteration % REMEMBERED] = curvature;
+            least = least.min(curvature);
             let mut kept = false;
             for _ in 0..if length > 0.0 { SHORTENINGS } else { 0 } {
                 let clipped = self.try_lift(balance, length, own, window, trial);
+                let InGap { image, lift, traction, .. } = own.in_gap();
                 if clipped || iteration % FRESH == FRESH - 1 {
-                    balance.tractions(inverse, window, &own.far, &mut own.last[1], false);
+                    balance.tractions(inverse, window, lift, traction, false);
                     counts.convolutions += 1;
                 } else {
-                    let tractions = trial.solution.attraction.iter().zip(&own.image);
-                    own.last[1].iter_mut().zip(tractions).for_each(|(next, (q, image))| *next = q + length * image);
+                    let tractions = trial.solution.attraction.iter().zip(&*image);
+                    traction.iter_mut().zip(tractions).for_each(|(next, (q, image))| *next = q + length * image);
                 }
-                std::mem::swap(&mut own.far, &mut trial.solution.potential);
-                std::mem::swap(&mut own.last[1], &mut trial.solution.attraction);
-                let tried = self.energy_in_gap(balance, window, trial);
+                let tried = self.swap_energy(balance, own, window, trial);
                 let rise = (tried[0] - energy[0]) / energy[1];
                 if rise <= ROUNDING {
                     own.report.rise = own.report.rise.max(rise - ROUNDING);
@@ -182,8 +223,7 @@ impl AttractedStep<'_> {
                     break;
                 }
                 own.report.rejected += 1;
-                std::mem::swap(&mut own.far, &mut trial.solution.potential);
-                std::mem::swap(&mut own.last[1], &mut trial.solution.attraction);
+                self.swap_energy(balance, own, window, trial);
                 length *= SHORTER;
             }
             if !kept && plain {
@@ -191,19 +231,24 @@ impl AttractedStep<'_> {
             }
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
             plain = !kept && !has_last;
-            has_last = kept;
-            own.last[1].copy_from_slice(&trial.solution.pressure);
+            has_last = kept && leaves.is_none();
+            own.has_last = has_last;
+            own.in_gap().traction.copy_from_slice(&trial.solution.pressure);
             let Trial { gap, solution, .. } = &*trial;
             let (x, cells) = (&solution.potential, gap.len());
             if let Some(profile) = front.look((gradient.greatest, curvature <= 0.0), cells, |k| gap[k] + x[k] <= 0.0) {
-                for (k, tried) in own.far.iter_mut().enumerate() {
+                own.has_last = false;
+                let InGap { lift, image, traction, .. } = own.in_gap();
+                for (k, tried) in lift.iter_mut().enumerate() {
                     let from = profile.source(k, cells);
                     let rise = gap[from] - gap[k];
                     *tried = x[from] + if rise.is_finite() { rise } else { 0.0 };
                 }
-                self.project(balance, window.kernel.rows(), gap, &mut own.far);
-                balance.tractions(inverse, window, &own.far, &mut own.image, false);
+                self.project(balance, window.kernel.rows(), gap, lift);
+                balance.tractions(inverse, window, lift, image, false);
                 counts.convolutions += 1;
+                // r of the last iteration stays
+                std::mem::swap(image, traction);
                 let tried = self.swap_energy(balance, own, window, trial);
                 let falls = tried[0] < energy[0];
                 front.learn(falls);
@@ -211,6 +256,8 @@ impl AttractedStep<'_> {
                     (energy, has_last) = (tried, false);
                 } else {
                     self.swap_energy(balance, own, window, trial);
+                    let InGap { image, traction, .. } = own.in_gap();
+                    std::mem::swap(image, traction);
                 }
             }
         }
@@ -218,53 +265,41 @@ impl AttractedStep<'_> {
         Err(AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance: limit }.into())
     }
 
+    /// The greatest |r| that ends a descent, over the greatest traction: the error is r over the curvature.
+    pub(super) fn tolerance(&self, softness: f64) -> f64 {
+        self.limit() * (softness / SOFT).clamp(SMALLEST, 1.0)
+    }
+
     /// Exchanges x and q of the trial for the tried ones; returns their energy.
-    fn swap_energy(&self, balance: Balance, own: &mut Passes, window: &Window, trial: &mut Trial) -> [f64; 2] {
-        std::mem::swap(&mut own.far, &mut trial.solution.potential);
-        std::mem::swap(&mut own.image, &mut trial.solution.attraction);
+    fn swap_energy(&self, balance: Balance, own: &mut Attracted, window: &Window, trial: &mut Trial) -> [f64; 2] {
+        let InGap { lift, traction, .. } = own.in_gap();
+        std::mem::swap(lift, &mut trial.solution.potential);
+        std::mem::swap(traction, &mut trial.solution.attraction);
         self.energy_in_gap(balance, window, trial)
     }
 
-    /// Writes the lift x of the guess, and its q but for what the wall changes; returns whether that is so.
-    fn lift(&self, balance: Balance, reach: f64, gap: &[f64], [x, q]: [&mut [f64]; 2]) -> bool {
-        let (state, rows, datum) = (self.state, self.state.region.rows(), self.step.indenter.gap().datum);
-        if state.is_undisturbed() {
-            let lowest = rows.least(gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
-            let at = match self.step.loads[0] {
-                Load::Approach { .. } => 0.0,
-                Load::Force { .. } => lowest,
-                Load::Spring { drive, .. } => lowest.min(drive - datum),
-            };
-            x.fill(-at);
-            q.fill(balance.offset - balance.of_mean * at);
-        } else {
-            let (now, before, c) = (&state.current, &state.previous, balance.compliance);
-            let ahead = |now: f64, before: f64| now + reach * (now - before);
-            let at = ahead(now.motions[0].approach, before.motions[0].approach) - datum;
-            let at = if self.wanted.translation { at } else { 0.0 };
-            let [now, before] = [&now.solution, &before.solution];
-            for_each_band([&mut *x, &mut *q], |first, [x, q]| {
-                for ((x, q), k) in x.iter_mut().zip(q).zip(first..) {
-                    *x = c * ahead(now.potential[k], before.potential[k]) - at;
-                    *q = ahead(now.pressure[k] - now.attraction[k], before.pressure[k] - before.attraction[k]);
-                }
-            });
-            let [of_x, of_q] = [&*x, &*q].map(|field| rows.sum(field) / field.len() as f64);
-            let shift = balance.of_mean * of_x + balance.offset - of_q;
-            q.iter_mut().for_each(|q| *q += shift);
+    /// Writes the lift x of z, s, K (z − s) and the motion of the trial, and its q but for what the wall changes; returns whether that is so.
+    fn lift(&self, balance: Balance, trial: &mut Trial) -> bool {
+        let (rows, Trial { gap, solution, .. }) = (self.state.region.rows(), trial);
+        let Solution { pressure, attraction: q, potential: x, motions, .. } = solution;
+        let (c, motion) = (balance.compliance, motions[0].0[0]);
+        for_each_band([&mut *x, &mut *q], |first, [x, q]| {
+            for ((x, q), z) in x.iter_mut().zip(q).zip(&pressure[first..]) {
+                (*x, *q) = (c * *x - motion, z - *q);
+            }
+        });
+        let [of_x, of_q] = [&*x, &*q].map(|field| rows.sum(field) / field.len() as f64);
+        let shift = balance.of_mean * of_x + balance.offset - of_q;
+        q.iter_mut().for_each(|q| *q += shift);
+        let mut opens = false;
+        if !balance.held {
+            // what is pressed goes on to touch
+            for ((x, _), gap) in x.iter_mut().zip(&*pressure).zip(&*gap).filter(|((_, z), _)| **z > 0.0) {
+                opens |= gap + *x != 0.0;
+                *x = -gap;
+            }
         }
-        self.project(balance, &rows, gap, x)
-    }
-
-    /// How far the guess reaches ahead, in last steps.
-    fn reach(&self) -> f64 {
-        let State { current, previous, extrapolation, .. } = self.state;
-        let changes = current.solution.attraction.iter().zip(&previous.solution.attraction);
-        let change = changes.map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
-        if change > GREATEST_CHANGE * self.law.traction(0.0) {
-            return 0.0;
-        }
-        extrapolation.reach(self.step.interval.dt)
+        self.project(balance, &rows, gap, x) || opens
     }
 
     /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.

@@ -1,6 +1,7 @@
 //! The energy of a pass, of the state before the step, and how the surfaces respond.
 
-use super::{AttractedStep, Passes};
+use super::passes::InPasses;
+use super::{Attracted, AttractedStep};
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Trial;
 use crate::load::Load;
@@ -28,12 +29,12 @@ pub(super) struct Found {
 impl AttractedStep<'_> {
     /// Energy and change of the pass; writes s at the gap that it led to in place of the gap of its problem. The energy is the value of the Lagrangian, in which
     /// the error of the pass enters with its square; the far field is a part of the gap.
-    pub(super) fn find(&self, own: &Passes, trial: &mut Trial) -> Found {
+    pub(super) fn find(&self, own: &mut Attracted, trial: &mut Trial) -> Found {
         let AttractedStep { state, law, given: [c, _], .. } = *self;
         let (rows, solution, gap) = (state.region.rows(), &trial.solution, &mut trial.gap);
         let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
         let height = |gap: f64, k: usize| gap + c * solution.potential[k] - modes.displacement(motion, k);
-        let (s, image) = (&solution.attraction, &own.image);
+        let (s, InPasses { image, .. }) = (&solution.attraction, own.in_passes());
         let cell = |k: usize| {
             let (z, h) = (solution.pressure[k], height(gap[k], k));
             let [open, wall] = if z > 0.0 { [0.0, z * h] } else { [h.max(0.0), 0.0] };
@@ -174,7 +175,7 @@ impl AttractedStep<'_> {
     }
 
     /// Writes to the report what the step released, and whether the surfaces may have snapped.
-    pub(super) fn report_release(&self, own: &mut Passes, trial: &Trial) {
+    pub(super) fn report_release(&self, own: &mut Attracted, trial: &Trial) {
         let [before, _] =
             self.energy_of(&self.state.current.solution, self.free_motion(&self.state.current), &trial.gap);
         let [now, scale] = self.energy_of(&trial.solution, self.motion_at_end(trial), &trial.gap);

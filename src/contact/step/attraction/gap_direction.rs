@@ -1,10 +1,13 @@
 //! Gradient, direction and length of an iteration in the gap.
 
 use super::descent::Balance;
-use super::{AttractedStep, Passes};
+use super::passes::InGap;
+use super::{Attracted, AttractedStep};
 use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
+use crate::kernel::PeriodInverse;
 use crate::parallel::for_each_band;
+use crate::solver::Counts;
 
 /// Least curvature of E along a direction, over the curvature of its convex part.
 const LEAST_CURVATURE: f64 = 1e-3;
@@ -17,6 +20,13 @@ const SLOPE_LEFT: f64 = 0.1;
 const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
+/// The softest direction is looked for in at least and at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
+const LEAST_TURNS: usize = 2;
+const MOST_TURNS: usize = 20;
+const NEGATIVE: f64 = -1e-2;
+const PRECISE: f64 = 0.5;
+/// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
+const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
 const DIFFERENCE: f64 = 1e-4;
 
@@ -73,7 +83,7 @@ impl AttractedStep<'_> {
     pub(super) fn turn(
         &self,
         balance: Balance,
-        own: &mut Passes,
+        own: &mut Attracted,
         window: &mut Window,
         trial: &Trial,
         before: f64,
@@ -81,7 +91,7 @@ impl AttractedStep<'_> {
     ) -> f64 {
         let Window { kernel, work, .. } = window;
         let (rows, gap, x, r) = (kernel.rows(), &trial.gap, &trial.solution.potential, &trial.solution.pressure);
-        let Passes { last: [direction, last_r], far: steepest_y, .. } = own;
+        let InGap { direction, traction: last_r, lift: steepest_y, .. } = own.in_gap();
         kernel.apply(r, steepest_y, work);
         let is_free = |k: usize| gap[k] + x[k] > 0.0 || r[k] < 0.0;
         let c = balance.compliance;
@@ -117,10 +127,10 @@ impl AttractedStep<'_> {
     }
 
     /// The length of the step along the direction, and its curvature over the curvature of the convex part.
-    pub(super) fn length(&self, gradient: Gradient, own: &Passes, window: &Window, trial: &Trial) -> (f64, f64) {
+    pub(super) fn length(&self, gradient: Gradient, own: &mut Attracted, window: &Window, trial: &Trial) -> (f64, f64) {
         let (law, rows, gap) = (self.law, window.kernel.rows(), &trial.gap);
         let (x, q) = (&trial.solution.potential, &trial.solution.attraction);
-        let (d, image) = (&own.last[0], &own.image);
+        let InGap { direction: d, image, .. } = own.in_gap();
         let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
         let most = d.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
         let small = DIFFERENCE * law.range() / most;
@@ -132,18 +142,12 @@ impl AttractedStep<'_> {
                 [(q[k] + s - gradient.multiplier) * d[k], d[k] * image[k], softened]
             })
         });
-        let slope = |length: f64| {
-            let [attracted] = rows.sum_terms(|k| {
-                (d[k] != 0.0).then(|| [(q[k] + traction(gap[k] + x[k] + length * d[k]) - gradient.multiplier) * d[k]])
-            });
-            attracted + length * convex
-        };
         let curvature = (convex - softened) / convex;
         let bends_down = curvature <= LEAST_CURVATURE;
         let mut length = if bends_down { -LONGEST * start / convex } else { -start / (convex * curvature) };
         let (mut low, mut high) = (0.0, None);
         for _ in 0..TRIES {
-            let at = slope(length);
+            let at = self.slope(gradient, length, own, window, trial) + length * convex;
             if at.abs() <= SLOPE_LEFT * start.abs() {
                 break;
             }
@@ -161,17 +165,148 @@ impl AttractedStep<'_> {
         (if start < 0.0 { length } else { 0.0 }, curvature)
     }
 
+    /// The slope of E along the direction after a step of this length, but for that of its convex part.
+    fn slope(&self, gradient: Gradient, length: f64, own: &mut Attracted, window: &Window, trial: &Trial) -> f64 {
+        let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
+        let InGap { direction: d, .. } = own.in_gap();
+        let [attracted] = window.kernel.rows().sum_terms(|k| {
+            (d[k] != 0.0).then(|| {
+                let h = gap[k] + x[k] + length * d[k];
+                let s = if h.is_finite() { self.law.traction(h.max(0.0)) } else { 0.0 };
+                [(q[k] + s - gradient.multiplier) * d[k]]
+            })
+        });
+        attracted
+    }
+
+    /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
+    /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from the last direction, if it has its image, and a random one. Writes it, with its M d/c, so long that it
+    /// changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
+    pub(super) fn softest(
+        &self,
+        balance: Balance,
+        inverse: &mut PeriodInverse,
+        own: &mut Attracted,
+        window: &mut Window,
+        trial: &mut Trial,
+        counts: &mut Counts,
+    ) -> f64 {
+        let (law, rows, c) = (self.law, window.kernel.rows().clone(), balance.compliance);
+        let Trial { solution, gap, .. } = trial;
+        let (x, softening) = (&solution.potential, &mut solution.pressure);
+        let small = DIFFERENCE * law.range();
+        for_each_band([&mut *softening], |first, [softening]| {
+            for (softening, k) in softening.iter_mut().zip(first..) {
+                let h = gap[k] + x[k];
+                let softens = h > 0.0 && h.is_finite();
+                *softening = if softens { (law.traction(h) - law.traction(h + small)) / small } else { 0.0 };
+            }
+        });
+        let (softening, is_open) = (&*softening, |k: usize| gap[k] + x[k] > 0.0);
+        let has_image = own.has_last;
+        let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
+        // K of a field, on the open cells
+        let smooth = |window: &mut Window, field: &mut [f64]| {
+            let Window { kernel, work, .. } = window;
+            let mean = (balance.soft - c * balance.inverse[1]) * rows.sum(field) / field.len() as f64;
+            kernel.apply_in_place(field, work);
+            field.iter_mut().enumerate().for_each(|(k, y)| *y = if is_open(k) { c * *y + mean } else { 0.0 });
+            if balance.held {
+                let [sum, open] = rows.sum_terms(|k| is_open(k).then(|| [field[k], 1.0]));
+                field.iter_mut().enumerate().filter(|(k, _)| is_open(*k)).for_each(|(_, y)| *y -= sum / open);
+            }
+        };
+        // the first turn goes from the last direction, which has left what is stiff, to one that has the symmetry of no state
+        p.iter_mut().enumerate().for_each(|(k, p)| *p = softening[k] * random(k));
+        smooth(window, p);
+        balance.tractions(inverse, window, p, image_of_p, true);
+        counts.convolutions += 2;
+        if !has_image || v.iter().enumerate().any(|(k, v)| *v != 0.0 && !is_open(k)) {
+            std::mem::swap(v, p);
+            std::mem::swap(image, image_of_p);
+            p.fill(0.0);
+            image_of_p.fill(0.0);
+        }
+        let [mut softened, mut convex] = rows.sum_terms(|k| Some([softening[k] * v[k] * v[k], v[k] * image[k]]));
+        let mut before = 0.0;
+        for turn in 0..MOST_TURNS {
+            let [of_vp, of_pp, with_vp, with_pp] = rows.sum_terms(|k| {
+                let softened = softening[k] * p[k];
+                Some([softened * v[k], softened * p[k], p[k] * image[k], p[k] * image_of_p[k]])
+            });
+            // the greatest quotient of v + t p
+            let (a, b) = (of_pp * with_vp - of_vp * with_pp, of_pp * convex - softened * with_pp);
+            let e = of_vp * convex - softened * with_vp;
+            let root = (b * b - 4.0 * a * e).max(0.0).sqrt();
+            let t = if b < 0.0 { 2.0 * e / (-b + root) } else { -(b + root) / (2.0 * a) };
+            if t.is_finite() {
+                for_each_band([&mut *v, &mut *image], |first, [v, image]| {
+                    for ((v, image), k) in v.iter_mut().zip(image).zip(first..) {
+                        (*v, *image) = (*v + t * p[k], *image + t * image_of_p[k]);
+                    }
+                });
+                softened += t * (2.0 * of_vp + t * of_pp);
+                convex += t * (2.0 * with_vp + t * with_pp);
+            }
+            let share = softened / convex;
+            if !(softened > 0.0 && convex > 0.0) || 1.0 - share < NEGATIVE {
+                break;
+            }
+            for (k, w) in image_of_p.iter_mut().enumerate() {
+                *w = if is_open(k) { softening[k] * v[k] - share * image[k] } else { 0.0 };
+            }
+            smooth(window, image_of_p);
+            counts.convolutions += 1;
+            let y = &*image_of_p;
+            let [steepest] = rows.sum_terms(|k| Some([y[k] * (softening[k] * v[k] - share * image[k])]));
+            let square = steepest / convex;
+            if turn >= LEAST_TURNS && square.max(0.0).sqrt() <= PRECISE * (1.0 - share).abs() {
+                break;
+            }
+            let beta = if before > 0.0 { square / before } else { 0.0 };
+            before = square;
+            p.iter_mut().zip(y).for_each(|(p, y)| *p = y + if beta > 0.0 { beta * *p } else { 0.0 });
+            balance.tractions(inverse, window, p, image_of_p, true);
+            counts.convolutions += 1;
+        }
+        if !(softened > 0.0 && convex > 0.0) {
+            return 1.0;
+        }
+        let most = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let scale = SPAN * law.range() / most;
+        [v, image].into_iter().for_each(|field| field.iter_mut().for_each(|value| *value *= scale));
+        1.0 - softened / convex
+    }
+
+    /// Turns the softest direction downhill; returns how far to go along it: as far as E falls.
+    pub(super) fn way_out(&self, gradient: Gradient, own: &mut Attracted, window: &Window, trial: &Trial) -> f64 {
+        let uphill = self.slope(gradient, 0.0, own, window, trial) > 0.0;
+        let InGap { direction, image, .. } = own.in_gap();
+        if uphill {
+            direction.iter_mut().chain(image.iter_mut()).for_each(|value| *value = -*value);
+        }
+        let convex = window.kernel.rows().sum_of_pairs(direction, image, |d, image| d * image);
+        let mut length = 1.0;
+        for _ in 0..TRIES {
+            if self.slope(gradient, 2.0 * length, own, window, trial) + 2.0 * length * convex >= 0.0 {
+                break;
+            }
+            length *= 2.0;
+        }
+        length
+    }
+
     /// Writes x + `length` d, kept to h ≥ 0, to the lift that is tried; returns whether the wall or the mean changed it.
     pub(super) fn try_lift(
         &self,
         balance: Balance,
         length: f64,
-        own: &mut Passes,
+        own: &mut Attracted,
         window: &Window,
         trial: &Trial,
     ) -> bool {
         let (x, gap) = (&trial.solution.potential, &trial.gap);
-        let Passes { far: tried, last: [direction, _], .. } = own;
+        let InGap { lift: tried, direction, .. } = own.in_gap();
         for_each_band([&mut *tried], |first, [tried]| {
             for (tried, k) in tried.iter_mut().zip(first..) {
                 *tried = x[k] + length * direction[k];
@@ -179,4 +314,12 @@ impl AttractedStep<'_> {
         });
         self.project(balance, window.kernel.rows(), gap, tried)
     }
+}
+
+/// Between −1 and 1, by the last round of splitmix64 (Steele, Lea & Flood, OOPSLA 2014).
+fn random(k: usize) -> f64 {
+    let mut z = (k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (z ^ (z >> 31)) as f64 / u64::MAX as f64 * 2.0 - 1.0
 }

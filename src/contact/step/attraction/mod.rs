@@ -10,8 +10,8 @@
 //! there, in place of plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state
 //! belongs to.
 //!
-//! Where contact and attraction take a part of the grid, passes work with the [near field](near_field) of K. Periodic bodies take [no
-//! passes](descent).
+//! Passes take the steps of bodies that tilt freely, and of bodies that end where contact and attraction take nearly all of the grid. All others
+//! [descend in the gap](descent), those that end with the [near field](near_field) of K.
 
 mod descent;
 mod energy;
@@ -22,14 +22,16 @@ mod passes;
 mod split;
 
 use front::Front;
-use passes::Extrapolation;
+pub(in crate::contact) use passes::Attracted;
 pub use passes::PassReport;
-pub(in crate::contact) use passes::Passes;
+use passes::{Extrapolation, InPasses};
 
 use crate::adhesion::Attraction;
+use crate::contact::Edge;
 use crate::contact::scene::Scene;
 use crate::contact::state::{State, net_sum};
 use crate::contact::step::constraints::converged;
+use crate::contact::step::edge::attraction_beyond;
 use crate::contact::step::gap::RigidBodies;
 use crate::contact::step::initial_guess::{begin, fill};
 use crate::contact::step::request::TriedSpring;
@@ -88,54 +90,64 @@ impl AttractedStep<'_> {
         }
         begin(self.state, trial, self.step);
         let cells = trial.gap.len();
-        let mut own = trial.passes.take().unwrap_or_else(|| Box::new(Passes::new(cells)));
+        let mut own = trial.passes.take().unwrap_or_else(|| Box::new(Attracted::new(cells)));
         trial.solution.attraction.resize(cells, 0.0);
         let solved = self.iterate(&mut own, window, trial);
         trial.passes = Some(own);
         solved
     }
 
-    fn iterate(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial) -> Result<()> {
-        let (state, mut counts) = (self.state, Counts::default());
-        (own.report, own.error) = (PassReport::default(), (1.0 / self.softness(trial) - 1.0).clamp(1.0, MOST_ERROR));
-        if window.inverse.is_some() {
-            self.descend_in_gap(own, window, trial, &mut counts)?;
-        } else {
-            self.guess(window, trial, &mut counts);
-            if !self.solve_near(own, window, trial, &mut counts)? {
-                self.solve_whole(own, window, trial, &mut counts)?;
-            }
+    fn iterate(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial) -> Result<()> {
+        let (state, scene, mut counts) = (self.state, self.scene, Counts::default());
+        own.report = PassReport::default();
+        if self.wanted.tilts() || !self.solve_in_gap(own, window, trial, &mut counts)? {
+            self.solve_by_passes(own, window, trial, &mut counts)?;
         }
         trial.solution.counts = counts;
         self.hold_by_spring(trial);
         self.open_gap(window, trial);
         self.report_release(own, trial);
+        if scene.settings.edge == Edge::Refuse {
+            own.report.beyond_edge = attraction_beyond(scene, self.law, &state.region, &trial.solution);
+        }
         own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
         Ok(())
     }
 
-    /// Finishes z, s and K (z − s) of the trial with K alone.
-    fn solve_whole(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<()> {
+    /// Finishes z, s and K (z − s) of the trial by passes, from a guess.
+    fn solve_by_passes(
+        &self,
+        own: &mut Attracted,
+        window: &mut Window,
+        trial: &mut Trial,
+        counts: &mut Counts,
+    ) -> Result<()> {
+        own.error = (1.0 / self.softness(trial) - 1.0).clamp(1.0, MOST_ERROR);
+        trial.free[0] = self.wanted;
+        self.open_gap(window, trial);
+        begin(self.state, trial, self.step);
+        self.guess(window, trial, counts);
         let Window { kernel, work, .. } = &mut *window;
         let Solution { pressure, attraction, potential, .. } = &mut trial.solution;
-        kernel.apply(attraction, &mut own.image, work);
+        let InPasses { image, .. } = own.in_passes();
+        kernel.apply(attraction, image, work);
         counts.convolutions += 1;
-        own.far.fill(0.0);
         if self.state.extrapolation.refresh_is_due() {
             kernel.apply(pressure, potential, work);
             counts.convolutions += 1;
         } else {
-            potential.iter_mut().zip(&own.image).for_each(|(v, image)| *v += image);
+            potential.iter_mut().zip(&*image).for_each(|(v, image)| *v += image);
         }
         self.descend(own, window, trial, counts)?;
-        trial.solution.potential.iter_mut().zip(&own.image).for_each(|(v, image)| *v -= image);
+        let InPasses { image, .. } = own.in_passes();
+        trial.solution.potential.iter_mut().zip(&*image).for_each(|(v, image)| *v -= image);
         Ok(())
     }
 
-    /// Passes until one changes s no more, from z, s, K z and K s (or, of the near field, N z and N s) of the trial. Returns whether they changed anything.
-    fn descend(&self, own: &mut Passes, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<bool> {
+    /// Passes until one changes s no more, from z, s, K z and K s of the trial.
+    fn descend(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial, counts: &mut Counts) -> Result<()> {
         let AttractedStep { step, wanted, stop, given: [c, _], .. } = *self;
-        let (greatest, limit, before) = (self.law.traction(0.0), self.limit(), counts.convolutions);
+        let (greatest, limit) = (self.law.traction(0.0), self.limit());
         own.has_last = false;
         let (mut least, mut inner, mut plain, mut convolved, mut reversed) =
             (f64::INFINITY, LOOSEST, true, true, false);
@@ -149,12 +161,12 @@ impl AttractedStep<'_> {
             own.report.passes += 1;
             if !std::mem::replace(&mut convolved, false) {
                 let Window { kernel, work, .. } = &mut *window;
-                kernel.apply(&trial.solution.attraction, &mut own.image, work);
+                kernel.apply(&trial.solution.attraction, own.in_passes().image, work);
                 counts.convolutions += 1;
             }
+            let InPasses { image, .. } = own.in_passes();
             for_each_band([&mut trial.gap], |first, [gap]| {
-                let distant = own.far[first..].iter().zip(&own.image[first..]);
-                gap.iter_mut().zip(distant).for_each(|(gap, (far, image))| *gap += c * (far - image));
+                gap.iter_mut().zip(&image[first..]).for_each(|(gap, image)| *gap -= c * image);
             });
             let pulled = self.add_to_load(trial);
             let carried = !matches!(step.loads[0], Load::Force { .. }) || trial.free[0].total > 0.0;
@@ -177,7 +189,7 @@ impl AttractedStep<'_> {
             let Some(found) = kept else {
                 // the plain pass from the last state that was kept
                 own.report.rejected += 1;
-                trial.solution.attraction.copy_from_slice(&own.last[1]);
+                trial.solution.attraction.copy_from_slice(own.in_passes().last_g);
                 plain = true;
                 if std::mem::take(&mut moved) {
                     front.learn(false);
@@ -207,7 +219,7 @@ impl AttractedStep<'_> {
             own.error = if own.has_last { next.error } else { own.error };
             let ends = change * own.error <= limit;
             if ends && trial.solution.residual <= stop.tolerance {
-                return Ok(counts.convolutions > before);
+                return Ok(());
             }
             if ends {
                 // the same pass, more exactly
@@ -221,7 +233,8 @@ impl AttractedStep<'_> {
             wait = wait.saturating_sub(1);
             own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
             if let Some(profile) = front.look((1.0, true), s.len(), |k| trial.solution.pressure[k] > 0.0) {
-                s.iter_mut().enumerate().for_each(|(k, s)| *s = own.last[1][profile.source(k, g.len())]);
+                let InPasses { last_g, .. } = own.in_passes();
+                s.iter_mut().enumerate().for_each(|(k, s)| *s = last_g[profile.source(k, g.len())]);
                 (plain, moved) = (false, true);
             }
         }
@@ -235,12 +248,17 @@ impl AttractedStep<'_> {
         self.bodies.fill_gap(initial, &state.history, &state.current.solution.pressure, &mut trial.gap);
     }
 
-    /// Writes z, s and K (z − s) of a guess: extrapolated from the last two states, or the last state where s has changed much.
+    /// Writes z, s and K (z − s) of the guess of passes.
     fn guess(&self, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
-        let (state, step) = (self.state, self.step);
-        if state.is_undisturbed() {
+        if self.state.is_undisturbed() {
             return self.first_guess(window, trial, counts);
         }
+        self.extrapolate(trial);
+    }
+
+    /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s has changed much.
+    fn extrapolate(&self, trial: &mut Trial) {
+        let (state, step) = (self.state, self.step);
         let (now, before) = (&state.current.solution, &state.previous.solution);
         let mut reach = state.extrapolation.reach(step.interval.dt);
         let changes = now.attraction.iter().zip(&before.attraction).map(|(now, before)| (now - before).abs());

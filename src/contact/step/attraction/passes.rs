@@ -1,21 +1,24 @@
-//! What the passes of a step work in, and how they went.
+//! What a step of surfaces that attract each other works in, and how it went.
 
 use crate::contact::state::State;
+use crate::contact::window::Window;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
 /// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
 const LEFT_IN_A_HALF: f64 = 0.4;
 
-/// What the passes of a step work in, besides the trial, and how the last step went.
+/// What a step works in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
-pub(crate) struct Passes {
-    /// K s, or N s of the [near field](super::near_field).
-    pub(super) image: Vec<f64>,
-    /// F (z − s) of the far field; zero where passes work with K.
+pub(crate) struct Attracted {
+    fields: [Vec<f64>; 4],
+    /// F (z − s) of the [far field](super::near_field).
     pub(super) far: Vec<f64>,
-    /// s of the last pass that was kept, and s at the gap that it led to.
-    pub(super) last: [Vec<f64>; 2],
+    /// The least curvature of the energy over that of its convex part, among the directions of the last descent.
+    pub(super) softness: f64,
+    /// Whether a state is looked at for a direction along which the energy bends down.
+    pub(super) looks: bool,
+    /// Whether there is a pass before, or a direction of an iteration before and its image.
     pub(super) has_last: bool,
     /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows before they do.
     pub(super) error: f64,
@@ -24,14 +27,33 @@ pub(crate) struct Passes {
     pub(super) end: Option<Box<State>>,
 }
 
+/// The fields of a [descent](super::descent) in the gap.
+pub(super) struct InGap<'a> {
+    /// The direction d, and M d/c.
+    pub(super) direction: &'a mut Vec<f64>,
+    pub(super) image: &'a mut Vec<f64>,
+    /// Lift and traction that are tried; between two trials K r, and r of the iteration before.
+    pub(super) lift: &'a mut Vec<f64>,
+    pub(super) traction: &'a mut Vec<f64>,
+}
+
+/// The fields of passes.
+pub(super) struct InPasses<'a> {
+    /// K s.
+    pub(super) image: &'a mut Vec<f64>,
+    /// s of the last pass that was kept, and s at the gap that it led to.
+    pub(super) last_s: &'a mut Vec<f64>,
+    pub(super) last_g: &'a mut Vec<f64>,
+}
+
 /// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at the gap that the one
 /// before it led to ([`ViscoelasticContact::passes`](crate::ViscoelasticContact::passes)).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PassReport {
-    /// Passes.
+    /// Passes, or iterations in the gap.
     pub passes: usize,
-    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up.
+    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up; trials of an iteration that raised it.
     pub rejected: usize,
     /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
     pub rise: f64,
@@ -43,6 +65,8 @@ pub struct PassReport {
     pub jumped: bool,
     /// Whether this may be so: much is released, and the energy bends up little on the way, or down.
     pub(crate) suspected: bool,
+    /// The force that the attraction beyond the edge of the grid would add, over that on it; 0 where [`Edge::Allow`](crate::contact::Edge::Allow) lets it be.
+    pub(crate) beyond_edge: f64,
 }
 
 /// How the next s follows from a pass and the one before.
@@ -66,20 +90,22 @@ impl PassReport {
             released: first.released + self.released,
             jumped: whole.suspected && first.released.max(self.released) > LEFT_IN_A_HALF * whole.released,
             suspected: false,
+            beyond_edge: self.beyond_edge,
         }
     }
 }
 
-impl Passes {
+impl Attracted {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 5;
+    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 6;
 
-    pub(super) fn new(cells: usize) -> Passes {
+    pub(super) fn new(cells: usize) -> Attracted {
         let field = || vec![0.0; cells];
-        Passes {
-            image: field(),
+        Attracted {
+            fields: [field(), field(), field(), field()],
             far: field(),
-            last: [field(), field()],
+            softness: 0.0,
+            looks: true,
             has_last: false,
             error: 1.0,
             report: PassReport::default(),
@@ -87,14 +113,37 @@ impl Passes {
         }
     }
 
+    pub(super) fn in_gap(&mut self) -> InGap<'_> {
+        let [direction, image, lift, traction] = &mut self.fields;
+        InGap { direction, image, lift, traction }
+    }
+
+    /// K (z − s), or N (z − s) in a window that has traded its kernel, and the far field.
+    pub(super) fn image_of_net<'a>(
+        &'a mut self,
+        solution: &Solution,
+        window: &mut Window,
+    ) -> (&'a [f64], &'a mut Vec<f64>) {
+        let Attracted { fields: [net, image, ..], far, .. } = self;
+        let tractions = solution.pressure.iter().zip(&solution.attraction);
+        net.iter_mut().zip(tractions).for_each(|(net, (z, s))| *net = z - s);
+        window.kernel.apply(net, image, &mut window.work);
+        (image, far)
+    }
+
+    pub(super) fn in_passes(&mut self) -> InPasses<'_> {
+        let [image, last_s, last_g, _] = &mut self.fields;
+        InPasses { image, last_s, last_g }
+    }
+
     /// |z − s| at the end of a step that was solved, at its start, and at the start of the step before.
     pub(in crate::contact) fn weights(&self) -> [&[f64]; 3] {
-        [&self.last[0], &self.last[1], &self.far]
+        let [now, start, before, _] = &self.fields;
+        [now, start, before]
     }
 
     pub(super) fn keep_weights(&mut self, solutions: [&Solution; 3]) {
-        let Passes { last: [now, before], far, .. } = self;
-        for (weights, Solution { pressure, attraction, .. }) in [now, before, far].into_iter().zip(solutions) {
+        for (weights, Solution { pressure, attraction, .. }) in self.fields.iter_mut().zip(solutions) {
             for (weight, (z, s)) in weights.iter_mut().zip(pressure.iter().zip(attraction)) {
                 // no cell counts as one that the bodies have yet to meet
                 *weight = (z - s).abs().max(f64::MIN_POSITIVE);
@@ -105,11 +154,11 @@ impl Passes {
     /// Of a pass from s to g the γ that makes f = g − s less γ Δf as small as it can, Δ being the change from the last pass: the next s is g − γ Δg.
     /// Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and the sign of γ is reversed (saddle-free
     /// Newton method, Dauphin et al., NIPS 27, 2014).
-    pub(super) fn extrapolation(&self, state: &State, s: &[f64], g: &[f64]) -> Extrapolation {
+    pub(super) fn extrapolation(&mut self, state: &State, s: &[f64], g: &[f64]) -> Extrapolation {
         if !self.has_last {
             return Extrapolation { weight: 0.0, reversed: false, error: 1.0 };
         }
-        let [last_s, last_g] = &self.last;
+        let InPasses { last_s, last_g, .. } = self.in_passes();
         let [overlap, square, along, remaining, together] = state.region.rows().sum_terms(|k| {
             let (f, of_g) = (g[k] - s[k], g[k] - last_g[k]);
             let of_f = of_g - (s[k] - last_s[k]);
@@ -126,7 +175,7 @@ impl Passes {
     /// Keeps the pass from s to g, and writes the next s, g − γ Δg between 0 and the greatest.
     pub(super) fn go_on(&mut self, weight: f64, greatest: f64, s: &mut [f64], g: &[f64]) {
         self.has_last = true;
-        let [last_s, last_g] = &mut self.last;
+        let InPasses { last_s, last_g, .. } = self.in_passes();
         for_each_band([s, last_s, last_g], |first, [s, last_s, last_g]| {
             for (((s, last_s), last_g), g) in s.iter_mut().zip(last_s).zip(last_g).zip(&g[first..]) {
                 let next = if weight == 0.0 { *g } else { (g - weight * (g - *last_g)).clamp(0.0, greatest) };

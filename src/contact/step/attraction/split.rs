@@ -24,6 +24,8 @@ impl ViscoelasticContact {
             own.report.jumped = true;
             return;
         }
+        // parts need not be looked at
+        own.looks = false;
         let mut end = end.unwrap_or_else(|| Box::new(state.clone()));
         (*end).clone_from(state);
         state.roll_back();
@@ -32,7 +34,7 @@ impl ViscoelasticContact {
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
         if let Some(own) = self.computation.trial.passes.as_mut() {
-            (own.report, own.end) = (PassReport { jumped, ..whole }, Some(end));
+            (own.report, own.end, own.looks) = (PassReport { jumped, ..whole }, Some(end), true);
         }
     }
 
