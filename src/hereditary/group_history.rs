@@ -28,7 +28,7 @@ impl GroupHistory {
         GroupHistory { rule, columns, twists: Vec::with_capacity(groups) }
     }
 
-    /// The rule; its compliance is that of the step predicted last.
+    /// The rule; its compliance belongs to the step predicted last.
     pub(crate) fn rule(&self) -> &ExponentialRule {
         &self.rule
     }

@@ -55,12 +55,12 @@ impl FieldOnLevels {
 }
 
 impl PlannedField {
-    /// On a mesh where the levels are those of its states, alike on a punch, whose errors are in proportion to the pressure.
+    /// On a mesh where the levels are its own states, alike on a punch, whose errors are in proportion to the pressure.
     pub(super) fn on_levels(state: usize, levels: FieldOnLevels, punch: bool) -> PlannedField {
         PlannedField { state, levels: Some(levels).filter(|_| !punch) }
     }
 
-    /// On a mesh whose states are those of the run.
+    /// On a mesh whose states the run has.
     pub(super) fn of_run(run: &Run, time: f64) -> PlannedField {
         let state = run.states.partition_point(|state| state.time < time);
         PlannedField { state: state.min(run.states.len().saturating_sub(1)), levels: None }

@@ -81,7 +81,7 @@ impl MovingBodies {
         MovingBodies { response, inverse, loss, transforms: 0 }
     }
 
-    /// Bodies that are periodic along both axes, on half as many cells along each axis: those of their long waves.
+    /// Bodies that are periodic along both axes, on half as many cells along each axis: their long waves.
     pub(super) fn coarser(&self) -> MovingBodies {
         let [n1, n2] = self.response.cells;
         let [m1, m2] = [n1 / 2, n2 / 2];

@@ -50,6 +50,7 @@ mod levels;
 mod outside;
 mod pressed;
 mod reach;
+mod repeated;
 mod run;
 mod run_fields;
 #[cfg(feature = "checkpoint")]
@@ -58,7 +59,6 @@ mod sweep;
 mod twin;
 
 pub use crate::error::StatesError;
-pub(crate) use beside::Repeated;
 pub use contact::StatesContact;
 pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
@@ -66,6 +66,7 @@ pub use fields::StatesFields;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
 pub(crate) use reach::{Course, as_elastic, greatest};
+pub(crate) use repeated::Repeated;
 pub use run::StatesRun;
 pub use sweep::Sweep;
 pub(crate) use twin::Profile;

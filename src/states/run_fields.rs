@@ -8,9 +8,10 @@ use crate::load::LoadHistory;
 use crate::run::Run;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Moment, Prepared};
 use crate::run::field::MOST_FIELDS;
-use crate::states::beside::{Beside, Repeated};
+use crate::states::beside::Beside;
 use crate::states::contact::StatesContact;
 use crate::states::reach::Course;
+use crate::states::repeated::Repeated;
 
 /// The run errs by this part of the accuracy of the fields where its error is amplified as many times.
 const OF_AMPLIFIED: f64 = 1.5;

@@ -37,7 +37,7 @@ fn area(scene: &Scene, state: &State) -> f64 {
     scene.grid.cell_area() * state.region.images() as f64
 }
 
-/// Estimated dω/dF, that of a circle with the area of the present contact in a step of compliance `c`.
+/// Estimated dω/dF, as of a circle with the area of the present contact in a step of compliance `c`.
 fn yielding(scene: &Scene, state: &State, c: f64) -> f64 {
     let pressed = (state.current.contact_cells.max(1) / scene.bodies).max(1) as f64;
     0.5 * c / (pressed * scene.grid.cell_area() / PI).sqrt()

@@ -183,7 +183,7 @@ impl Levels {
         if is_met && self.level > 0.0 { Some(self.level) } else { (!presses).then_some(0.0) }
     }
 
-    /// No group that nothing holds sinks below those that are held.
+    /// No group that nothing holds sinks below held ones.
     fn check_order(&self, time: f64) -> Result<()> {
         match self.trial.iter().find(|w| !w.is_finite() || **w > 1.0 + ROUNDING) {
             None => Ok(()),

@@ -165,7 +165,7 @@ impl AttractedStep<'_> {
         (if start < 0.0 { length } else { 0.0 }, curvature)
     }
 
-    /// The slope of E along the direction after a step of this length, but for that of its convex part.
+    /// The slope of E along the direction after a step of this length, but for the slope of its convex part.
     fn slope(&self, gradient: Gradient, length: f64, own: &mut Attracted, window: &Window, trial: &Trial) -> f64 {
         let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
         let InGap { direction: d, .. } = own.in_gap();

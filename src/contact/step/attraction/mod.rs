@@ -11,7 +11,7 @@
 //! belongs to.
 //!
 //! Passes take the steps of bodies that tilt freely, and of bodies that end where contact and attraction take nearly all of the grid. All others
-//! [descend in the gap](descent), those that end with the [near field](near_field) of K.
+//! [descend in the gap](descent), bodies that end with the [near field](near_field) of K.
 
 mod descent;
 mod energy;

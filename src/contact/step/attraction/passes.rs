@@ -14,7 +14,7 @@ pub(crate) struct Attracted {
     fields: [Vec<f64>; 4],
     /// F (z − s) of the [far field](super::near_field).
     pub(super) far: Vec<f64>,
-    /// The least curvature of the energy over that of its convex part, among the directions of the last descent.
+    /// The least curvature of the energy over the curvature of its convex part, among the directions of the last descent.
     pub(super) softness: f64,
     /// Whether a state is looked at for a direction along which the energy bends down.
     pub(super) looks: bool,

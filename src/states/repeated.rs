@@ -1,0 +1,166 @@
+//! A run repeated on levels, in steps graded towards a time.
+
+use std::sync::Arc;
+
+use crate::error::{Error, Result, StepError};
+use crate::hereditary::Interpolant;
+use crate::load::{Load, LoadHistory};
+use crate::run::Stepping;
+use crate::states::contact::StatesContact;
+use crate::states::curve::ElasticStates;
+use crate::states::reach::Course;
+use crate::states::twin::Profile;
+
+/// Tolerance of the steps that show how long steps of a run may be; its own are parts of these, so many steps at most.
+const COARSE: f64 = 1e-3;
+const PARTS_OF_STEP: usize = 8;
+/// Under a given approach they are shorter: a small force may be what is left of large ones.
+const PARTS_BY_APPROACH: usize = 32;
+
+const MOST_STEPS: usize = 4000;
+/// The shortest step, over the time since the start.
+const SHORTEST: f64 = 1e-7;
+/// The last step before a time, over the time since the start.
+const LAST_STEP: f64 = 1e-5;
+
+/// The accuracy of a field holds relative to this part of the greatest force at least.
+const LEAST_FORCE: f64 = 0.01;
+/// States of the curve nearer than this factor of the level are one.
+pub(super) const NEAREST: f64 = 1e-6;
+
+/// Repeats a run on levels.
+#[derive(Debug, Clone)]
+pub(crate) struct Repeated {
+    /// The contact at the start of the run.
+    pub(super) origin: StatesContact,
+    pub(super) accuracy: f64,
+    /// Ends of steps that resolve the load, and what the bodies do under it.
+    schedule: Vec<f64>,
+}
+
+/// A contact on levels at a time, and the times and levels of its steps.
+pub(crate) struct Found {
+    pub(crate) contact: StatesContact,
+    steps: Vec<(f64, f64)>,
+    /// The greatest force so far.
+    force: f64,
+}
+
+impl Repeated {
+    /// Before the run is known.
+    pub(super) fn unknown(origin: StatesContact, accuracy: f64) -> Repeated {
+        Repeated { origin, accuracy, schedule: Vec::new() }
+    }
+
+    /// A run from `origin`; and its greatest level.
+    pub(crate) fn new(
+        origin: StatesContact,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: f64,
+    ) -> Result<(Repeated, f64)> {
+        let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
+        let mut run = contact.follow(history, Stepping::adaptive(COARSE), until);
+        while let Some(report) = run.next_step()? {
+            greatest = greatest.max(run.contact().level());
+            ends.push(report.time);
+        }
+        drop(run);
+        let is_force = |time: &f64| Ok(matches!(history.checked_at(*time, false)?, Load::Force { .. }));
+        let by_force = ends.iter().map(is_force).collect::<Result<Vec<bool>>>()?.into_iter().all(|is_force| is_force);
+        let most = if by_force { PARTS_OF_STEP } else { PARTS_BY_APPROACH };
+        let parts = (MOST_STEPS / ends.len()).clamp(1, most);
+        let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
+        let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
+        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
+        Ok((Repeated { origin, accuracy, schedule }, greatest))
+    }
+
+    /// The contact at a time, after a jump of the load there or before it.
+    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+        let (mut ends, mut left, rest) = (self.schedule.clone(), 1.0, 1.0 - self.accuracy.sqrt());
+        while left > LAST_STEP {
+            left *= rest;
+            ends.push(time - (time - self.origin.time()) * left);
+        }
+        ends.sort_by(f64::total_cmp);
+        self.by_steps(history, &ends, (time, after))
+    }
+
+    /// The contact at a time, by steps with these ends.
+    pub(super) fn by_steps(
+        &self,
+        history: &dyn LoadHistory,
+        ends: &[f64],
+        (time, after): (f64, bool),
+    ) -> Result<Found> {
+        let mut contact = self.origin.clone();
+        let (start, mut force) = (contact.time(), 0.0_f64);
+        let (mut corner, mut steps) = (history.next_breakpoint(start), vec![(start, 0.0)]);
+        let jump = |contact: &mut StatesContact, time: f64| {
+            match contact.step_to(time, 0.0, history.checked_at(time, false)?) {
+                // the run stays as it was
+                Err(Error::Step(StepError::NoElasticResponse { .. })) => Ok(()),
+                other => other.map(drop),
+            }
+        };
+        jump(&mut contact, start)?;
+        let shortest = SHORTEST * (time - start);
+        let inner = ends.iter().copied().filter(|end| *end > start && *end < time - shortest);
+        for end in inner.chain((time > start).then_some(time)) {
+            let now = contact.time();
+            if end - now < shortest && corner.is_none_or(|corner| corner > end) {
+                continue;
+            }
+            let before = history.checked_before(end, false)?;
+            contact.step_to(end, end - now, before)?;
+            force = force.max(contact.force());
+            if (end < time || after) && history.checked_at(end, false)? != before {
+                jump(&mut contact, end)?;
+                force = force.max(contact.force());
+            }
+            steps.push((end, contact.level()));
+            while let Some(next) = corner.filter(|corner| *corner <= end) {
+                contact.reset_differences();
+                corner = history.next_breakpoint(next);
+            }
+        }
+        Ok(Found { contact, steps, force })
+    }
+}
+
+impl Found {
+    pub(super) fn size(&self) -> f64 {
+        self.contact.force().max(LEAST_FORCE * self.force)
+    }
+
+    pub(super) fn density(&self) -> f64 {
+        Profile::new(self.contact.tractions()).density()
+    }
+
+    /// How far the bodies are apart \[m\].
+    pub(super) fn clearance(&mut self) -> Result<f64> {
+        let time = self.contact.time();
+        Ok(if self.contact.level() > 0.0 { 0.0 } else { self.contact.surface_at(time)? - self.contact.depth() })
+    }
+
+    /// The time from which on the contact has been larger than at this level.
+    pub(super) fn since(&self, level: f64) -> f64 {
+        let after = self.steps.iter().rposition(|step| step.1 < level * (1.0 - NEAREST));
+        after.map_or(self.steps[0].0, |k| self.steps.get(k + 1).unwrap_or(&self.steps[k]).0)
+    }
+}
+
+/// An undisturbed contact on these states at the start of a run.
+pub(super) fn undisturbed(
+    course: &Course<'_>,
+    states: &Arc<ElasticStates>,
+    interpolant: Interpolant,
+    start: f64,
+) -> Result<StatesContact> {
+    let mut contact = course.contact(states, interpolant)?;
+    if start > 0.0 {
+        contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
+    }
+    Ok(contact)
+}
