@@ -114,6 +114,13 @@ pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f
     sums.to_vec()
 }
 
+/// A number from 0 to 1 for each cell, by the rounds of splitmix64 (Steele, Lea & Flood, OOPSLA 2014) but for the last.
+pub(crate) fn scattered(k: usize) -> f64 {
+    let bits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    ((bits ^ (bits >> 27)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
 /// Number of sums that identify a field.
 #[cfg(feature = "checkpoint")]
 pub(crate) const MOMENTS: usize = 5;
@@ -122,11 +129,7 @@ pub(crate) const MOMENTS: usize = 5;
 #[cfg(feature = "checkpoint")]
 pub(crate) fn add_to_moments(sums: &mut [f64; MOMENTS], value: f64, k: usize, columns: usize) {
     let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
-    // 0.5 to 1.5, by the finalizer of splitmix64
-    let bits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let weight = 0.5 + ((bits ^ (bits >> 27)) >> 11) as f64 / (1_u64 << 53) as f64;
-    for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * weight]) {
+    for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * (0.5 + scattered(k))]) {
         *sum += term;
     }
 }

@@ -83,20 +83,18 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 11] = [
+const NAMES: [(&str, &str); 9] = [
     (
-        "with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted",
+        "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
     ),
-    ("name the times to fit one over, fit", "fit"),
     ("Builder::times", "times="),
     ("CreepSeries::extrapolated", "extrapolated=True of Measurements.fit"),
     ("set Settings::edge to Edge::Allow", "give edge=\"allow\""),
     ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
     ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),
     ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
-    ("Earlier::Replace removes it", "earlier=\"replace\" removes it"),
-    ("Earlier::Replace replaces it", "earlier=\"replace\" replaces it"),
+    ("Earlier::Replace", "earlier=\"replace\""),
     ("::", "."),
 ];
 

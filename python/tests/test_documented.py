@@ -72,3 +72,12 @@ def test_programs_of_the_pages(repository, page, fence, capsys):
     assert programs
     for program in programs:
         exec(program, {})
+
+
+def test_renamed_messages_are_messages(repository):
+    table = (repository / "python/src/errors.rs").read_text(encoding="utf-8").split("const NAMES")[1].split("];")[0]
+    named = re.findall(r'\(\s*"((?:[^"\\]|\\.)*)",', table)
+    source = "".join(path.read_text(encoding="utf-8") for path in (repository / "src").rglob("*.rs"))
+    assert len(named) >= 9
+    for name in named:
+        assert name in source, name

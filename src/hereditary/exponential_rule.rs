@@ -65,7 +65,7 @@ pub(crate) struct ExponentialRule {
     pub(super) greatest: f64,
     /// How often a prediction was made again, because u_old was negative somewhere.
     pub(super) repeated: u64,
-    /// Number of steps accepted since this process has it.
+    /// Number of steps accepted in this process.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     accepted: u32,
     #[cfg_attr(feature = "checkpoint", serde(skip))]
@@ -111,9 +111,11 @@ const LONGEST_CONTINUED_OF_DASHPOT: f64 = 2.41;
 const FARTHEST_APART: f64 = 1e150;
 /// A step shorter than this fraction of the step before was cut by an event: it does not correct the step before.
 const MIN_CORRECTING: f64 = 0.5;
-/// One step of so many forgets stresses q_i below this \[Pa\]: no sum with others, nor their square root of a product, would show them.
-const FORGETTING: u32 = 64;
+/// Stresses q_i below this \[Pa\] are forgotten, far above the smallest numbers of all: no sum with a stress that matters shows them.
 const NOTHING: f64 = 1e-200;
+/// Number of steps from one forgetting to the next. A stress that keeps half or more in each of them keeps 5e-20 in all; one that keeps less passes the
+/// smallest numbers by itself.
+const FORGETTING: u32 = 64;
 
 impl ExponentialRule {
     /// For bodies with contact compliance `creep`.
@@ -379,8 +381,8 @@ impl ExponentialRule {
         self.accepted = self.accepted.wrapping_add(1);
     }
 
-    /// Sets stresses to zero that have relaxed to nothing. A stress that halves at most in a step would never pass the smallest numbers of all, and
-    /// processors take a hundred times as long for these. Some steps alone do so: in their number no stress that halves falls that far.
+    /// Sets stresses that have relaxed to nothing to zero, in one step of [`FORGETTING`]. Rounding would keep a stress that less than halves in a
+    /// step at the smallest numbers of all, for which processors take a hundred times as long.
     pub(super) fn forget_relaxed(&self, stresses: &mut [f64]) {
         if self.accepted.is_multiple_of(FORGETTING) {
             stresses.iter_mut().filter(|stress| stress.abs() < NOTHING).for_each(|stress| *stress = 0.0);

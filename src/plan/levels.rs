@@ -179,7 +179,7 @@ impl Curve {
         };
         let (peak, force, edge) =
             (most(|state| state.peak), most(|state| state.force), self.edge(most(|state| state.level)));
-        let highest = exact.iter().find(|state| state.peak == peak);
+        let highest = highest_of(&exact);
         let counts = |(state, level): &(&StepState, &LevelState)| state.resolved && level.force > NEGLIGIBLE * force;
         let resolved = run.states.iter().zip(&taken).filter(counts);
         let rim = RIM_MARGIN * resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
@@ -192,7 +192,7 @@ impl Curve {
         let others = exact.iter().filter(|state| !state.is_by_force);
         Ok(Trace {
             error,
-            highest: highest_of(&exact),
+            highest: [highest.map_or(0.0, |state| state.time), peak],
             level: highest.map_or(0.0, |state| state.level),
             levels: [
                 ends().map(|state| state.level).filter(|level| *level > 0.0).fold(f64::INFINITY, f64::min),
@@ -221,7 +221,8 @@ impl Curve {
             let before = std::mem::replace(&mut error, relative((highest - peak).abs(), peak));
             if round > 1 && error > STAGNANT * before.max(allowed) && references < MOST_REFERENCES {
                 // the parts of the first steps were too long themselves
-                [time, peak] = highest_of(&self.follow(scene, &legs, parts_of(legs.len()))?);
+                let exact = self.follow(scene, &legs, parts_of(legs.len()))?;
+                [time, peak] = highest_of(&exact).map_or([0.0; 2], |state| [state.time, state.peak]);
                 error = relative((highest - peak).abs(), peak);
                 references += 1;
             }
@@ -266,10 +267,9 @@ fn parts_of(steps: usize) -> u32 {
     (MAX_PARTS / steps.max(1)).clamp(MIN_PARTS, PARTS) as u32
 }
 
-/// Time and size of the greatest pressure.
-fn highest_of(states: &[LevelState]) -> [f64; 2] {
-    let first = states.iter().map(|state| [state.time, state.peak]).reduce(|a, b| if b[1] > a[1] { b } else { a });
-    first.unwrap_or_default()
+/// The first state with the greatest pressure.
+fn highest_of(states: &[LevelState]) -> Option<&LevelState> {
+    states.iter().reduce(|highest, state| if state.peak > highest.peak { state } else { highest })
 }
 
 /// A step: its end, its length and the load there.

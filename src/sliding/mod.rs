@@ -319,7 +319,7 @@ impl SteadySliding {
         })
     }
 
-    /// Lets another thread end the search under way in [`SteadySliding::at`], and those of a sweep, as [`Run::cancelled_by`](crate::run::Run::cancelled_by): the
+    /// Lets another thread end the search under way in [`SteadySliding::at`], and the searches of a sweep, as [`Run::cancelled_by`](crate::run::Run::cancelled_by): the
     /// call ends in [`Error::Cancelled`], and the state found last is kept.
     ///
     /// ```

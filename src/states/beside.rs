@@ -46,6 +46,7 @@ const BEYOND: f64 = 16.0;
 /// Half of the levels err by so much more, the order being 3/2; twins, whose rims no mesh blurs, by so many times too much at most.
 const OF_HALF: f64 = 1.83;
 const MOST_OVERSTATED: f64 = 3.0;
+
 /// The fields of a run in space.
 #[derive(Debug)]
 pub(super) struct Beside {
@@ -182,10 +183,9 @@ impl Beside {
         Ok(states)
     }
 
-    /// The run to a time on the curve through some elastic contacts.
-    fn on_curve(&mut self, rows: Vec<[f64; 3]>, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
-        self.repeated.origin.exchange(self.curve_through(&rows)?);
-        self.repeated.at(history, at.0, at.1)
+    /// The run to a time on the curve through some of the elastic contacts.
+    fn on_curve(&self, rows: &[[f64; 3]], history: &dyn LoadHistory, (time, after): (f64, bool)) -> Result<Found> {
+        self.repeated.on(self.curve_through(rows)?).at(history, time, after)
     }
 
     /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join.
@@ -206,18 +206,13 @@ impl Beside {
     }
 
     /// Errors of the pressure for the error of the level on the curve, and for its change since `before`; and the run on the curve as it is now.
-    fn error_of_level(
-        &mut self,
-        before: &Found,
-        history: &dyn LoadHistory,
-        (time, after): (f64, bool),
-    ) -> Result<([f64; 2], Found)> {
+    fn error_of_level(&self, before: &Found, history: &dyn LoadHistory, at: (f64, bool)) -> Result<([f64; 2], Found)> {
         let last = self.rows.len() - 1;
-        let second = |k: usize| (0..=last).filter(move |row| (row + k).is_multiple_of(2) || *row == 0 || *row == last);
-        let [even, odd] = [0, 1].map(|k| second(k).map(|row| self.rows[row]).collect());
-        let [mut even, mut odd] =
-            [self.on_curve(even, history, (time, after))?, self.on_curve(odd, history, (time, after))?];
-        let mut found = self.on_curve(self.rows.clone(), history, (time, after))?;
+        let is_second = |k: usize, row: usize| (row + k).is_multiple_of(2) || row == 0 || row == last;
+        let second =
+            |k: usize| (0..=last).filter(|row| is_second(k, *row)).map(|row| self.rows[row]).collect::<Vec<_>>();
+        let [mut even, mut odd] = [self.on_curve(&second(0), history, at)?, self.on_curve(&second(1), history, at)?];
+        let mut found = self.repeated.at(history, at.0, at.1)?;
         // δp = w(c) δc at the rim, and as much less within; one of the curves may still touch where the others part
         let mut density = before.density().max(found.density()).max(even.density()).max(odd.density());
         let level = found.contact.level();
@@ -254,12 +249,10 @@ impl Beside {
             if self.by_force || attempt == MOST_ATTEMPTS {
                 break;
             }
+            self.repeated = self.repeated.on(self.curve_through(&self.rows)?);
             let ([of_curve, change], next) = match self.error_of_level(&found, history, (time, after)) {
                 // curves through fewer contacts may leave the order of levels
-                Err(Error::States(_) | Error::Step(_)) => {
-                    self.repeated.origin.exchange(self.curve_through(&self.rows)?);
-                    break;
-                }
+                Err(Error::States(_) | Error::Step(_)) => break,
                 other => other?,
             };
             found = next;
@@ -267,7 +260,8 @@ impl Beside {
             let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
             if of_curve > allowed && self.rows.len() < MOST_ROWS {
                 self.refine()?;
-                found = self.on_curve(self.rows.clone(), history, (time, after))?;
+                self.repeated = self.repeated.on(self.curve_through(&self.rows)?);
+                found = self.repeated.at(history, time, after)?;
             } else if change <= allowed {
                 break;
             }

@@ -363,7 +363,7 @@ pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
     history.checked_before(time, false)
 }
 
-fn is_force(load: Load) -> bool {
+pub(super) fn is_force(load: Load) -> bool {
     matches!(load, Load::Force { .. })
 }
 

@@ -7,22 +7,22 @@ use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory};
 use crate::run::Stepping;
 use crate::states::contact::StatesContact;
+use crate::states::control::is_force;
 use crate::states::curve::ElasticStates;
 use crate::states::reach::Course;
 use crate::states::twin::Profile;
 
-/// Tolerance of the steps that show how long steps of a run may be; its own are parts of these, so many steps at most.
+/// Tolerance of the steps that show how long steps of a run may be.
 const COARSE: f64 = 1e-3;
+/// Number of its own steps in each of these. Under a given approach its steps are shorter: a small force may be what is left of large ones.
 const PARTS_OF_STEP: usize = 8;
-/// Under a given approach they are shorter: a small force may be what is left of large ones.
 const PARTS_BY_APPROACH: usize = 32;
-
+/// Greatest number of its own steps.
 const MOST_STEPS: usize = 4000;
 /// The shortest step, over the time since the start.
 const SHORTEST: f64 = 1e-7;
 /// The last step before a time, over the time since the start.
 const LAST_STEP: f64 = 1e-5;
-
 /// The accuracy of a field holds relative to this part of the greatest force at least.
 const LEAST_FORCE: f64 = 0.01;
 /// States of the curve nearer than this factor of the level are one.
@@ -32,7 +32,7 @@ pub(super) const NEAREST: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(crate) struct Repeated {
     /// The contact at the start of the run.
-    pub(super) origin: StatesContact,
+    origin: StatesContact,
     pub(super) accuracy: f64,
     /// Ends of steps that resolve the load, and what the bodies do under it.
     schedule: Vec<f64>,
@@ -66,14 +66,23 @@ impl Repeated {
             ends.push(report.time);
         }
         drop(run);
-        let is_force = |time: &f64| Ok(matches!(history.checked_at(*time, false)?, Load::Force { .. }));
-        let by_force = ends.iter().map(is_force).collect::<Result<Vec<bool>>>()?.into_iter().all(|is_force| is_force);
+        let mut by_force = true;
+        for end in &ends {
+            by_force &= is_force(history.checked_at(*end, false)?);
+        }
         let most = if by_force { PARTS_OF_STEP } else { PARTS_BY_APPROACH };
         let parts = (MOST_STEPS / ends.len()).clamp(1, most);
         let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
         let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
         Ok((Repeated { origin, accuracy, schedule }, greatest))
+    }
+
+    /// The run on other elastic states of the same surface.
+    pub(super) fn on(&self, states: Arc<ElasticStates>) -> Repeated {
+        let mut repeated = self.clone();
+        repeated.origin.exchange(states);
+        repeated
     }
 
     /// The contact at a time, after a jump of the load there or before it.

@@ -241,7 +241,7 @@ fn fields_leave_the_steps_as_they_are() {
     }
 }
 
-/// What follows a run is given the field: the stress below the surface has its accuracy. A run that goes on from a file has the same fields.
+/// The stress below the surface of a sample has the accuracy of its field. A run that is resumed from a file has the same fields.
 #[test]
 #[cfg(feature = "checkpoint")]
 fn fields_are_given_to_what_follows_and_found_again_after_a_resumption() {

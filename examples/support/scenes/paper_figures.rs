@@ -163,7 +163,7 @@ pub struct FewSteps {
     pub pressures: Vec<Vec<f64>>,
     /// Greatest error in time of the profiles, Σ |p − p′| / Σ p′, with p′ on the same cells in many steps by the default rule.
     pub errors: Vec<f64>,
-    /// Convolutions of the run, with those of the fields.
+    /// Convolutions of the run and its fields.
     pub convolutions: Vec<usize>,
 }
 

@@ -293,7 +293,7 @@ impl AttractedStep<'_> {
         q.iter_mut().for_each(|q| *q += shift);
         let mut opens = false;
         if !balance.held {
-            // what is pressed goes on to touch
+            // cells under pressure stay in contact
             for ((x, _), gap) in x.iter_mut().zip(&*pressure).zip(&*gap).filter(|((_, z), _)| **z > 0.0) {
                 opens |= gap + *x != 0.0;
                 *x = -gap;

@@ -8,6 +8,7 @@ use crate::contact::window::Window;
 use crate::kernel::PeriodInverse;
 use crate::parallel::for_each_band;
 use crate::solver::Counts;
+use crate::sum::scattered;
 
 /// Least curvature of E along a direction, over the curvature of its convex part.
 const LEAST_CURVATURE: f64 = 1e-3;
@@ -217,7 +218,7 @@ impl AttractedStep<'_> {
             }
         };
         // the first turn goes from the last direction, which has left what is stiff, to one that has the symmetry of no state
-        p.iter_mut().enumerate().for_each(|(k, p)| *p = softening[k] * random(k));
+        p.iter_mut().enumerate().for_each(|(k, p)| *p = softening[k] * (2.0 * scattered(k) - 1.0));
         smooth(window, p);
         balance.tractions(inverse, window, p, image_of_p, true);
         counts.convolutions += 2;
@@ -314,12 +315,4 @@ impl AttractedStep<'_> {
         });
         self.project(balance, window.kernel.rows(), gap, tried)
     }
-}
-
-/// Between −1 and 1, by the last round of splitmix64 (Steele, Lea & Flood, OOPSLA 2014).
-fn random(k: usize) -> f64 {
-    let mut z = (k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (z ^ (z >> 31)) as f64 / u64::MAX as f64 * 2.0 - 1.0
 }
