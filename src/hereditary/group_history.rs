@@ -95,6 +95,37 @@ impl GroupHistory {
             combine(column, decay, [one, two, three], [changes, bends, twists]);
             rule.forget_relaxed(column);
         }
+        if rule.leads() {
+            let held = now.iter().enumerate().filter(|(_, now)| **now == 1.0);
+            held.for_each(|(k, _)| (changes[k], bends[k]) = (0.0, 0.0));
+        }
+    }
+
+    /// W at the end of the step predicted last, if nothing presses on it, of what stood at 0 and moved by these differences before.
+    pub(crate) fn continued(&self, differences: [f64; 2]) -> f64 {
+        let [_, of_change, of_bend] = self.rule.tried.past;
+        if self.rule.leads() { of_change * differences[0] + of_bend * differences[1] } else { 0.0 }
+    }
+
+    /// Lets a group have moved by such a part of these differences besides its own.
+    pub(crate) fn lead(&mut self, group: usize, part: f64, differences: [f64; 2]) {
+        let columns = self.columns[1..HEAD].iter_mut().zip(differences);
+        columns.for_each(|(column, difference)| column[group] += part * difference);
+    }
+
+    /// The differences after the step accepted last of what moved by `differences` before, and by `change` in it.
+    pub(crate) fn differences_after(&self, differences: [f64; 2], change: f64) -> [f64; 2] {
+        [change, change - self.rule.committed.ratios[0] * differences[0]]
+    }
+
+    /// Weighs the step predicted last with less degree, if it has any.
+    pub(crate) fn reduce_order(&mut self, free: &mut Vec<f64>) -> bool {
+        let has_less = self.rule.has_less();
+        if has_less {
+            self.rule.reduce_order();
+            self.free_displacements(free);
+        }
+        has_less
     }
 
     /// Whether it may be the history of so many groups by the rule of `other`; a damaged file may hold any.

@@ -88,6 +88,16 @@ impl StatesContact {
         self.with_interpolant(Interpolant::Linear)
     }
 
+    /// With the steps of adaptive runs: quadratic, but of a body without elastic response or if they are to stay linear.
+    pub(super) fn with_quadratic_steps(self) -> StatesContact {
+        let is_corrected = self.scene.interpolant == Interpolant::CorrectedLinear;
+        if is_corrected && !self.levels.has_dashpot() {
+            self.with_interpolant(Interpolant::CorrectedQuadratic)
+        } else {
+            self
+        }
+    }
+
     pub(crate) fn with_interpolant(mut self, interpolant: Interpolant) -> StatesContact {
         Arc::make_mut(&mut self.scene).interpolant = interpolant;
         self

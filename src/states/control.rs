@@ -144,7 +144,8 @@ impl Record {
 
 impl StepControl {
     pub(super) fn new(contact: &StatesContact, record: Record) -> StepControl {
-        StepControl { record, whole: contact.clone(), halves: contact.clone(), middle: contact.clone() }
+        let quadratic = contact.clone().with_quadratic_steps();
+        StepControl { record, whole: quadratic.clone(), halves: quadratic.clone(), middle: quadratic }
     }
 
     /// The next step starts at a jump or a corner of the load.

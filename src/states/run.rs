@@ -122,6 +122,10 @@ impl Driven for StatesContact {
         within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
         let mut contact = if time == end { self.clone() } else { control.before.clone() };
         // an adaptive step is taken in two halves
+        let interpolant = contact.scene.interpolant;
+        if control.halved {
+            contact = contact.with_quadratic_steps();
+        }
         let middle = start + 0.5 * (end - start);
         if control.halved && time > middle && time < end {
             contact.step_to(middle, middle - start, load_at(history, middle)?)?;
@@ -131,7 +135,7 @@ impl Driven for StatesContact {
             contact.step_to(time, time - contact.time(), load)?;
         }
         let report = contact.report(time - start, load);
-        Ok((contact, report))
+        Ok((contact.with_interpolant(interpolant), report))
     }
 
     // steps on levels are free: fields have a run of their own

@@ -169,6 +169,39 @@ pub fn taps(draws: &mut Draws, control: Control, until: f64) -> RandomHistory {
     RandomHistory { name: format!("{cycles:.1} taps from {low:.2}"), history, corners: Vec::new() }
 }
 
+/// Pulses, sines or arcs between which the bodies are apart, longer or shorter.
+pub fn parting_history(draws: &mut Draws, control: Control, until: f64) -> RandomHistory {
+    let smooth = |name: &str, part: Box<dyn Fn(f64) -> f64 + Send + Sync>| RandomHistory {
+        name: name.into(),
+        history: control.function(part, &[]),
+        corners: Vec::new(),
+    };
+    match draws.below(4) {
+        0 => taps(draws, control, until),
+        1 => {
+            let rate = TAU * draws.scale(0.5, 12.0) / until;
+            let slow = rate * draws.between(0.05, 0.6);
+            smooth("two sines", Box::new(move |t| 0.35 * (rate * t).sin() + 0.3 * (slow * t).sin() - 0.05))
+        }
+        2 => {
+            let (first, second) = (until * draws.between(0.02, 0.2), until * draws.between(0.3, 0.7));
+            let width = until * draws.scale(0.01, 0.1);
+            let pulse = |t: f64| (-t * t).exp();
+            let second = move |t| 0.9 * pulse((t - second) / width);
+            smooth("two pulses", Box::new(move |t| 0.8 * pulse((t - first) / (0.3 * first)) + second(t) - 0.02))
+        }
+        _ => {
+            let (mut rows, mut time) = (vec![(0.0, 0.0)], 0.0);
+            for k in 1..=10 {
+                time += draws.scale(0.02, 1.0);
+                rows.push((time, if k % 2 == 1 { draws.between(0.2, 1.0) } else { draws.between(-0.6, 0.1) }));
+            }
+            rows.iter_mut().for_each(|row| row.0 *= until / time);
+            control.tabled("table that parts".into(), &rows)
+        }
+    }
+}
+
 /// The same history, but never below a hundredth of its greatest load.
 #[derive(Debug)]
 pub struct FromSmallLoad<'a> {

@@ -4,7 +4,9 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use crate::common::random_histories::Control;
+use crate::common::random_bodies::{Body, body_of_twenty_decades, random_body};
+use crate::common::random_histories::{Control, RandomHistory, parting_history, random_history};
+use crate::common::random_returns::{returning_body, returning_history};
 use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, StatesContact};
@@ -14,99 +16,15 @@ const MOST_STEPS: usize = 12_000;
 const LONG: usize = 5000;
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
-/// A body, a shape and a history, in units of their own.
+/// A body, a shape and a history.
 struct Scene {
     name: String,
-    material: Material,
+    body: Body,
     states: Arc<ElasticStates>,
-    history: Box<dyn LoadHistory>,
-    until: f64,
+    history: RandomHistory,
     tolerance: f64,
-    is_kelvin_voigt: bool,
     /// Times at which the history is not smooth, or a force begins or ends.
     corners: Vec<f64>,
-}
-
-/// A contact modulus E(t) of an incompressible body, G = E/4.
-fn relaxing(equilibrium: f64, terms: impl IntoIterator<Item = (f64, f64)>) -> Material {
-    let terms: Vec<_> = terms.into_iter().map(|(modulus, time)| (0.25 * modulus, time)).collect();
-    Material::incompressible(GeneralizedMaxwell::new(0.25 * equilibrium, &terms).unwrap())
-}
-
-/// The bodies take turns, so that nine seeds in a row have all of them.
-fn body(seed: u64, draws: &mut Draws, until: f64) -> (&'static str, Material) {
-    let ratio = draws.scale(1.3, 2000.0);
-    let mut terms = |least: f64, times: std::ops::RangeInclusive<i32>| -> Vec<(f64, f64)> {
-        times.map(|k| (draws.scale(least, 1.0), 10f64.powi(k))).collect()
-    };
-    let (four, twelve) = (terms(0.05, -2..=1), terms(0.05, -6..=5));
-    let (three, twenty) = (terms(0.05, -1..=1), terms(0.02, -10..=9));
-    let power = draws.between(0.1, 0.7);
-    match seed % 9 {
-        0 => ("Zener", relaxing(1.0 / ratio, [(1.0, 1.0)])),
-        1 => {
-            let body = FractionalZener::new(0.25, 0.25 / ratio, 1.0, power + 0.15).unwrap();
-            ("fractional Zener", Material::incompressible(body).fitted(1e-6 * until..=until, 1e-3).unwrap())
-        }
-        2 => ("Maxwell", relaxing(0.0, [(1.0, 1.0)])),
-        3 => ("four times", relaxing(1.0 / ratio, four)),
-        4 => ("twelve times", relaxing(0.01, twelve)),
-        5 => ("fluid of three times", relaxing(0.0, three)),
-        6 => {
-            let times = (0..28).map(|k| 10f64.powf(-3.5 + 0.5 * f64::from(k)));
-            ("power law", relaxing(0.0, times.map(|time| (0.1 * time.powf(-power), time))))
-        }
-        7 => ("twenty decades", relaxing(0.005, twenty)),
-        _ => ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::with_time(0.25, 1.0).unwrap())),
-    }
-}
-
-/// A history of parts of the greatest load; -0.6 is the farthest apart.
-fn history(draws: &mut Draws, control: Control, until: f64, jumps: bool) -> (&'static str, Box<dyn LoadHistory>) {
-    let table = |rows: &[(f64, f64)]| -> Box<dyn LoadHistory> {
-        let rows: Vec<_> = rows.iter().map(|&(time, part)| (time, control.load(part))).collect();
-        Box::new(PiecewiseLinear::new(&rows).unwrap())
-    };
-    let rate = TAU * draws.scale(0.5, 12.0) / until;
-    let slow = rate * draws.between(0.05, 0.6);
-    match draws.below(9) {
-        0 if jumps => ("step", Box::new(StepLoad::new(control.load(1.0)).unwrap())),
-        0 | 1 => {
-            let rise = until * draws.scale(1e-3, 0.8);
-            ("ramp", Box::new(Ramp::new(control.load(0.0), control.load(1.0), rise).unwrap()))
-        }
-        2 => ("cosine", Box::new(FnHistory::new(move |t: f64| control.load(0.5 - 0.5 * (rate * t).cos())))),
-        3 => {
-            let top = until * draws.between(0.1, 0.4);
-            ("triangle that returns", table(&[(0.0, 0.0), (top, 1.0), (2.0 * top, 0.2), (until, 0.8)]))
-        }
-        4 => ("taps", Box::new(FnHistory::new(move |t: f64| control.load(0.6 * (rate * t).sin())))),
-        5 => {
-            let rows: Vec<_> = (0..=8).map(|k| (until * f64::from(k) / 8.0, draws.between(0.0, 1.0))).collect();
-            ("table", table(&[&[(0.0, 0.0)], &rows[1..]].concat()))
-        }
-        6 => {
-            let (mut rows, mut time) = (vec![(0.0, 0.0)], 0.0);
-            for k in 1..=10 {
-                time += draws.scale(0.02, 1.0);
-                rows.push((time, if k % 2 == 1 { draws.between(0.2, 1.0) } else { draws.between(-0.6, 0.1) }));
-            }
-            rows.iter_mut().for_each(|row| row.0 *= until / time);
-            ("table that parts", table(&rows))
-        }
-        7 => {
-            let part = move |t: f64| 0.35 * (rate * t).sin() + 0.3 * (slow * t).sin() - 0.05;
-            ("two sines", Box::new(FnHistory::new(move |t: f64| control.load(part(t)))))
-        }
-        _ => {
-            let (first, second) = (until * draws.between(0.02, 0.2), until * draws.between(0.3, 0.7));
-            let width = until * draws.scale(0.01, 0.1);
-            let pulse = |t: f64| (-t * t).exp();
-            let part =
-                move |t: f64| 0.8 * pulse((t - first) / (0.3 * first)) + 0.9 * pulse((t - second) / width) - 0.02;
-            ("two pulses", Box::new(FnHistory::new(move |t: f64| control.load(part(t)))))
-        }
-    }
 }
 
 /// Force, approach or drive.
@@ -122,43 +40,43 @@ fn size(load: Load) -> f64 {
 impl Scene {
     fn new(seed: u64) -> Scene {
         let draws = &mut Draws::new(seed);
-        let (tolerance, until) = (TOLERANCES[draws.below(4)], draws.scale(0.3, 100.0));
-        let (body, material) = body(seed, draws, until);
-        let is_kelvin_voigt = body == "Kelvin-Voigt";
+        let tolerance = TOLERANCES[draws.below(4)];
+        let body = match draws.below(9) {
+            0 => body_of_twenty_decades(draws),
+            1 | 2 => returning_body(draws),
+            _ => random_body(draws),
+        };
         let states = match draws.below(4) {
             0 | 1 => ElasticStates::sphere(1.0),
             2 => ElasticStates::cone(0.3),
             _ => ElasticStates::power(1.0, 4.0),
         };
         let (states, depth) = (states.unwrap(), 0.3);
-        let force = states.level_at(depth) / material.contact_compliance(until).max(1e-3);
-        let stiffness = force / depth * draws.scale(0.05, 20.0);
-        let control = match if is_kelvin_voigt { 0 } else { draws.below(3) } {
-            0 => Control::Force(force),
-            1 => Control::Approach { touch: 0.0, depth },
-            _ => {
-                let drive = depth + force / stiffness;
-                Control::Spring { touch: 0.0, depth: drive, stiffness, over: 1.0 }
-            }
+        let force = states.level_at(depth) / body.material.contact_compliance(body.until);
+        let answers_at_once = body.is_elastic_at_once();
+        let (control, by) = match if answers_at_once { draws.below(3) } else { 0 } {
+            0 => (Control::Force(force), "force"),
+            1 => (Control::Approach { touch: 0.0, depth }, "approach"),
+            _ => (Control::by_spring(draws, 0.0, depth, force), "spring"),
         };
-        let (kind, history) = history(draws, control, until, !is_kelvin_voigt);
-        let by = ["force", "approach", "spring"][match control {
-            Control::Approach { .. } => 1,
-            Control::Spring { .. } => 2,
-            _ => 0,
-        }];
-        let name = format!("{seed}: {body}, {kind} of the {by}, {tolerance:.0e}");
-        let corners = corners(&*history, until);
-        Scene { name, material, states, history, until, tolerance, is_kelvin_voigt, corners }
+        let history = match draws.below(4) {
+            0 => parting_history(draws, control, body.until),
+            1 if answers_at_once => returning_history(draws, control, body.until),
+            _ => random_history(draws, control, body.until, answers_at_once),
+        };
+        let creep = body.creep_ratio();
+        let name = format!("{seed}: {} (creep {creep:.1e}), {} of the {by}, {tolerance:.0e}", body.name, history.name);
+        let corners = corners(&history, body.until);
+        Scene { name, body, states, history, tolerance, corners }
     }
 
     fn contact(&self) -> StatesContact {
-        StatesContact::new(&self.states, &self.material).unwrap()
+        StatesContact::new(&self.states, &self.body.material).unwrap()
     }
 
     /// Times inside the run that are looked at.
     fn looks(&self) -> Vec<f64> {
-        let equal = (1..400).map(|k| self.until * f64::from(k) / 400.0);
+        let equal = (1..400).map(|k| self.body.until * f64::from(k) / 400.0);
         let graded = |pair: &[f64]| {
             let [start, end] = [pair[0], pair[1]];
             (1..40).map(move |k| start + (end - start) * 10f64.powf(-f64::from(k) / 8.0))
@@ -170,13 +88,15 @@ impl Scene {
 }
 
 /// Start, corners and end of a run, and where forces begin and end.
-fn corners(history: &dyn LoadHistory, until: f64) -> Vec<f64> {
+fn corners(history: &RandomHistory, until: f64) -> Vec<f64> {
     let mut corners = vec![0.0];
-    let mut corner = 0.0;
-    while let Some(next) = history.next_breakpoint(corner).filter(|next| *next < until) {
+    let (unnamed, history) = (&history.corners, &*history.history);
+    while let Some(next) = history.next_breakpoint(corners[corners.len() - 1]).filter(|next| *next < until) {
         corners.push(next);
-        corner = next;
     }
+    let is_new = |time: &f64, corners: &[f64]| corners.iter().all(|corner| (corner - time).abs() > 1e-6 * until);
+    let unnamed = unnamed.iter().copied().filter(|time| *time < until && is_new(time, &corners));
+    corners.extend(unnamed.collect::<Vec<_>>());
     let presses = |time: f64| !matches!(history.at(time), Load::Force { normal, .. } if normal == 0.0);
     for k in 0..4000 {
         let [mut low, mut high] = [k, k + 1].map(|k| until * f64::from(k) / 4000.0);
@@ -188,7 +108,7 @@ fn corners(history: &dyn LoadHistory, until: f64) -> Vec<f64> {
             let middle = 0.5 * (low + high);
             *(if presses(middle) == at_low { &mut low } else { &mut high }) = middle;
         }
-        if corners.iter().all(|corner| (corner - high).abs() > 1e-6 * until) {
+        if is_new(&high, &corners) {
             corners.push(high);
         }
     }
@@ -203,17 +123,19 @@ struct Reference(Vec<Vec<(f64, [f64; 2])>>);
 impl Reference {
     /// By about `steps` steps, graded towards both ends of each smooth piece.
     fn new(scene: &Scene, steps: f64) -> Option<Reference> {
-        let history = &scene.history;
+        let history = &scene.history.history;
         let mut contact = scene.contact().with_merge_error(1e-2 * scene.tolerance).unwrap();
         if size(history.at(0.0)) > 0.0 {
             contact.step(0.0, history.at(0.0)).ok()?;
         }
         let (mut pieces, mut now) = (Vec::new(), 0.0);
         // the force of a body that resists rates alone is a change of its strain over the step: shorter steps round it by more than is asked
-        let first = if scene.is_kelvin_voigt { 1e-9 } else { 1e-13 };
+        let body = &scene.body;
+        let first =
+            if body.is_elastic_at_once() { 1e-13f64.min(1e-3 * body.shortest_time() / body.until) } else { 1e-9 };
         for pair in scene.corners.windows(2) {
             let (start, end) = (pair[0], pair[1]);
-            let longest = 1.0 / (steps * (end - start) / scene.until).max(steps / 50.0);
+            let longest = 1.0 / (steps * (end - start) / scene.body.until).max(steps / 50.0);
             let growth = 10f64.powf(1.0 / (steps / 300.0).max(8.0)) - 1.0;
             let grow = |part: &f64| Some(part + longest.min(growth * part)).filter(|part| *part < 0.5);
             let parts: Vec<f64> = std::iter::successors(Some(first), grow).collect();
@@ -267,7 +189,7 @@ type Points = Vec<(f64, [f64; 2])>;
 fn run(scene: &Scene) -> std::result::Result<[Points; 2], String> {
     let mut contact = scene.contact();
     let (looks, [mut ends, mut inside]) = (scene.looks(), [(); 2].map(|()| Vec::new()));
-    let mut run = contact.follow(&*scene.history, Stepping::adaptive(scene.tolerance), scene.until);
+    let mut run = contact.follow(&*scene.history.history, Stepping::adaptive(scene.tolerance), scene.body.until);
     while let Some(report) = run.next_step().map_err(|error| error.to_string())? {
         if report.dt == 0.0 {
             continue;
@@ -281,7 +203,7 @@ fn run(scene: &Scene) -> std::result::Result<[Points; 2], String> {
             inside.push((time, [within.force(), within.approach()]));
         }
         if ends.len() > MOST_STEPS {
-            return Err(format!("{} of {} after {MOST_STEPS} steps", report.time, scene.until));
+            return Err(format!("{} of {} after {MOST_STEPS} steps", report.time, scene.body.until));
         }
     }
     Ok([ends, inside])
@@ -297,7 +219,7 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
     for seed in first..first + count {
         let scene = Scene::new(seed);
         let found = run(&scene);
-        if let (Ok([ends, _]), false) = (&found, scene.is_kelvin_voigt) {
+        if let (Ok([ends, _]), false) = (&found, !scene.body.is_elastic_at_once()) {
             let kind = TOLERANCES.iter().position(|tolerance| *tolerance == scene.tolerance).unwrap();
             steps[kind].push(ends.len() as f64, &scene.name);
         }
@@ -316,7 +238,8 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
                     relative(0).max(relative(1)) / scene.tolerance
                 };
                 let doubt = |time: f64| apart(coarse.at(time), fine.at(time));
-                let most = (0..1000).map(|k| doubt(scene.until * (f64::from(k) + 0.37) / 1000.0)).fold(0.0, f64::max);
+                let most =
+                    (0..1000).map(|k| doubt(scene.body.until * (f64::from(k) + 0.37) / 1000.0)).fold(0.0, f64::max);
                 if most > 0.5 {
                     vague += 1;
                     continue;
@@ -327,7 +250,21 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
                 };
                 let [ends, inside] = [off(&found[0]), off(&found[1])];
                 let name = format!("{}, {} steps", scene.name, found[0].len());
-                let kind = usize::from(scene.is_kelvin_voigt);
+                if std::env::var("STATES_SHOW").is_ok() {
+                    for &(time, values) in &found[0] {
+                        let right = fine.at(time);
+                        let level = scene.body.material.contact_compliance(time) * values[0];
+                        println!(
+                            "{:.4e} {:.6e} {:.6e} fine {:.6e} coarse {:.6e} level at {:.6e}/{:.6e} off {:.3} doubt {:.3}",
+                            time / scene.body.until,
+                            values[0], values[1], right[1], coarse.at(time)[1], level, scene.states.level_at(values[1]),
+                            apart(values, right),
+                            doubt(time),
+                        );
+                    }
+                    println!("greatest {greatest:?} until {:e}", scene.body.until);
+                }
+                let kind = usize::from(!scene.body.is_elastic_at_once());
                 ratios[kind][0].push(ends, &name);
                 ratios[kind][1].push(inside, &name);
                 ratios[kind][2].push(ends.max(inside), &name);
@@ -339,26 +276,31 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
     for (steps, tolerance) in steps.iter().zip(TOLERANCES) {
         steps.print(&format!("steps at {tolerance:.0e}"), 2);
     }
-    for (ratios, body) in ratios.iter().zip(["", ", Kelvin-Voigt"]) {
+    for (ratios, body) in ratios.iter().zip(["", ", resisting rates"]) {
         for (ratios, place) in ratios.iter().zip(["ends", "inside", "both"]) {
             ratios.print(&format!("error over tolerance, {place}{body}"), 6);
         }
     }
     let long: u64 = steps.iter().map(|steps| steps.above(LONG as f64) as u64).sum();
     assert!(long <= count / 50, "{long} runs of more than {LONG} steps");
-    let [both, kelvin_voigt] = ratios.map(|[_, _, both]| both);
+    let [both, resisting] = ratios.map(|[_, _, both]| both);
     assert!(!judges || both.count() as u64 > count / 2, "{} judged", both.count());
-    assert!(!judges || count < 9 || kelvin_voigt.count() > 0, "no body without elastic response judged");
+    assert!(!judges || count < 9 || resisting.count() > 0, "no body without elastic response judged");
     assert!(failed.is_empty(), "{failed:?}");
-    assert!(kelvin_voigt.above(5.0) == 0, "{kelvin_voigt:?}");
+    assert!(resisting.above(5.0) == 0, "{resisting:?}");
     assert!(both.above(2.0) <= both.count() / 100 && both.above(3.0) == 0, "beyond what was asked: {both:?}");
+}
+
+/// A contact modulus E(t) of an incompressible body, G = E/4.
+fn relaxing(equilibrium: f64, modulus: f64) -> Material {
+    Material::incompressible(GeneralizedMaxwell::new(0.25 * equilibrium, &[(0.25 * modulus, 1.0)]).unwrap())
 }
 
 /// Nine taps, most of them shorter than the step that the body apart would allow: none is stepped over, and none is too weak.
 #[test]
 fn taps_are_not_stepped_over() {
     let states = ElasticStates::sphere(1.0).unwrap();
-    let body = relaxing(1.0 / 10.5, [(1.0, 1.0)]);
+    let body = relaxing(1.0 / 10.5, 1.0);
     let rate = 1.5;
     let load = FnHistory::new(move |t: f64| Load::approach(0.18 * (rate * t).sin()));
     let mut fine = StatesContact::new(&states, &body).unwrap();
@@ -394,8 +336,7 @@ fn breakpoints_a_rounding_before_the_end_are_reached() {
     for ulps in 1..=40 {
         let corner = f64::from_bits(until.to_bits() - ulps);
         let history = FnHistory::new(load).with_breakpoints(&[corner]).unwrap();
-        let mut contact =
-            StatesContact::new(&ElasticStates::sphere(1.0).unwrap(), &relaxing(0.1, [(0.9, 1.0)])).unwrap();
+        let mut contact = StatesContact::new(&ElasticStates::sphere(1.0).unwrap(), &relaxing(0.1, 0.9)).unwrap();
         let mut run = contact.follow(&history, Stepping::adaptive(1e-3), until);
         while run.next_step().unwrap().is_some() {}
         assert_eq!(contact.time(), until);

@@ -54,6 +54,8 @@ pub(super) struct Levels {
     trial: Vec<f64>,
     /// Level up to which the groups are held \[m²\].
     pub(super) level: f64,
+    /// Σ (1 − W) Δl of the levels that it passed in the last step, and its difference to the step before.
+    passed: [f64; 2],
     /// Σ w Δl \[N\].
     pub(super) force: f64,
     /// Σ W Δy, less the lift.
@@ -79,6 +81,7 @@ impl Levels {
             merge_from: 0,
             trial: Vec::with_capacity(GROUPS),
             level: 0.0,
+            passed: [0.0; 2],
             force: 0.0,
             motions: Motions::default(),
             lift: 0.0,
@@ -90,7 +93,7 @@ impl Levels {
         self.history.copy_from(&other.history);
         self.groups.clone_from(&other.groups);
         self.trial.clone_from(&other.trial);
-        self.merge_from = other.merge_from;
+        (self.merge_from, self.passed) = (other.merge_from, other.passed);
         (self.level, self.force, self.motions, self.lift) = (other.level, other.force, other.motions, other.lift);
     }
 
@@ -103,8 +106,13 @@ impl Levels {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self, other: &Levels) -> bool {
         let (tops, numbers) = (|| self.groups.iter().map(|group| group.top), [self.level, self.force, self.lift]);
-        let is_finite = tops().chain(numbers).all(f64::is_finite);
+        let is_finite = tops().chain(numbers).chain(self.passed).all(f64::is_finite);
         self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
+    }
+
+    /// Whether the body has no elastic response.
+    pub(super) fn has_dashpot(&self) -> bool {
+        self.history.rule().has_dashpot()
     }
 
     /// Number of groups.
@@ -146,11 +154,17 @@ impl Levels {
         if !is_between {
             self.check_order(time)?;
         }
-        let wanted = match demand {
-            Demand::Force(force) => {
-                Wanted { level: self.level_of_force(compliance, force), give: f64::INFINITY, sum: 0.0 }
+        let wanted = loop {
+            let plain = self.level_of(states, demand, 0.0);
+            let lead = if plain.level > self.level { self.lead() } else { 0.0 };
+            let led = if lead > 0.0 { self.level_of(states, demand, lead) } else { plain };
+            // levels that would pull: the edge has slowed down by more than a quadratic describes
+            if lead <= self.swept(led.level) {
+                break led;
             }
-            Demand::Depth { depth, give } => self.level_of_depth(states, give / compliance, depth),
+            if !self.history.reduce_order(&mut self.trial) {
+                break plain;
+            }
         };
         let level = wanted.level;
         if level.is_nan() {
@@ -195,7 +209,11 @@ impl Levels {
     /// Accepts the step of [`Levels::wanted`].
     pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, level: f64) {
         if self.history.rule().compliance() > 0.0 {
+            let (lead, swept, edge) = (self.lead(), self.swept(level), self.level);
             self.cut_at(states, level);
+            if 0.0 < lead && lead <= swept {
+                self.lead_between([edge, level], lead, swept);
+            }
             self.hold(level);
         } else if level == 0.0 {
             self.release();
@@ -224,9 +242,52 @@ impl Levels {
         group.checked_sub(1).map_or((0.0, Motions::default()), |k| (self.groups[k].top, self.groups[k].motions))
     }
 
-    /// The level c up to which groups are held under a force: F(c) c_Δ = Σ (1 − W) Δl below c.
-    fn level_of_force(&self, compliance: f64, force: f64) -> f64 {
-        let (mut carried, needed) = (0.0, force * compliance);
+    /// What Σ W Δl of levels that the edge meets in a step is more at its end, if nothing presses on them: the edge passes them one by one, and W of
+    /// their mean follows the part that it has passed. So this continues what it passed in the steps before.
+    fn lead(&self) -> f64 {
+        self.history.continued(self.passed).max(0.0)
+    }
+
+    /// Σ (1 − W) Δl of the levels between the edge at the start of the step and this one.
+    fn swept(&self, level: f64) -> f64 {
+        let mut bottom = self.level;
+        let displacements = self.history.displacements().iter().chain(std::iter::once(&0.0));
+        let tops = self.groups.iter().map(|group| group.top.min(level)).chain(std::iter::once(level));
+        let part = |(top, displacement): (f64, &f64)| {
+            let width = (top - bottom).max(0.0);
+            bottom = bottom.max(top);
+            (1.0 - displacement) * width
+        };
+        tops.zip(displacements).map(part).sum()
+    }
+
+    /// Lets the groups between two levels of the edge, which it met in the step, have moved with it before.
+    fn lead_between(&mut self, edges: [f64; 2], lead: f64, swept: f64) {
+        let [first, end] = edges.map(|edge| self.groups_to(edge));
+        for k in first..end {
+            let part = (1.0 - self.history.displacements()[k]) / swept;
+            self.history.lead(k, part, self.passed);
+            self.trial[k] += part * lead;
+        }
+    }
+
+    /// The level that meets a demand, if levels that are met have this lead.
+    fn level_of(&self, states: &ElasticStates, demand: Demand, lead: f64) -> Wanted {
+        let compliance = self.history.rule().compliance();
+        match demand {
+            Demand::Force(force) => {
+                Wanted { level: self.level_of_force(force * compliance + lead), give: f64::INFINITY, sum: 0.0 }
+            }
+            Demand::Depth { depth, give } => {
+                let give = give / compliance;
+                self.level_of_depth(states, give, depth + give * lead)
+            }
+        }
+    }
+
+    /// The level c up to which groups are held where Σ (1 − W) Δl below c is `needed`, F c_Δ under a force F.
+    fn level_of_force(&self, needed: f64) -> f64 {
+        let mut carried = 0.0;
         for (bottom, _, group, free) in self.spans() {
             let more = (1.0 - free) * (group.top - bottom);
             if carried + more >= needed {
@@ -287,6 +348,7 @@ impl Levels {
     /// Holds the groups up to a level, and commits the step.
     fn hold(&mut self, level: f64) {
         let stiffness = 1.0 / self.history.rule().compliance();
+        let passed = self.swept(level);
         self.level = level;
         let held = self.held();
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
@@ -298,12 +360,18 @@ impl Levels {
             (bottom, lower) = (group.top, group.motions);
         }
         self.history.commit(&self.trial);
+        self.passed = self.history.differences_after(self.passed, passed);
         (self.force, self.motions, self.lift) = (force, motions, 0.0);
     }
 
     /// Number of groups that are held.
     fn held(&self) -> usize {
-        self.groups.partition_point(|group| group.top <= self.level * (1.0 + SAME_LEVEL))
+        self.groups_to(self.level)
+    }
+
+    /// Number of groups up to a level.
+    fn groups_to(&self, level: f64) -> usize {
+        self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL))
     }
 
     /// Σ W Δδ at the end of a step in which all groups are free: the depth that a body must pass to touch.
