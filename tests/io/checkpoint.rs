@@ -42,41 +42,6 @@ fn every_scene_continues_from_its_file_bit_by_bit() {
     }
 }
 
-/// Runs along histories, equal steps and steps chosen by their error, saved and resumed in the middle: the same steps.
-#[test]
-fn runs_along_a_history_continue_with_the_same_steps() {
-    let path = Temporary::file("runs");
-    let corners = [(0.0, 0.0), (1.0, 0.5), (1.5, 0.1), (3.0, 0.4)];
-    let load = PiecewiseLinear::new(&corners.map(|(t, f)| (t, Load::force(f)))).unwrap();
-    for material in [three_times(), power_law()] {
-        for stepping in [Stepping::fixed(0.07), Stepping::adaptive(1e-2)] {
-            let build = || {
-                let builder = builder_on(Grid::square(32, 4.0e-3).unwrap(), material.clone());
-                builder.times(7e-4..=7e4).build().unwrap()
-            };
-            for saved_after in [1, 5, 13] {
-                let mut contact = build();
-                let mut run = contact.follow(&load, stepping, 3.0);
-                for _ in 0..saved_after {
-                    run.next_step().unwrap();
-                }
-                run.save(&path).unwrap();
-                let mut rest = Vec::new();
-                rest.extend(std::iter::from_fn(|| run.next_step().unwrap()));
-                let budget = run.error_budget();
-
-                let mut resumed = build();
-                resumed.resume(&path).unwrap();
-                let mut run = resumed.follow(&load, stepping, 3.0);
-                let again: Vec<_> = std::iter::from_fn(|| run.next_step().unwrap()).collect();
-                assert_eq!(again, rest, "{stepping:?}");
-                assert_eq!(run.error_budget(), budget);
-                assert_eq!(contact.pressure(), resumed.pressure());
-            }
-        }
-    }
-}
-
 fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
     match contact.resume(path).unwrap_err() {
         Error::Checkpoint { source, .. } => source,

@@ -613,27 +613,6 @@ fn bases_that_are_equal_elastic_or_rigid_are_limits() {
     }
 }
 
-/// At rest, and of bodies that do not creep at any speed, the state is the one of the elastic layer.
-#[test]
-fn an_elastic_base_is_the_elastic_layer() {
-    let grid = Grid::square(24, 1.0).unwrap();
-    let elastic = |factor: f64, nu: f64| Creep { glassy: factor, terms: Vec::new() }.material(nu);
-    let layer = Layer::bonded_to_material(0.1, &elastic(1.0, 0.5), &elastic(0.1, 0.3)).unwrap();
-    let builder = || pressed(|grid| InfluenceKernel::layer(grid, layer), &grid).material(elastic(1.0, 0.5));
-    let mut still = builder().build().unwrap();
-    still.step(0.0, Load::force(20.0)).unwrap();
-    for velocity in [[0.0, 0.0], [2.0, 0.0], [0.0, -1e4]] {
-        let mut sliding = builder().build_sliding_on(elastic(0.1, 0.3)).unwrap();
-        let report = sliding.at(velocity, Load::force(20.0)).unwrap();
-        let most = still.max_pressure();
-        let differ = sliding.contact().pressure().iter().zip(still.pressure());
-        let differ = differ.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max) / most;
-        println!("{velocity:?}: {differ:e}, {:e}", report.approach / still.approach() - 1.0);
-        assert!(differ < 1e-7 && (report.approach / still.approach() - 1.0).abs() < 1e-8);
-        assert!(report.friction().abs() < 1e-9, "{report}");
-    }
-}
-
 /// A ball on a half-space that flows: the pressure is steady, from coefficients that are integrals over the whole way.
 #[test]
 fn a_half_space_may_flow() {

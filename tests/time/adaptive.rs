@@ -1,7 +1,7 @@
 //! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
 
 use crate::common::histories::{Scene, scenes};
-use crate::common::{Draws, RADIUS, builder_on, contact_of, elastic, figures, from_environment, maxwell};
+use crate::common::{Draws, RADIUS, contact_of, elastic, figures, from_environment, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;
@@ -79,17 +79,6 @@ fn twelve_decades_of_creep_take_few_steps() {
     assert!(steps <= 150, "{steps}");
 }
 
-#[test]
-fn steps_end_on_corners_and_on_the_times_asked_for() {
-    let scene = scenes().into_iter().find(|scene| scene.name.contains("unload")).unwrap();
-    let land = [0.1, 0.77, 1.5, 3.1, 3.5];
-    let run = run(&scene, 1e-2, &land);
-    for time in land.into_iter().chain([1.0, 2.0, 2.5, 3.5]) {
-        assert!(run.history.iter().any(|state| state[0] == time), "{time}");
-    }
-    assert!(run.history.windows(2).all(|pair| pair[1][0] >= pair[0][0]));
-}
-
 /// Closures do not name their corners: a short pulse and a corner are found all the same.
 #[test]
 fn pulses_and_corners_of_closures_are_found() {
@@ -144,40 +133,6 @@ fn rejected_steps_leave_no_trace() {
             assert!(given.pressure() == rejecting.pressure() && given.displacement() == rejecting.displacement());
         }
     }
-}
-
-#[test]
-fn tolerances_and_impossible_loads_are_refused() {
-    let scene = &scenes()[0];
-    for tolerance in [0.0, -1.0, 1e-10, 0.2, f64::NAN] {
-        let mut contact = scene.contact(16, 1e-6);
-        let error = contact.follow(&*scene.history, Stepping::adaptive(tolerance), 1.0).next_step().unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { field: "tolerance of the adaptive steps", .. }), "{error}");
-    }
-    // faster than time is resolved
-    let noise = FnHistory::new(|t: f64| Load::force(if t < 0.5 { 0.5 } else { 0.5 + 0.4 * (t * 1e18).sin() }));
-    let mut contact = scene.contact(16, 1e-6);
-    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
-    let error = loop {
-        match follow.next_step() {
-            Ok(Some(_)) => {}
-            Ok(None) => panic!("noise cannot be followed"),
-            Err(error) => break error,
-        }
-    };
-    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
-
-    // nor where the series of the body resolves longer times only: an end, not a step tried for ever
-    let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
-    let mut contact = builder_on(Grid::square(16, 4.0e-3).unwrap(), body).times(1e-2..=1e4).build().unwrap();
-    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
-    let error = loop {
-        match follow.next_step() {
-            Ok(step) => assert!(step.is_some()),
-            Err(error) => break error,
-        }
-    };
-    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
 }
 
 /// Area by p² extrapolated to the edge, against Hertz, wherever the contact lies on the mesh.

@@ -103,11 +103,15 @@ behaviours! {
             let error = kind.run(hold(0.5), stepping, until).next_step().unwrap_err();
             assert!(matches!(error, Error::OutOfRange { field, .. } if field == name), "{error}");
         };
-        refused(Stepping::fixed(0.1), -1.0, "end of the run");
-        refused(Stepping::fixed(0.1), f64::NAN, "end of the run");
-        refused(Stepping::fixed(0.0), 1.0, "fixed step");
-        refused(Stepping::fixed(f64::INFINITY), 1.0, "fixed step");
-        refused(Stepping::adaptive(0.2), 1.0, "tolerance of the adaptive steps");
+        for end in [-1.0, f64::NAN, f64::INFINITY] {
+            refused(Stepping::fixed(0.1), end, "end of the run");
+        }
+        for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            refused(Stepping::fixed(dt), 1.0, "fixed step");
+        }
+        for tolerance in [0.0, -1.0, 1e-10, 0.2, f64::NAN] {
+            refused(Stepping::adaptive(tolerance), 1.0, "tolerance of the adaptive steps");
+        }
         let run = || kind.run(hold(0.5), Stepping::fixed(0.1), 1.0);
         let error = run().stop_at([f64::NAN]).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { field: "time to stop at or to sample", .. }), "{error}");
@@ -186,6 +190,10 @@ behaviours! {
                 count += 1;
                 let progress = run.progress();
                 assert_eq!((progress.steps, progress.time, progress.share_of_time()), (count, report.time, report.time / 4.0));
+                assert!(run.within_step(report.time + 1e-3).is_err() && run.within_step(-1e-3).is_err());
+                if let Stepping::Adaptive { tolerance } = stepping {
+                    assert!(report.time_error.is_some_and(|error| error <= tolerance));
+                }
             }
             assert!(count > 3 && run.progress().share_of_decades() == 1.0);
             assert_eq!(run.into_contact().time(), 4.0);
@@ -471,11 +479,11 @@ fn a_resumed_run_continues_its_files() {
                     }
                 }
                 assert_eq!(run.progress().steps as usize, steps);
-                run.progress()
+                (run.progress(), run.error_budget())
             };
             let whole = go_on("whole", None);
-            assert!(whole.steps > 8);
-            for step in 1..whole.steps as usize {
+            assert!(whole.0.steps > 8);
+            for step in 1..whole.0.steps as usize {
                 let name = format!("resumed-{step}");
                 go_on(&name, Some(step));
                 assert_eq!(go_on(&name, None), whole);
