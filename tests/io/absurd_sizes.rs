@@ -1,5 +1,6 @@
 //! Grids that no machine has memory for: every call returns an error with the bytes, before anything is filled.
 
+use crate::common::builder_of;
 use crate::common::maxwell;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -162,7 +163,7 @@ fn contacts_are_refused_before_they_are_filled() {
             }
         }
         let kernel = Arc::new(InfluenceKernel::periodic(&grid).unwrap());
-        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&unseen()).material(maxwell()).kernel(kernel);
+        let builder = builder_of(&unseen(), grid.clone(), maxwell()).kernel(kernel);
         assert_eq!(builder.memory().unwrap().computed_cells, grid.len());
         refused(builder.build(), &grid, 1, "a periodic contact");
     }
@@ -176,7 +177,7 @@ fn four_thousand_million_cells_are_refused_with_their_bytes() {
         return; // a machine that has room for its fields would fill them
     }
     let sphere = Sphere::new(0.1).unwrap();
-    let builder = ViscoelasticContact::builder(grid).geometry(&sphere).material(maxwell());
+    let builder = builder_of(&sphere, grid, maxwell());
     // threads need memory of their own
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let total = two.install(|| builder.memory().unwrap().total());

@@ -108,7 +108,7 @@ fn other_scenes_are_refused_by_what_differs() {
     let layer = |thickness: f64| {
         let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
         let kernel = InfluenceKernel::layer(&grid(), layer).unwrap();
-        builder_on(grid(), three_times()).kernel(Arc::new(kernel)).build().unwrap()
+        builder_on(grid(), three_times()).kernel(kernel).build().unwrap()
     };
     let warming = |rate: f64| {
         let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
@@ -130,7 +130,7 @@ fn other_scenes_are_refused_by_what_differs() {
     assert_eq!((what(layer(1.0e-3)), what(warming(20.0))), ("kernel", "temperature"));
     let own = |scale: f64| {
         let kernel = InfluenceKernel::from_spectrum(&grid(), move |_, _| scale).unwrap();
-        builder_on(grid(), three_times()).kernel(Arc::new(kernel)).build().unwrap()
+        builder_on(grid(), three_times()).kernel(kernel).build().unwrap()
     };
     // the same on the diagonal is not the same
     let layered = |reach: f64| {

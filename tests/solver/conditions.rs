@@ -154,7 +154,7 @@ impl Scene {
             .with_edge(Edge::Allow)
             .with_max_iterations(5000);
         let body = Material::incompressible(Zener::with_time(0.25, 0.25, 1.0).unwrap());
-        let built = ViscoelasticContact::builder(self.grid()).geometry(self).material(body).settings(settings).build();
+        let built = builder_of(self, self.grid(), body).settings(settings).build();
         match built {
             Err(Error::NothingToTouch { .. }) => None,
             built => Some(built.unwrap()),
@@ -331,12 +331,12 @@ fn backward_steps_accept_no_negative_pressure() {
             (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
         };
         let heights: Vec<f64> = (0..35).map(|_| 2.2e-9 * random()).collect();
-        let mut contact = ViscoelasticContact::builder(Grid::new([7, 12], [1.0133e-4, 2.2554e-18]).unwrap())
-            .geometry(&HeightMap::new([7, 5], [1.0133e-4; 2], heights).unwrap())
-            .material(material.clone())
-            .settings(settings)
-            .build()
-            .unwrap();
+        let mut contact = contact_of(
+            &HeightMap::new([7, 5], [1.0133e-4; 2], heights).unwrap(),
+            Grid::new([7, 12], [1.0133e-4, 2.2554e-18]).unwrap(),
+            material.clone(),
+            settings,
+        );
         let held = StepLoad::new(Load::force(0.04276)).unwrap();
         let mut run = contact.follow(&held, Stepping::adaptive(7e-3), 114.0);
         for _ in 0..12 {

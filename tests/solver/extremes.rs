@@ -254,12 +254,12 @@ fn steps_at_the_ends_are_numbers_or_refused() {
                     [Load::force(size), Load::force(1.0 / size), Load::approach(size), Load::approach(1e-3 * width)]
                 {
                     let settings = Settings::default().with_edge(Edge::Allow).with_time_rule(time_rule);
-                    let mut contact = ViscoelasticContact::builder(Grid::square(4, width).unwrap())
-                        .geometry(&Sphere::new(width).unwrap())
-                        .material(material.clone())
-                        .settings(settings)
-                        .build()
-                        .unwrap();
+                    let mut contact = contact_of(
+                        &Sphere::new(width).unwrap(),
+                        Grid::square(4, width).unwrap(),
+                        material.clone(),
+                        settings,
+                    );
                     for dt in [0.0, 1e-300, 1e3, 1e90, 1e300] {
                         match contact.step(dt, load) {
                             Ok(_) => accepted += 1,
@@ -280,11 +280,12 @@ fn steps_at_the_ends_are_numbers_or_refused() {
 /// A force that is a number on an arm that makes its moment none.
 #[test]
 fn moments_beyond_numbers_are_refused() {
-    let mut contact = ViscoelasticContact::builder(Grid::square(8, 1.0e90).unwrap())
-        .geometry(&Shifted::new(Sphere::new(1.0e90).unwrap(), [0.3e90, 0.0]).unwrap())
-        .material(Material::incompressible(Elastic::new(1.0e50).unwrap()))
-        .build()
-        .unwrap();
+    let mut contact = contact_of(
+        &Shifted::new(Sphere::new(1.0e90).unwrap(), [0.3e90, 0.0]).unwrap(),
+        Grid::square(8, 1.0e90).unwrap(),
+        Material::incompressible(Elastic::new(1.0e50).unwrap()),
+        Settings::default(),
+    );
     let error = contact.step(0.0, Load::force(1.0e220)).unwrap_err();
     assert!(matches!(error, Error::Step(StepError::Overflow { what: "the moment of the force", .. })), "{error}");
     contact.step(0.0, Load::force(1.0e215)).unwrap();

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::gauss::points;
 use crate::common::steady_sliding::{Below, SteadySliding as Dense};
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::Layer;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -187,9 +187,7 @@ impl Scene {
                 InfluenceKernel::layer_periodic_along(&grid, layer, along(), datum)
             }
         };
-        let builder = ViscoelasticContact::builder(grid)
-            .geometry(&self.shape())
-            .material(self.creep.material(self.nu))
+        let builder = builder_of(&self.shape(), grid, self.creep.material(self.nu))
             .kernel(kernel.unwrap())
             .settings(Settings::default().with_tolerance(1e-9));
         match &self.base {
@@ -621,8 +619,7 @@ fn a_half_space_may_flow() {
     let d = grid.spacing()[0];
     let shape = FnGeometry::new(|x1: f64, x2: f64| 0.05 * (x1 * x1 + x2 * x2));
     let rheology = || GeneralizedKelvin::new(4.0 * GLASSY, 4.0 * fluidity, &[(8.0 * GLASSY, 0.2)]).unwrap();
-    let builder =
-        || ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(Material::incompressible(rheology()));
+    let builder = || builder_of(&shape, grid.clone(), Material::incompressible(rheology()));
     let mut sliding = builder().settings(Settings::default().with_tolerance(1e-10)).build_sliding().unwrap();
     let report = sliding.at([speed, 0.0], Load::force(force)).unwrap();
     let at = |k: usize, shift: f64| {

@@ -146,11 +146,12 @@ fn areas_are_known_to_a_part_of_a_cell() {
             let radius = 0.5e-3 * (0.5 + 0.25 * share(0.618));
             let side = 1.0e-3 / cells as f64;
             let sphere = Shifted::new(Sphere::new(RADIUS).unwrap(), [side * share(0.37), side * share(0.71)]).unwrap();
-            let mut contact = ViscoelasticContact::builder(Grid::square(cells, 1.0e-3).unwrap())
-                .geometry(&sphere)
-                .material(Material::incompressible(Elastic::new(0.25e6).unwrap()))
-                .build()
-                .unwrap();
+            let mut contact = contact_of(
+                &sphere,
+                Grid::square(cells, 1.0e-3).unwrap(),
+                Material::incompressible(Elastic::new(0.25e6).unwrap()),
+                Settings::default(),
+            );
             contact.step(0.0, Load::force(4.0e6 * radius.powi(3) / (3.0 * RADIUS))).unwrap();
             let exact = std::f64::consts::PI * radius * radius;
             let counted = contact.contact_cells() as f64 * contact.grid().cell_area();
@@ -168,11 +169,12 @@ fn areas_are_known_to_a_part_of_a_cell() {
         format!("{coarse} at 64² cells and {fine} at 256²; that of counted cells is {counted} and {counted_fine}");
     figures::figure("areas", &all).unwrap();
     // a square punch ends with its cells
-    let mut contact = ViscoelasticContact::builder(Grid::square(64, 1.0e-3).unwrap())
-        .geometry(&FlatPunch::rectangular([0.5e-3, 0.25e-3]).unwrap())
-        .material(elastic())
-        .build()
-        .unwrap();
+    let mut contact = contact_of(
+        &FlatPunch::rectangular([0.5e-3, 0.25e-3]).unwrap(),
+        Grid::square(64, 1.0e-3).unwrap(),
+        elastic(),
+        Settings::default(),
+    );
     contact.step(0.0, Load::force(1.0)).unwrap();
     let exact = contact.contact_cells() as f64 * contact.grid().cell_area();
     assert_abs_diff_eq!(contact.contact_area() / exact, 1.0, epsilon = 2e-3);

@@ -13,7 +13,7 @@ use viscocontact::prelude::*;
 use viscocontact::run::RunContact;
 use viscocontact::{Error, UserError};
 
-use crate::common::{Draws, Temporary, from_environment};
+use crate::common::{Draws, Temporary, builder_of, contact_of, from_environment};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -417,9 +417,8 @@ fn errors_of_paths_and_attraction_come_out_as_themselves() {
         let fails = Arc::new(AtomicBool::new(true));
         let law = || Drifting(ExponentialAttraction::new(1.0, 1.0e-5).unwrap(), Arc::clone(&fails));
         let builder = || {
-            let builder = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(material());
-            let builder =
-                if periodic { builder.kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap())) } else { builder };
+            let builder = builder_of(&ball, grid.clone(), material());
+            let builder = if periodic { builder.kernel(InfluenceKernel::periodic(&grid).unwrap()) } else { builder };
             builder.attraction(law())
         };
         own(builder().build().unwrap_err());
@@ -433,7 +432,7 @@ fn errors_of_paths_and_attraction_come_out_as_themselves() {
     }
     let path = FnPath::fallible(|t| if t < 0.15 { Ok([1.0e-3 * t, 0.0]) } else { "x".parse().map(|x1| [x1, 0.0]) });
     let travel = Travel::new(ball, path);
-    let mut contact = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(material()).build().unwrap();
+    let mut contact = contact_of(&ball, grid.clone(), material(), Settings::default());
     contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap();
     own(contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap_err());
     assert_eq!(contact.time(), 0.1);

@@ -1,5 +1,6 @@
 //! Curves of runs of few steps: states sampled within steps, and steps that end at times of the user's choice.
 
+use crate::common::contact_of;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::contact::StepReport;
 use viscocontact::prelude::*;
@@ -12,11 +13,7 @@ fn rubber() -> Material {
 }
 
 fn contact() -> ViscoelasticContact {
-    ViscoelasticContact::builder(Grid::square(64, 4.0e-3).unwrap())
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(rubber())
-        .build()
-        .unwrap()
+    contact_of(&Sphere::new(RADIUS).unwrap(), Grid::square(64, 4.0e-3).unwrap(), rubber(), Settings::default())
 }
 
 /// A rise, a hold, a fall and a release.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use approx::assert_relative_eq;
 use viscocontact::contact::{Edge, TimeRule};
 use viscocontact::geometry::Sum;
@@ -116,7 +116,7 @@ fn any_shape_is_retracted_and_sprung_as_its_states() {
         let settings = Settings::default().with_tolerance(1e-10);
         let sweep = Sweep::new(grid.clone(), &*shape).accuracy(1e-6).max_states(1000).settings(settings);
         let depth = 0.03;
-        let touch = ViscoelasticContact::builder(grid.clone()).geometry(&*shape).material(quarter_body());
+        let touch = builder_of(&*shape, grid.clone(), quarter_body());
         let touch = touch.build().unwrap().approach();
         let states = sweep.run(Reach::Approach(touch + 1.01 * depth)).unwrap();
         let elastic = states.level_at(touch + depth);
@@ -126,7 +126,7 @@ fn any_shape_is_retracted_and_sprung_as_its_states() {
                 false => Load::approach(touch + depth * part),
                 true => Load::spring(stiffness, touch + depth * part),
             };
-            let builder = ViscoelasticContact::builder(grid.clone()).geometry(&*shape).material(quarter_body());
+            let builder = builder_of(&*shape, grid.clone(), quarter_body());
             let mut full = builder.settings(settings).build().unwrap();
             let mut contact = StatesContact::new(&states, &quarter_body()).unwrap();
             let mut worst = 0.0f64;
@@ -202,7 +202,7 @@ impl Scene {
     }
 
     fn builder(&self, material: Material) -> Builder {
-        let builder = ViscoelasticContact::builder(self.grid.clone()).geometry(&*self.geometry).material(material);
+        let builder = builder_of(&*self.geometry, self.grid.clone(), material);
         builder.kernel(Arc::clone(&self.kernel)).settings(Scene::settings())
     }
 
