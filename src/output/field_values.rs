@@ -47,7 +47,7 @@ impl FieldValues<'_> {
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
         let [n1, n2] = contact.grid().cells();
-        let by_rows = format.is_by_rows();
+        let by_rows = !format.is_vtk();
         let (all, most) =
             if by_rows { (n1, (PIECE_CELLS / n2).max(1)) } else { (n2, (PIECE_CELLS / n1).max(LEAST_COLUMNS)) };
         let (mut taken, mut column) = (Ok(()), Vec::new());

@@ -45,17 +45,8 @@ impl Format {
         format!("frame_{number:06}.{}", self.extension())
     }
 
-    /// Whether a collection lists the frames.
-    pub(super) fn has_collection(self) -> bool {
+    /// Whether it is VTK: a collection lists the frames, and the index along x1 varies fastest.
+    pub(super) fn is_vtk(self) -> bool {
         self.extension() == "vti"
-    }
-
-    /// Whether the index along x2 varies fastest; in VTK it is the index along x1.
-    pub(super) fn is_by_rows(self) -> bool {
-        match self {
-            #[cfg(feature = "npy")]
-            Format::Npz => true,
-            Format::Vtk => false,
-        }
     }
 }

@@ -89,7 +89,7 @@ impl FrameSeries {
                 return refused(io::ErrorKind::AlreadyExists, reason);
             }
             let is_kept = kept.iter().any(|frame| *frame == name);
-            let is_list = earlier == Earlier::Replace && format.has_collection() && name == COLLECTION;
+            let is_list = earlier == Earlier::Replace && format.is_vtk() && name == COLLECTION;
             if is_frame && !is_kept || is_list {
                 check_regular(&path)?;
                 match fs::remove_file(&path) {
@@ -118,7 +118,7 @@ impl FrameSeries {
             Format::Npz => npz::write_frame(out, (contact, area), metadata, values),
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
-        if format.has_collection() {
+        if format.is_vtk() {
             let entries = format!("{}{}", self.entries, entry(contact.time(), &name));
             contact.by_one_rank(|| {
                 replace(&folder.join(COLLECTION), |out| {

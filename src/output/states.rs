@@ -1,14 +1,12 @@
 //! Elastic states as archives in the NPZ format of NumPy.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{BufReader, Read};
 use std::path::Path;
 use std::sync::Arc;
 
 use zip::ZipArchive;
 
-use crate::Grid;
 use crate::contact::Warnings;
 use crate::error::{Error, FileError, Result};
 use crate::file::{npy, replace};
@@ -16,6 +14,7 @@ use crate::load::Tilt;
 use crate::output::Metadata;
 use crate::output::npz::Archive;
 use crate::states::{ElasticState, ElasticStates, Pressed, Rest};
+use crate::{Grid, input};
 
 /// An array with a number for each state: its name, and how the number is read from the state and put into it.
 type Column = (&'static str, fn(&ElasticState) -> f64, fn(&mut ElasticState, f64));
@@ -117,8 +116,7 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
 /// If the file cannot be read, or its arrays are no elastic states ([`FileError::Unreadable`](crate::FileError::Unreadable)).
 pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let path = path.as_ref();
-    let refused =
-        |reason: String| Error::File(FileError::Unreadable { file: path.display().to_string(), reason, kind: None });
+    let refused = |reason: String| refused(path, &reason);
     let arrays = read_arrays(path)?;
     let array = |name: &str, length: usize| match arrays.get(name) {
         Some(values) if values.len() == length => Ok(&values[..]),
@@ -161,23 +159,22 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     states.validated().map(Arc::new).map_err(|error| refused(error.to_string()))
 }
 
+fn refused(path: &Path, reason: &dyn ToString) -> Error {
+    Error::File(FileError::Unreadable { file: path.display().to_string(), reason: reason.to_string(), kind: None })
+}
+
 /// The arrays of real numbers in an archive, by their names.
 fn read_arrays(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
-    let file = path.display().to_string();
-    let refused = |reason: String| Error::File(FileError::Unreadable { file: file.clone(), reason, kind: None });
-    let unopened = |error: io::Error| {
-        Error::File(FileError::Unreadable { file: file.clone(), reason: error.to_string(), kind: Some(error.kind()) })
-    };
-    let opened = File::open(path).map_err(unopened)?;
+    let opened = input::open(path)?;
     // arrays are not compressed
-    let length = opened.metadata().map_err(unopened)?.len();
-    let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| refused(error.to_string()))?;
+    let length = opened.metadata().map_err(|error| refused(path, &error))?.len();
+    let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| refused(path, &error))?;
     let mut arrays = BTreeMap::new();
     for index in 0..archive.len() {
-        let entry = archive.by_index(index).map_err(|error| refused(error.to_string()))?;
-        let name = entry.name().map_err(|error| refused(error.to_string()))?.trim_end_matches(".npy").to_owned();
+        let entry = archive.by_index(index).map_err(|error| refused(path, &error))?;
+        let name = entry.name().map_err(|error| refused(path, &error))?.trim_end_matches(".npy").to_owned();
         let mut bytes = Vec::new();
-        entry.take(length).read_to_end(&mut bytes).map_err(|error| refused(error.to_string()))?;
+        entry.take(length).read_to_end(&mut bytes).map_err(|error| refused(path, &error))?;
         if let Some(values) = npy::numbers(&bytes) {
             arrays.insert(name, values);
         }

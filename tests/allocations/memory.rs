@@ -1,11 +1,9 @@
 //! The memory that a builder predicts, against the bytes that are allocated.
 
-use crate::common::{builder_on, elastic, figures, maxwell};
+use crate::common::{Draws, builder_on, elastic, figures, maxwell};
 use std::alloc::System;
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use stats_alloc::Region;
 use viscocontact::Result;
 use viscocontact::adhesion::ExponentialAttraction;
@@ -66,11 +64,11 @@ struct Scene {
     settings: Settings,
 }
 
-fn one_of<T: Copy>(random: &mut ChaCha8Rng, of: &[T]) -> T {
-    of[random.next_u32() as usize % of.len()]
+fn one_of<T: Copy>(draws: &mut Draws, of: &[T]) -> T {
+    of[draws.below(of.len())]
 }
 
-fn scene(random: &mut ChaCha8Rng) -> Scene {
+fn scene(draws: &mut Draws) -> Scene {
     type Kernel = fn(&Grid) -> Result<InfluenceKernel>;
     let line: Kernel = |grid| InfluenceKernel::line(grid, 10.0);
     let kernels: [Kernel; 6] = [
@@ -81,25 +79,25 @@ fn scene(random: &mut ChaCha8Rng) -> Scene {
         line,
         |grid| InfluenceKernel::from_coefficients(grid, |i, j| (-0.1 * f64::hypot(i as f64, j as f64)).exp()),
     ];
-    let which = random.next_u32() as usize % kernels.len();
+    let which = draws.below(kernels.len());
     let sizes = [32, 45, 64, 96, 128, 150, 200, 256, 384, 512];
     let cells = match which {
-        4 => [one_of(random, &[32, 45, 150, 256, 512, 1000, 4096, 5000, 16384, 30000, 65536]), 1],
-        _ => [one_of(random, &sizes), one_of(random, &sizes)],
+        4 => [one_of(draws, &[32, 45, 150, 256, 512, 1000, 4096, 5000, 16384, 30000, 65536]), 1],
+        _ => [one_of(draws, &sizes), one_of(draws, &sizes)],
     };
-    let frame = one_of(random, &[Frame::Bodies, Frame::Bodies, Frame::Bodies, Frame::Indenter]);
+    let frame = one_of(draws, &[Frame::Bodies, Frame::Bodies, Frame::Bodies, Frame::Indenter]);
     use TimeRule::{Backward, Exponential, Rectangle};
     let rules = [Exponential, Exponential, Exponential, Backward, Rectangle, Rectangle];
-    let time_rule = if frame == Frame::Indenter { TimeRule::Exponential } else { one_of(random, &rules) };
-    let solver = one_of(random, &[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]);
-    let (symmetry, window) = (one_of(random, &[true, false]), one_of(random, &[true, false]));
+    let time_rule = if frame == Frame::Indenter { TimeRule::Exponential } else { one_of(draws, &rules) };
+    let solver = one_of(draws, &[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]);
+    let (symmetry, window) = (one_of(draws, &[true, false]), one_of(draws, &[true, false]));
     Scene {
         grid: Grid::new(cells, cells.map(|cells| 1.0e-5 * cells as f64)).unwrap(),
         kernel: kernels[which],
-        bodies: one_of(random, &[1, 1, 2, 3]),
-        lopsided: one_of(random, &[true, false, false]),
-        terms: one_of(random, &[0, 1, 2, 5, 12]),
-        fitted: one_of(random, &[true, false, false]),
+        bodies: one_of(draws, &[1, 1, 2, 3]),
+        lopsided: one_of(draws, &[true, false, false]),
+        terms: one_of(draws, &[0, 1, 2, 5, 12]),
+        fitted: one_of(draws, &[true, false, false]),
         settings: Settings::default()
             .with_solver(solver)
             .with_time_rule(time_rule)
@@ -164,16 +162,16 @@ pub fn attraction_takes_what_is_announced() {
 }
 
 pub fn builders_announce_what_is_counted() {
-    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let draws = &mut Draws::new(7);
     // threads and what fits keep for the next are taken once
-    let warm = Scene { fitted: true, bodies: 1, settings: Settings::default(), ..scene(&mut random) };
+    let warm = Scene { fitted: true, bodies: 1, settings: Settings::default(), ..scene(draws) };
     let warm = Scene { grid: Grid::square(256, 1.0e-2).unwrap(), kernel: InfluenceKernel::half_space, ..warm };
     drop(warm.builder(&Arc::new((warm.kernel)(&warm.grid).unwrap())).build().unwrap());
     #[cfg(feature = "rayon")]
     rayon::broadcast(|_| ());
     let (mut equal, mut bounded, mut grown) = (0, 0, 0);
     for number in 0..300 {
-        let scene = scene(&mut random);
+        let scene = scene(draws);
         let kernel = Arc::new((scene.kernel)(&scene.grid).unwrap());
         // what coefficients and their proof took is the user's
         let region = Region::new(ALLOCATOR);

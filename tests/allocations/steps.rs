@@ -1,7 +1,7 @@
 //! A step allocates nothing: every buffer is made when the contact is built.
 
 use crate::ALLOCATOR;
-use crate::common::{StepLoadedSphere, builder_of, sphere, sphere_on, zener};
+use crate::common::{Draws, StepLoadedSphere, builder_of, sphere, sphere_on, zener};
 use stats_alloc::Region;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
@@ -33,12 +33,7 @@ fn count_tilting_steps<const N: usize>(mut contact: ViscoelasticContact, loads: 
 
 pub fn tilting_steps_allocate_nothing() {
     let side = 4.0e-3;
-    let random = |step: usize, kind: u64| {
-        let mut state = (step as u64 * 31 + kind + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        state = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((state ^ (state >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let random = |step: usize, kind: u64| Draws::new(31 * step as u64 + kind).between(0.0, 1.0);
     let rough = |x: f64, y: f64| 50.0 * (x * x + y * y) + 1.0e-6 * (9.0e3 * x + 1.0).sin() * (7.0e3 * y + 2.0).cos();
     let half = |centre: f64| {
         let own = move |x: f64| (x - centre).abs() < 0.24 * side;

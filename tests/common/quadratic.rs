@@ -3,6 +3,9 @@
 //! A primal-dual interior-point method (S. Mehrotra, SIAM J. Optim. 2, 1992) comes near; then the set of positive pressures is
 //! solved exactly, and cells are exchanged until every sign is right.
 
+use faer::linalg::solvers::Solve;
+use faer::{ColMut, MatRef, Side};
+
 /// Iterations of the interior-point method, and exchanges of the set.
 const ITERATIONS: usize = 120;
 const EXCHANGES: usize = 40;
@@ -58,22 +61,22 @@ fn interior(matrix: &[f64], gap: &[f64], columns: &[Vec<f64>], right: &[f64]) ->
         if mu < 1e-14 && off < 1e-12 * size && primal.iter().all(|r| r.abs() < 1e-12 * load) {
             return Some((p, s));
         }
-        let mut factor = matrix.to_vec();
-        (0..n).for_each(|k| factor[k * n + k] += s[k] / p[k]);
-        if !cholesky(&mut factor, n) {
+        let mut barred = matrix.to_vec();
+        (0..n).for_each(|k| barred[k * n + k] += s[k] / p[k]);
+        let Ok(factors) = MatRef::from_row_major_slice(&barred, n, n).llt(Side::Lower) else {
             // too near the boundary for its rounding: good enough to find the set
             return (mu < 1e-8).then_some((p, s));
-        }
-        let image: Vec<Vec<f64>> = columns.iter().map(|column| back(&factor, n, column)).collect();
+        };
+        let image: Vec<Vec<f64>> = columns.iter().map(|column| solved(&factors, column)).collect();
         // scaled to a unit diagonal: a body that hardly presses counts like any other
         let unit: Vec<f64> = (0..m).map(|k| dot(&columns[k], &image[k]).sqrt().recip()).collect();
         let schur: Vec<f64> =
             (0..m * m).map(|at| unit[at / m] * unit[at % m] * dot(&columns[at / m], &image[at % m])).collect();
         let direction = |complementarity: &dyn Fn(usize) -> f64| {
             let force: Vec<f64> = (0..n).map(|k| complementarity(k) / p[k] - dual[k]).collect();
-            let plain = back(&factor, n, &force);
-            let wanted = (0..m).map(|k| unit[k] * (primal[k] - dot(&columns[k], &plain))).collect();
-            let dy: Vec<f64> = gauss(schur.clone(), wanted)?.iter().zip(&unit).map(|(dy, unit)| unit * dy).collect();
+            let plain = solved(&factors, &force);
+            let wanted: Vec<f64> = (0..m).map(|k| unit[k] * (primal[k] - dot(&columns[k], &plain))).collect();
+            let dy: Vec<f64> = gauss(&schur, &wanted)?.iter().zip(&unit).map(|(dy, unit)| unit * dy).collect();
             let dp: Vec<f64> = (0..n)
                 .map(|k| plain[k] + image.iter().zip(&dy).map(|(image, dy)| image[k] * dy).sum::<f64>())
                 .collect();
@@ -120,7 +123,7 @@ fn on_set(
         known[i] = -gap[k];
     }
     known[a..].copy_from_slice(right);
-    let solved = gauss(system, known)?;
+    let solved = gauss(&system, &known)?;
     let mut p = vec![0.0; n];
     set.iter().zip(&solved).for_each(|(&k, &value)| p[k] = value);
     Some((p, solved[a..].to_vec()))
@@ -130,66 +133,16 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// L of L Lᵀ in the lower half; false if the matrix is not positive.
-fn cholesky(a: &mut [f64], n: usize) -> bool {
-    for j in 0..n {
-        for i in j..n {
-            let (upper, lower) = (&a[j * n..j * n + j], &a[i * n..i * n + j]);
-            let left = a[i * n + j] - dot(upper, lower);
-            if i == j {
-                if left <= 0.0 || !left.is_finite() {
-                    return false;
-                }
-                a[j * n + j] = left.sqrt();
-            } else {
-                a[i * n + j] = left / a[j * n + j];
-            }
-        }
-    }
-    true
-}
-
-/// L Lᵀ x = b.
-fn back(factor: &[f64], n: usize, b: &[f64]) -> Vec<f64> {
+/// x of A x = b by the factors of A.
+fn solved(factors: &impl Solve<f64>, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
-    for i in 0..n {
-        x[i] = (x[i] - dot(&factor[i * n..i * n + i], &x[..i])) / factor[i * n + i];
-    }
-    for i in (0..n).rev() {
-        x[i] /= factor[i * n + i];
-        for j in 0..i {
-            x[j] -= factor[i * n + j] * x[i];
-        }
-    }
+    factors.solve_in_place(ColMut::from_slice_mut(&mut x).as_mat_mut());
     x
 }
 
-/// Gaussian elimination with row pivoting; `None` if a row depends on the others.
-fn gauss(mut a: Vec<f64>, mut b: Vec<f64>) -> Option<Vec<f64>> {
-    let n = b.len();
-    let scale = a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
-    for column in 0..n {
-        let pivot = (column..n).max_by(|&i, &j| a[i * n + column].abs().total_cmp(&a[j * n + column].abs()))?;
-        if a[pivot * n + column].abs() <= 1e-13 * scale {
-            return None;
-        }
-        for k in 0..n {
-            a.swap(column * n + k, pivot * n + k);
-        }
-        b.swap(column, pivot);
-        for row in column + 1..n {
-            let factor = a[row * n + column] / a[column * n + column];
-            if factor != 0.0 {
-                for k in column..n {
-                    a[row * n + k] -= factor * a[column * n + k];
-                }
-                b[row] -= factor * b[column];
-            }
-        }
-    }
-    for row in (0..n).rev() {
-        let known: f64 = (row + 1..n).map(|k| a[row * n + k] * b[k]).sum();
-        b[row] = (b[row] - known) / a[row * n + row];
-    }
-    Some(b)
+/// By row pivoting; `None` if a row depends on the others.
+fn gauss(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+    let (n, scale) = (b.len(), a.iter().fold(0.0, |most: f64, a| most.max(a.abs())));
+    let factors = MatRef::from_row_major_slice(a, n, n).partial_piv_lu();
+    (0..n).all(|k| factors.U()[(k, k)].abs() > 1e-13 * scale).then(|| solved(&factors, b))
 }

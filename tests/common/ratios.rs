@@ -5,6 +5,13 @@
 pub struct Ratios(Vec<(f64, String)>);
 
 impl Ratios {
+    /// Those of several together.
+    pub fn of<'a>(several: impl Iterator<Item = &'a Ratios>) -> Ratios {
+        let mut all = Ratios::default();
+        several.flat_map(|ratios| &ratios.0).for_each(|(ratio, scene)| all.push(*ratio, scene));
+        all
+    }
+
     pub fn push(&mut self, ratio: f64, scene: &str) {
         let place = self.0.partition_point(|other| other.0 <= ratio);
         self.0.insert(place, (ratio, scene.into()));

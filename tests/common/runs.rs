@@ -27,7 +27,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let line = || {
         let grid = Grid::new([200, 1], [10.0e-3, 1.0]).unwrap();
         builder_of(&Cylinder::new(10.0e-3).unwrap(), grid.clone(), three_times())
-            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+            .kernel(InfluenceKernel::line(&grid, 1.0).unwrap())
             .settings(Settings::default().with_frame(Frame::Indenter))
             .build()
             .unwrap()
@@ -38,7 +38,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let strip = || {
         let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
         builder_on(grid.clone(), three_times())
-            .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, Axis::X2, 1.0).unwrap()))
+            .kernel(InfluenceKernel::periodic_along(&grid, Axis::X2, 1.0).unwrap())
             .build()
             .unwrap()
     };

@@ -8,7 +8,7 @@ use crate::files::{Folder, text};
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
-    vec![Target { name: "plot_map", short: 30, run: map }, Target { name: "plot_chart", short: 30, run: chart }]
+    vec![Target { name: "plot_map", short: 80, run: map }, Target { name: "plot_chart", short: 80, run: chart }]
 }
 
 /// Numbers of one size, or of any.

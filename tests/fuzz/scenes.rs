@@ -1,7 +1,5 @@
 //! Whole scenes through the public interface, on few cells.
 
-use std::sync::Arc;
-
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::output::Metadata;
 use viscocontact::prelude::*;
@@ -59,7 +57,7 @@ fn build(source: &mut Source, fitted: bool, settings: Settings) -> viscocontact:
         builder = builder.another_body(&models::geometry(source, length)?);
     }
     if source.chance(0.6) {
-        builder = builder.kernel(Arc::new(models::kernel(source, &grid)?));
+        builder = builder.kernel(models::kernel(source, &grid)?);
     }
     if fitted {
         let first = source.scale(1e-4, 1.0);

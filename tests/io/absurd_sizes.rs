@@ -1,11 +1,9 @@
 //! Grids that no machine has memory for: every call returns an error with the bytes, before anything is filled.
 
-use crate::common::maxwell;
+use crate::common::{Draws, builder_of, maxwell};
 use std::hint::black_box;
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use viscocontact::Result;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -23,7 +21,7 @@ fn granted(bytes: u128) -> bool {
 /// The grids that may be of those in question, none of which this machine has a field for: the rest of a test would take
 /// what there is.
 fn grids() -> Vec<Grid> {
-    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let draws = &mut Draws::new(11);
     let one = |exponent: usize| 1_usize << exponent;
     let mut sizes = vec![
         [1, one(40)],
@@ -42,13 +40,9 @@ fn grids() -> Vec<Grid> {
         [usize::MAX, 1],
     ];
     for _ in 0..300 {
-        let all = 32 + random.next_u64() as usize % 36;
-        let first = random.next_u64() as usize % all.min(60);
-        let below = |exponent: usize, random: &mut ChaCha8Rng| {
-            let top = one(exponent.min(62));
-            top + random.next_u64() as usize % top
-        };
-        sizes.push([below(first, &mut random), below(all - first, &mut random)]);
+        let all = 32 + draws.below(36);
+        let first = draws.below(all.min(60));
+        sizes.push([first, (all - first).min(62)].map(|exponent| one(exponent) + draws.below(one(exponent))));
     }
     let mut grids = Vec::new();
     for cells in sizes {
@@ -162,7 +156,7 @@ fn contacts_are_refused_before_they_are_filled() {
             }
         }
         let kernel = Arc::new(InfluenceKernel::periodic(&grid).unwrap());
-        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&unseen()).material(maxwell()).kernel(kernel);
+        let builder = builder_of(&unseen(), grid.clone(), maxwell()).kernel(kernel);
         assert_eq!(builder.memory().unwrap().computed_cells, grid.len());
         refused(builder.build(), &grid, 1, "a periodic contact");
     }
@@ -176,7 +170,7 @@ fn four_thousand_million_cells_are_refused_with_their_bytes() {
         return; // a machine that has room for its fields would fill them
     }
     let sphere = Sphere::new(0.1).unwrap();
-    let builder = ViscoelasticContact::builder(grid).geometry(&sphere).material(maxwell());
+    let builder = builder_of(&sphere, grid, maxwell());
     // threads need memory of their own
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let total = two.install(|| builder.memory().unwrap().total());

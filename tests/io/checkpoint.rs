@@ -42,41 +42,6 @@ fn every_scene_continues_from_its_file_bit_by_bit() {
     }
 }
 
-/// Runs along histories, equal steps and steps chosen by their error, saved and resumed in the middle: the same steps.
-#[test]
-fn runs_along_a_history_continue_with_the_same_steps() {
-    let path = Temporary::file("runs");
-    let corners = [(0.0, 0.0), (1.0, 0.5), (1.5, 0.1), (3.0, 0.4)];
-    let load = PiecewiseLinear::new(&corners.map(|(t, f)| (t, Load::force(f)))).unwrap();
-    for material in [three_times(), power_law()] {
-        for stepping in [Stepping::fixed(0.07), Stepping::adaptive(1e-2)] {
-            let build = || {
-                let builder = builder_on(Grid::square(32, 4.0e-3).unwrap(), material.clone());
-                builder.times(7e-4..=7e4).build().unwrap()
-            };
-            for saved_after in [1, 5, 13] {
-                let mut contact = build();
-                let mut run = contact.follow(&load, stepping, 3.0);
-                for _ in 0..saved_after {
-                    run.next_step().unwrap();
-                }
-                run.save(&path).unwrap();
-                let mut rest = Vec::new();
-                rest.extend(std::iter::from_fn(|| run.next_step().unwrap()));
-                let budget = run.error_budget();
-
-                let mut resumed = build();
-                resumed.resume(&path).unwrap();
-                let mut run = resumed.follow(&load, stepping, 3.0);
-                let again: Vec<_> = std::iter::from_fn(|| run.next_step().unwrap()).collect();
-                assert_eq!(again, rest, "{stepping:?}");
-                assert_eq!(run.error_budget(), budget);
-                assert_eq!(contact.pressure(), resumed.pressure());
-            }
-        }
-    }
-}
-
 fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
     match contact.resume(path).unwrap_err() {
         Error::Checkpoint { source, .. } => source,
@@ -143,7 +108,7 @@ fn other_scenes_are_refused_by_what_differs() {
     let layer = |thickness: f64| {
         let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
         let kernel = InfluenceKernel::layer(&grid(), layer).unwrap();
-        builder_on(grid(), three_times()).kernel(Arc::new(kernel)).build().unwrap()
+        builder_on(grid(), three_times()).kernel(kernel).build().unwrap()
     };
     let warming = |rate: f64| {
         let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
@@ -165,7 +130,7 @@ fn other_scenes_are_refused_by_what_differs() {
     assert_eq!((what(layer(1.0e-3)), what(warming(20.0))), ("kernel", "temperature"));
     let own = |scale: f64| {
         let kernel = InfluenceKernel::from_spectrum(&grid(), move |_, _| scale).unwrap();
-        builder_on(grid(), three_times()).kernel(Arc::new(kernel)).build().unwrap()
+        builder_on(grid(), three_times()).kernel(kernel).build().unwrap()
     };
     // the same on the diagonal is not the same
     let layered = |reach: f64| {

@@ -1,12 +1,11 @@
-//! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
+//! Pictures: what they show, and that files are whole. Fuzz targets hold that no data make them fail otherwise than by an error.
 
 use crate::common::refused::field;
-use crate::common::{Temporary, contact_of, maxwell, sphere};
+use crate::common::{Temporary, builder_of, contact_of, maxwell, sphere};
 use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::Path;
 
-use proptest::prelude::*;
 use viscocontact::ErrorKind;
 use viscocontact::output::Field;
 use viscocontact::plot::{
@@ -86,12 +85,14 @@ fn tractions_diverge_about_zero() {
     let [mirror, ..] = shown([-2.0, 2.0]);
     assert!(mirror[2] > mirror[0] && half[0] > half[2], "{mirror:?} {half:?}");
 
-    let mut contact = ViscoelasticContact::builder(Grid::square(48, 0.8e-3).unwrap())
-        .geometry(&Sphere::new(1.0e-3).unwrap())
-        .material(Material::incompressible(Elastic::new(0.25e5).unwrap()))
-        .attraction(viscocontact::adhesion::ExponentialAttraction::new(0.1, 10.0e-6).unwrap())
-        .build()
-        .unwrap();
+    let mut contact = builder_of(
+        &Sphere::new(1.0e-3).unwrap(),
+        Grid::square(48, 0.8e-3).unwrap(),
+        Material::incompressible(Elastic::new(0.25e5).unwrap()),
+    )
+    .attraction(viscocontact::adhesion::ExponentialAttraction::new(0.1, 10.0e-6).unwrap())
+    .build()
+    .unwrap();
     contact.step(0.0, Load::approach(20.0e-6)).unwrap();
     let map = Map::traction(&contact).unwrap();
     assert_eq!((map.colors, Map::pressure(&contact).unwrap().colors), (ColorScale::Diverging, ColorScale::Sequential));
@@ -297,50 +298,6 @@ fn animations_play_back() {
     let empty = Animation::create(folder.join("b.gif"), Field::Gap, [0.0, 1.0], 0.1).unwrap();
     assert!(matches!(empty.finish(), Err(Error::WrongLength { .. })));
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
-}
-
-/// Numbers of every size, NaN and infinities.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        Just(0.0),
-        Just(f64::NAN),
-        Just(f64::INFINITY),
-        (-1.0..1.0_f64),
-        (-1.0..1.0_f64, -120..120).prop_map(|(m, e)| m * 10f64.powi(e)),
-        any::<f64>(),
-        (0..8).prop_map(|k| 1.0 + f64::from(k) * f64::EPSILON),
-    ]
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn no_series_makes_a_chart_panic(
-        points in prop::collection::vec((number(), number()), 0..6),
-        scale in prop_oneof![Just(Scale::Linear), Just(Scale::LogX), Just(Scale::LogY), Just(Scale::LogLog)],
-        label in ".{0,12}",
-    ) {
-        let mut chart = Chart::new(label.clone(), Quantity::new(label.clone(), "m"), "y", Legend::LowerLeft);
-        chart.scale = scale;
-        chart.add(label, COLORS[2], Style::LineAndDots, points);
-        let _ = chart.draw();
-    }
-
-    #[test]
-    fn no_field_makes_a_map_panic(
-        values in prop::collection::vec(number(), 6),
-        lengths in (1e-9..1e9_f64, 1e-9..1e9_f64),
-        range in prop::option::of((number(), number())),
-    ) {
-        let grid = Grid::new([2, 3], [lengths.0, lengths.1]).unwrap();
-        if let Ok(mut map) = Map::new(&grid, values, Quantity::new("q", "Pa")) {
-            if let Some((low, high)) = range {
-                map.range = [low, high];
-            }
-            let _ = map.outline(vec![true, false, true, true, false, false]).unwrap().draw();
-        }
-    }
 }
 
 /// What the test below runs with room for 32 KiB in a file.

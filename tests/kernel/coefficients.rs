@@ -6,7 +6,6 @@ use super::{convolve, noise};
 use approx::abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use viscocontact::rheology::{Material, Maxwell, Zener};
 use viscocontact::{Axis, Error, Grid, InfluenceKernel, KernelError, Layer};
 
 /// What a convolution returns is the double sum of K(i − k, j − l) p(k, l) over all cells (k, l): equation 7.
@@ -132,28 +131,6 @@ fn coefficients_of_other_bodies_are_their_closed_forms() {
     let own = |i: isize, j: isize| 0.1 / (1.0 + (i * i + 2 * j * j) as f64);
     let kernel = InfluenceKernel::from_coefficients(&grid, own).unwrap();
     assert_eq!(kernel.coefficient(-7, 6), Ok(own(7, 6)));
-}
-
-/// Equation 12, K_vs = 2G Φ K_el with Φ = J/2.
-#[test]
-fn viscoelastic_coefficients_are_creep_times_geometry() {
-    let (modulus, branch, nu) = (2.0e6, 3.0e6, 0.3);
-    let grid = Grid::new([9, 6], [3.0e-3, 2.0e-3]).unwrap();
-    let kernel = InfluenceKernel::half_space(&grid).unwrap();
-    let maxwell = Material::constant_poisson(Maxwell::new(modulus, 4.0e6).unwrap(), nu).unwrap();
-    let zener = Material::constant_poisson(Zener::new(modulus, branch, 6.0e6).unwrap(), nu).unwrap();
-    for t in [0.0, 0.3, 2.0, 40.0] {
-        let phi_maxwell = 0.5 * (1.0 + t / 2.0) / modulus;
-        let phi_zener = 0.5 * (1.0 / modulus - (-t / 2.0).exp_m1() / branch);
-        for (body, phi) in [(&maxwell, phi_maxwell), (&zener, phi_zener)] {
-            for (i, j) in [(0, 0), (3, -5), (-8, 1)] {
-                let k = kernel.coefficient(i, j).unwrap();
-                let elastic = (1.0 - nu) / (2.0 * modulus) * k;
-                let exact = 2.0 * modulus * phi * elastic;
-                assert!((body.contact_compliance(t) * k / exact - 1.0).abs() < 1e-14, "{t} ({i}, {j})");
-            }
-        }
-    }
 }
 
 #[test]

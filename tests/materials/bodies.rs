@@ -7,7 +7,7 @@ use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{MaterialError, RelaxationSpectrum};
+use viscocontact::rheology::MaterialError;
 
 const FORCE: f64 = 1.0;
 
@@ -20,25 +20,6 @@ fn builder(cells: usize, c: f64) -> viscocontact::contact::Builder {
 /// Contact radius cubed, measured through the approach ω = a²/R, which is far more accurate than counted cells.
 fn cubed_radius(contact: &ViscoelasticContact) -> f64 {
     (contact.approach() * RADIUS).powf(1.5)
-}
-
-#[test]
-fn elastic_bulk_has_the_limits_of_hertz() {
-    // a polymer that softens a thousandfold in shear while its bulk stays: ν from 0.35 to 0.4998
-    let (glassy, relaxed, bulk) = (1.0e9, 1.0e6, 3.0e9);
-    let shear = GeneralizedMaxwell::new(relaxed, &[(0.7 * (glassy - relaxed), 1.0), (0.3 * (glassy - relaxed), 100.0)])
-        .unwrap();
-    let material = Material::elastic_bulk(shear, bulk).unwrap();
-    let hertz = |g: f64| (1.0 / g) * (1.0 - (3.0 * bulk - 2.0 * g) / (2.0 * (3.0 * bulk + g))) / 2.0; // 1/E*
-    for (t, g) in [(0.0, glassy), (1e9, relaxed)] {
-        assert_abs_diff_eq!(material.contact_compliance(t) / hertz(g), 1.0, epsilon = 1e-11);
-        let mut contact = builder(128, hertz(g)).material(material.clone()).build().unwrap();
-        contact.step(0.0, Load::force(FORCE * 1e-6)).unwrap();
-        contact.step(t, Load::force(FORCE)).unwrap();
-        let relative = cubed_radius(&contact) / (0.75 * RADIUS * FORCE * hertz(g)) - 1.0;
-        println!("t = {t:e}: {relative:.1e}");
-        assert_abs_diff_eq!(relative, 0.0, epsilon = 1e-3);
-    }
 }
 
 /// Through the correspondence principle: at every s the contact compliance equals the compliance of the elastic body with the
@@ -225,31 +206,6 @@ fn a_history_and_its_end_give_the_times() {
     }
 }
 
-/// The same rheology by its series and by the direct sum: the difference is the error of the direct sum, of first
-/// order.
-#[test]
-fn recursive_and_direct_agree_to_first_order() {
-    let closure = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + 0.5 * t.sqrt() + 0.2 * t)));
-    let run = |time_rule, steps: u32| {
-        let settings = Settings::default().with_time_rule(time_rule).with_tolerance(1e-9).with_series_tolerance(1e-6);
-        let mut contact = builder(32, 0.6e-6).material(closure()).times(1e-4..=2.0).settings(settings).build().unwrap();
-        contact.step(0.0, Load::force(0.1 * FORCE)).unwrap();
-        for k in 1..=steps {
-            let share = 0.1 + 0.9 * f64::from(k) / f64::from(steps);
-            contact.step(1.0 / f64::from(steps), Load::force(share * FORCE)).unwrap();
-        }
-        contact.approach()
-    };
-    let limit = run(TimeRule::Exponential, 256);
-    let direct: Vec<f64> = [16, 32, 64].map(|steps| (run(TimeRule::Backward, steps) / limit - 1.0).abs()).into();
-    let recursive: Vec<f64> = [16, 32].map(|steps| (run(TimeRule::Exponential, steps) / limit - 1.0).abs()).into();
-    println!("direct {direct:?}, recursive {recursive:?}");
-    for pair in direct.windows(2) {
-        assert!((1.8..2.3).contains(&(pair[0] / pair[1])), "{direct:?}");
-    }
-    assert!(direct[2] < 1e-2 && recursive[1] < 0.1 * direct[1], "{direct:?} {recursive:?}");
-}
-
 #[test]
 fn direct_sums_keep_within_their_memory() {
     // by symmetry a quarter of the cells is computed
@@ -262,30 +218,6 @@ fn direct_sums_keep_within_their_memory() {
     let error = contact.step(0.1, Load::force(FORCE)).unwrap_err();
     assert!(matches!(error, Error::Step(StepError::HistoryFull { steps: 5, limit: 10_240, .. })), "{error}");
     assert_abs_diff_eq!(contact.time(), 0.5, epsilon = 1e-15);
-}
-
-/// Elastic bulk on the one-dimensional foundation: load, hold, unload; the stepper against an independent solution
-/// of the same C(t).
-#[test]
-fn an_elastic_bulk_loads_and_unloads_as_the_foundation_does() {
-    let shear = RelaxationSpectrum::new(1.0e6, 0.0, &[(2.0e6, 0.5), (1.0e6, 5.0)]).unwrap().creep();
-    let material = Material::elastic_bulk(shear, 4.0e6).unwrap();
-    let c = material.contact_compliance(1e3);
-    let mut contact = builder(96, c).material(material.clone()).build().unwrap();
-    let mut reference = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &material).unwrap();
-    let force = |t: f64| FORCE * (1.0 - (t / 2.0 - 1.0).abs()).max(0.0);
-    for k in 1..=60 {
-        let t = 0.06 * f64::from(k);
-        contact.step(0.06, Load::force(force(t))).unwrap();
-        for fine in 1..=8 {
-            let s = t - 0.06 + 0.06 * f64::from(fine) / 8.0;
-            reference.step(0.06 / 8.0, Load::force(force(s))).unwrap();
-        }
-        if force(t) > 0.2 * FORCE {
-            let relative = contact.approach() / reference.approach() - 1.0;
-            assert!(relative.abs() < 2e-3, "t = {t}: {relative:e}");
-        }
-    }
 }
 
 /// A body with thirty relaxation times against one with a single one that creeps the same: the contact problems are the same.

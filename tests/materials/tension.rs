@@ -189,20 +189,6 @@ fn an_elastic_bulk_in_tension_obeys_the_correspondence_principle() {
     }
 }
 
-/// A ball on silicone: a³ = (3/4) R F (1 − ν²)/E, and the approach a²/R.
-#[test]
-fn a_ball_on_a_rod_sinks_in_by_hertz() {
-    let (radius, force, e, nu) = (1.0e-2_f64, 0.5, 2.0e6, 0.48);
-    let touch = (0.75 * radius * force * (1.0 - nu * nu) / e).cbrt();
-    let mut contact = ViscoelasticContact::builder(Grid::square(64, 3.0 * touch).unwrap())
-        .geometry(&Sphere::new(radius).unwrap())
-        .material(Material::from_tension(Tension(Elastic::new(e).unwrap()), nu).unwrap())
-        .build()
-        .unwrap();
-    contact.step(0.0, Load::force(force)).unwrap();
-    close(contact.approach(), touch * touch / radius, 1e-3);
-}
-
 /// E(t), D(t), E′ and E″ of one body give its contact compliance.
 #[test]
 fn tables_in_tension_become_bodies() {

@@ -1,7 +1,7 @@
 //! Limit states: loads on the rim of the hull, pivots that a touch balances, loads and steps at the ends of the numbers.
 //! `LIMIT_SCENES` (120) scenes of each kind.
 
-use crate::common::{Draws, builder_of, from_environment};
+use crate::common::{Draws, builder_of, contact_of, from_environment};
 use viscocontact::plan::{Accuracy, Plan};
 use viscocontact::prelude::*;
 
@@ -132,8 +132,7 @@ fn bodies_that_just_touch_at_a_pivot_carry_no_load() {
         let tilt =
             [0, 1].map(|axis| if free == axis || free == 2 { Tilt::Free { at: at[axis] } } else { Tilt::Fixed(0.0) });
         let settings = Settings::default().with_edge(Edge::Allow);
-        let builder =
-            ViscoelasticContact::builder(grid).geometry(&shape).material(bodies(&mut draws)).settings(settings);
+        let builder = builder_of(&shape, grid, bodies(&mut draws)).settings(settings);
         let mut contact = builder.build().unwrap();
         for dt in [0.0, 0.1, 0.1] {
             let below = 0.5 * (at[0] * at[0] + at[1] * at[1]) / 0.01;
@@ -212,12 +211,12 @@ fn runs_under_the_least_loads_end() {
 fn steps_of_any_ratio_follow_each_other() {
     for frame in [Frame::Indenter, Frame::Bodies] {
         for lengths in [[1e-300, 1e9], [1e9, 1e-300], [1e-300, 1e300], [1e-200, 1e9], [1e-150, 1e9], [1e-9, 1e9]] {
-            let mut contact = ViscoelasticContact::builder(Grid::new([24, 16], [24.0e-5, 16.0e-5]).unwrap())
-                .geometry(&Sphere::new(1.0e-2).unwrap())
-                .material(Material::incompressible(GeneralizedMaxwell::new(1.0e6, &[(6.5e6, 0.7)]).unwrap()))
-                .settings(Settings::default().with_frame(frame))
-                .build()
-                .unwrap();
+            let mut contact = contact_of(
+                &Sphere::new(1.0e-2).unwrap(),
+                Grid::new([24, 16], [24.0e-5, 16.0e-5]).unwrap(),
+                Material::incompressible(GeneralizedMaxwell::new(1.0e6, &[(6.5e6, 0.7)]).unwrap()),
+                Settings::default().with_frame(frame),
+            );
             let load = Load::force(1.0e-5);
             contact.step(0.0, load).unwrap();
             for dt in [lengths[0], lengths[1], lengths[1]] {

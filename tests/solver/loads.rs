@@ -3,7 +3,6 @@
 use crate::common::{E_STAR, contact_of, elastic};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::RigidPunch;
-use viscocontact::load::LoadError;
 use viscocontact::prelude::*;
 
 const RADIUS: f64 = 1.0e-3;
@@ -146,53 +145,6 @@ fn approach_driven_force_is_the_foundations() {
     assert_eq!((contact.force(), contact.contact_cells()), (0.0, 0));
 }
 
-/// Force and approach describe the same states, and may take turns.
-#[test]
-fn force_and_approach_may_take_turns() {
-    let shape = Ellipsoid::new(8.0e-3, 14.0e-3).unwrap();
-    let new = || contact(Grid::square(64, 4.0e-3).unwrap(), &shape, zener(0.3), 1e-9);
-    let (mut forced, mut driven) = (new(), new());
-    for (step, force) in [0.2, 0.5, 0.9, 0.6, 0.3, 0.7].into_iter().enumerate() {
-        forced.step(0.1, Load::eccentric_force(force, [0.05e-3, -0.02e-3])).unwrap();
-        let (approach, tilt) = (forced.approach(), forced.tilt());
-        let load = match step % 3 {
-            0 => Load::approach_and_tilt(approach, tilt),
-            1 => Load::force_and_tilt(force, tilt),
-            _ => Load::Approach {
-                approach: approach + tilt[0] * 0.05e-3,
-                tilt: [Tilt::Free { at: 0.05e-3 }, Tilt::Fixed(tilt[1])],
-            },
-        };
-        driven.step(0.1, load).unwrap();
-        assert!((driven.force() / force - 1.0).abs() < 1e-6, "step {step}: {}", driven.force());
-        assert_abs_diff_eq!(driven.approach() / approach, 1.0, epsilon = 1e-6);
-        assert_abs_diff_eq!(driven.tilt()[0], tilt[0], epsilon = 1e-6 * tilt[0].abs());
-        let peak = forced.pressure().iter().copied().fold(0.0, f64::max);
-        for (a, b) in forced.pressure().iter().zip(driven.pressure()) {
-            assert!((a - b).abs() < 1e-5 * peak, "step {step}");
-        }
-    }
-}
-
-/// Under a steady eccentric force the tilt of a punch creeps as the compliance does.
-#[test]
-fn tilt_creeps() {
-    let grid = Grid::square(64, 2.1 * RADIUS).unwrap();
-    let body = Maxwell::with_time(1.0e6, 1.0).unwrap();
-    let mut contact = contact(grid, &FlatPunch::circular(RADIUS).unwrap(), Material::incompressible(body), 1e-9);
-    let load = Load::eccentric_force(1.0, [0.1 * RADIUS, 0.2 * RADIUS]);
-    contact.step(0.0, load).unwrap();
-    let (tilt, approach) = (contact.tilt(), contact.approach());
-    for k in 1..=10 {
-        contact.step(0.2, load).unwrap();
-        // closed contact: everything is J(t)/J(0) times the elastic answer, and the pressure does not change
-        let growth = 1.0 + 0.2 * k as f64;
-        assert_abs_diff_eq!(contact.approach() / (growth * approach), 1.0, epsilon = 1e-7);
-        assert_abs_diff_eq!(contact.tilt()[0] / (growth * tilt[0]), 1.0, epsilon = 1e-6);
-        assert_abs_diff_eq!(contact.tilt()[1] / (growth * tilt[1]), 1.0, epsilon = 1e-6);
-    }
-}
-
 #[test]
 fn loads_that_would_topple_are_refused_at_once() {
     let mut contact = punch(64);
@@ -211,42 +163,6 @@ fn loads_that_would_topple_are_refused_at_once() {
     assert!(table.tilt()[0] > 0.0);
 }
 
-/// Two punches side by side, each with its own load: far apart they do not feel each other, near they do.
-#[test]
-fn several_bodies_carry_their_own_loads() {
-    let foot = |center: f64| Shifted::new(FlatPunch::circular(0.3e-3).unwrap(), [center, 0.0]).unwrap();
-    let pair = |distance: f64, solver| {
-        let mut contact = ViscoelasticContact::builder(Grid::new([256, 64], [8.0e-3, 2.0e-3]).unwrap())
-            .geometry(&foot(-0.5 * distance))
-            .another_body(&foot(0.5 * distance))
-            .material(elastic())
-            .settings(Settings::default().with_tolerance(1e-9).with_solver(solver))
-            .build()
-            .unwrap();
-        let loads = [Load::force(2.0), Load::eccentric_force(0.5, [0.5 * distance + 0.05e-3, 0.0])];
-        let report = contact.step(0.0, &loads).unwrap();
-        assert_abs_diff_eq!(report.force, 2.5, epsilon = 1e-11);
-        let [left, right] = [0, 1].map(|body| contact.body(body).unwrap());
-        assert_abs_diff_eq!(left.force, 2.0, epsilon = 1e-11);
-        assert_abs_diff_eq!(right.force, 0.5, epsilon = 1e-11);
-        assert_abs_diff_eq!(right.moment[0] / right.force - 0.5 * distance, 0.05e-3, epsilon = 1e-12);
-        assert!(contact.body(2).is_none() && contact.bodies() == 2);
-        (left, right)
-    };
-    let (far_left, far_right) = pair(6.0e-3, Solver::ActiveSet);
-    let alone = RigidPunch::new(0.3e-3, E_STAR, 2.0, 0.0).unwrap();
-    // a neighbour at distance d sinks a punch by about its W/(π E* d)
-    let induced = 0.5 / (std::f64::consts::PI * E_STAR * 6.0e-3);
-    let expected = alone.approach + induced;
-    assert_abs_diff_eq!(far_left.approach, expected, epsilon = 2e-2 * expected);
-    let (near_left, near_right) = pair(0.8e-3, Solver::ActiveSet);
-    assert!(near_left.approach > far_left.approach && near_right.approach > far_right.approach);
-    // the heavy neighbour tilts the light one towards itself
-    assert!(near_right.tilt[0] < far_right.tilt[0]);
-    let (reference, _) = pair(0.8e-3, Solver::PolonskyKeer);
-    assert_abs_diff_eq!(reference.approach / near_left.approach, 1.0, epsilon = 1e-7);
-}
-
 #[test]
 fn wrong_numbers_of_bodies_and_loads_are_refused() {
     let mut contact = punch(16);
@@ -257,16 +173,6 @@ fn wrong_numbers_of_bodies_and_loads_are_refused() {
     let error = contact.set_geometries(&[&shape, &shape]).unwrap_err();
     let field = "geometries of the rigid bodies";
     assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
-    for (load, field) in [
-        (Load::approach(f64::NAN), "approach"),
-        (Load::eccentric_force(1.0, [f64::INFINITY, 0.0]), "load point along x1"),
-        (Load::approach_and_tilt(0.0, [0.0, f64::NAN]), "tilt along x2"),
-    ] {
-        let Err(Error::OutOfRange { field: named, .. }) = contact.step(0.0, load) else { panic!() };
-        assert_eq!(named, field);
-    }
-    let mixed = Ramp::new(Load::force(1.0), Load::approach(1.0), 1.0).unwrap_err();
-    assert!(matches!(mixed, Error::Load(LoadError::MixedKinds { .. })), "{mixed}");
 }
 
 /// More cycles than there are numbers for are a load all the same.

@@ -1,9 +1,7 @@
 //! The work of warm steps over a population of scenes drawn at random, on meshes finer than a dense reference could follow: no
 //! step may stall. `POPULATION_SCENES` (20) and `POPULATION_SEED` (1) choose others.
 
-use std::sync::Arc;
-
-use crate::common::{Draws, Ratios, from_environment};
+use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -59,9 +57,9 @@ fn run(seed: u64, costs: &mut Ratios) {
     let settings = Settings::default().with_symmetry(symmetry).with_window(draws.chance(0.3)).with_edge(Edge::Allow);
     let material = body(&mut draws);
     let build = |material: Material| {
-        let mut builder = ViscoelasticContact::builder(grid.clone()).geometry(&geometry).material(material);
+        let mut builder = builder_of(&geometry, grid.clone(), material);
         if periodic {
-            builder = builder.kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()));
+            builder = builder.kernel(InfluenceKernel::periodic(&grid).unwrap());
         }
         builder.settings(settings).build().unwrap()
     };

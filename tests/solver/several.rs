@@ -2,7 +2,7 @@
 //! contact solves. `SEVERAL_SCENES` (30) scenes of six steps, from `SEVERAL_FIRST` (2360) on: of these, the 2378th once left
 //! the fall-back without a gain.
 
-use crate::common::{Draws, elastic, from_environment};
+use crate::common::{Draws, builder_of, elastic, from_environment};
 use viscocontact::prelude::*;
 
 /// Numbers of the stream in which that scene was found.
@@ -41,7 +41,7 @@ fn steps_of_several_bodies_converge() {
         let material = if draws.chance(0.5) { elastic() } else { softening() };
         let build = || {
             let settings = Settings::default().with_edge(Edge::Allow);
-            let builder = ViscoelasticContact::builder(grid.clone()).geometry(&shapes[0]).material(material.clone());
+            let builder = builder_of(&shapes[0], grid.clone(), material.clone());
             shapes[1..].iter().fold(builder.settings(settings), |builder, shape| builder.another_body(shape)).build()
         };
         let Ok(mut contact) = build() else { continue };

@@ -1,9 +1,9 @@
 //! Does the work of a solve stay the same, whatever the mesh, the number of contacts and the load? Counts, up to `WORK_CELLS`
 //! cells along a side (256; the limits hold up to 2048).
 
-use std::sync::Arc;
-
-use crate::common::{E_STAR, StepLoadedSphere, contact_of, elastic, from_environment, maxwell, sphere, zener};
+use crate::common::{
+    E_STAR, StepLoadedSphere, builder_of, contact_of, elastic, from_environment, maxwell, sphere, zener,
+};
 use viscocontact::analytic::Hertz;
 use viscocontact::prelude::*;
 
@@ -16,7 +16,7 @@ fn meshes(least: usize) -> impl Iterator<Item = usize> {
 /// Equivalents of a warm step: the mean of `steps` steps under a constant load.
 fn warm(geometry: &dyn Geometry, length: f64, n: usize, material: Material, dt: f64, steps: usize, load: Load) -> f64 {
     let settings = Settings::default().with_window(false).with_symmetry(false).with_edge(Edge::Allow);
-    let builder = ViscoelasticContact::builder(Grid::square(n, length).unwrap()).geometry(geometry).material(material);
+    let builder = builder_of(geometry, Grid::square(n, length).unwrap(), material);
     let mut contact = builder.settings(settings).build().unwrap();
     contact.step(0.0, load).unwrap();
     let works = (0..steps).map(|_| contact.step(dt, load).unwrap().convolution_equivalents());
@@ -63,7 +63,7 @@ fn a_rough_surface_takes_as_much_work_on_every_mesh() {
                 .with_seed(1);
             let mut contact = ViscoelasticContact::builder(grid.clone())
                 .geometry(&Rough::new(&grid, spec).unwrap())
-                .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+                .kernel(InfluenceKernel::periodic(&grid).unwrap())
                 .material(Material::incompressible(Elastic::new(0.375).unwrap()))
                 .build()
                 .unwrap();
@@ -83,11 +83,12 @@ fn an_eccentric_punch_takes_at_most_13_iterations() {
     for n in meshes(128) {
         let iterations: Vec<usize> = (0..10)
             .map(|tenths| {
-                let mut contact = ViscoelasticContact::builder(Grid::square(n, 2.4e-3).unwrap())
-                    .geometry(&FlatPunch::circular(1.0e-3).unwrap())
-                    .material(elastic())
-                    .build()
-                    .unwrap();
+                let mut contact = contact_of(
+                    &FlatPunch::circular(1.0e-3).unwrap(),
+                    Grid::square(n, 2.4e-3).unwrap(),
+                    elastic(),
+                    Settings::default(),
+                );
                 contact.step(0.0, Load::eccentric_force(1.0, [1.0e-4 * tenths as f64, 0.0])).unwrap().iterations
             })
             .collect();

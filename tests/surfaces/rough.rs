@@ -1,7 +1,6 @@
 //! Rough surfaces on periodic bodies: the work of the solver, and published results.
 
 use crate::common::{E_STAR, G, builder_of, elastic, figures};
-use std::sync::Arc;
 
 use crate::common::rough::self_affine;
 use viscocontact::prelude::*;
@@ -18,7 +17,7 @@ fn rough(cells: usize, shortest: f64, seed: u64) -> (Grid, Rough) {
 
 fn pressed(grid: &Grid, shape: &Rough, material: Material, settings: Settings) -> ViscoelasticContact {
     builder_of(shape, grid.clone(), material)
-        .kernel(Arc::new(InfluenceKernel::periodic(grid).unwrap()))
+        .kernel(InfluenceKernel::periodic(grid).unwrap())
         .settings(settings)
         .build()
         .unwrap()

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::steady::Scene;
 use crate::common::steady_sliding::Time;
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::Special;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
@@ -27,9 +27,7 @@ fn on_waves(cells: usize, material: Material) -> Builder {
     let grid = Grid::square(cells, 1.0).unwrap();
     let wave = |[a, b, phase, h]: [f64; 4], x1: f64, x2: f64| h * (TAU * (a * x1 + b * x2) + phase).cos();
     let height = move |x1: f64, x2: f64| WAVES.map(|own| wave(own, x1, x2)).iter().sum::<f64>();
-    ViscoelasticContact::builder(grid.clone())
-        .geometry(&FnGeometry::new(height))
-        .material(material)
+    builder_of(&FnGeometry::new(height), grid.clone(), material)
         .kernel(InfluenceKernel::periodic(&grid).unwrap())
         .settings(Settings::default().with_tolerance(1e-10))
 }
@@ -149,7 +147,7 @@ fn a_steady_state_is_read_like_a_contact() {
     let shape = FnGeometry::new(|x1, x2| 0.4 * (x1 * x1 + x2 * x2).powi(2));
     let builder = |body| {
         let settings = Settings::default().with_tolerance(1e-10);
-        ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(body).settings(settings)
+        builder_of(&shape, grid.clone(), body).settings(settings)
     };
     let load = Load::eccentric_force(500.0, [0.03, -0.02]);
     let mut sliding = builder(rubber()).build_sliding().unwrap();
@@ -336,18 +334,18 @@ fn an_edge_at_the_period_is_refused() {
     let grid = Grid::square(16, 1.0).unwrap();
     for axis in 0..2 {
         let slope = FnGeometry::new(move |x1: f64, x2: f64| 0.1 * [x1, x2][axis] + 1e-3 * (TAU * x1).cos());
-        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&slope).material(rubber());
+        let builder = builder_of(&slope, grid.clone(), rubber());
         let refused = builder.kernel(InfluenceKernel::periodic(&grid).unwrap()).build_sliding().unwrap_err();
         assert!(refused.to_string().contains("jumps"), "{refused}");
     }
     let kernel = InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).unwrap();
     let ball = Sphere::new(1.0).unwrap();
-    let builder = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(rubber()).kernel(kernel);
+    let builder = builder_of(&ball, grid.clone(), rubber()).kernel(kernel);
     assert!(matches!(builder.build_sliding(), Err(Error::NotCovered { special: Special::SteadyMotion, .. })));
     // memory: stated before, in proportion to the cells
     let memory = |cells: usize| {
         let grid = Grid::square(cells, 1.0).unwrap();
-        ViscoelasticContact::builder(grid).geometry(&ball).material(rubber()).sliding_memory().unwrap() as f64
+        builder_of(&ball, grid, rubber()).sliding_memory().unwrap() as f64
     };
     assert!((memory(512) / memory(256) / 4.0 - 1.0).abs() < 0.05, "{} {}", memory(256), memory(512));
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::gauss::points;
 use crate::common::steady_sliding::{Below, SteadySliding as Dense};
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::Layer;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -187,9 +187,7 @@ impl Scene {
                 InfluenceKernel::layer_periodic_along(&grid, layer, along(), datum)
             }
         };
-        let builder = ViscoelasticContact::builder(grid)
-            .geometry(&self.shape())
-            .material(self.creep.material(self.nu))
+        let builder = builder_of(&self.shape(), grid, self.creep.material(self.nu))
             .kernel(kernel.unwrap())
             .settings(Settings::default().with_tolerance(1e-9));
         match &self.base {
@@ -613,27 +611,6 @@ fn bases_that_are_equal_elastic_or_rigid_are_limits() {
     }
 }
 
-/// At rest, and of bodies that do not creep at any speed, the state is the one of the elastic layer.
-#[test]
-fn an_elastic_base_is_the_elastic_layer() {
-    let grid = Grid::square(24, 1.0).unwrap();
-    let elastic = |factor: f64, nu: f64| Creep { glassy: factor, terms: Vec::new() }.material(nu);
-    let layer = Layer::bonded_to_material(0.1, &elastic(1.0, 0.5), &elastic(0.1, 0.3)).unwrap();
-    let builder = || pressed(|grid| InfluenceKernel::layer(grid, layer), &grid).material(elastic(1.0, 0.5));
-    let mut still = builder().build().unwrap();
-    still.step(0.0, Load::force(20.0)).unwrap();
-    for velocity in [[0.0, 0.0], [2.0, 0.0], [0.0, -1e4]] {
-        let mut sliding = builder().build_sliding_on(elastic(0.1, 0.3)).unwrap();
-        let report = sliding.at(velocity, Load::force(20.0)).unwrap();
-        let most = still.max_pressure();
-        let differ = sliding.contact().pressure().iter().zip(still.pressure());
-        let differ = differ.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max) / most;
-        println!("{velocity:?}: {differ:e}, {:e}", report.approach / still.approach() - 1.0);
-        assert!(differ < 1e-7 && (report.approach / still.approach() - 1.0).abs() < 1e-8);
-        assert!(report.friction().abs() < 1e-9, "{report}");
-    }
-}
-
 /// A ball on a half-space that flows: the pressure is steady, from coefficients that are integrals over the whole way.
 #[test]
 fn a_half_space_may_flow() {
@@ -642,8 +619,7 @@ fn a_half_space_may_flow() {
     let d = grid.spacing()[0];
     let shape = FnGeometry::new(|x1: f64, x2: f64| 0.05 * (x1 * x1 + x2 * x2));
     let rheology = || GeneralizedKelvin::new(4.0 * GLASSY, 4.0 * fluidity, &[(8.0 * GLASSY, 0.2)]).unwrap();
-    let builder =
-        || ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(Material::incompressible(rheology()));
+    let builder = || builder_of(&shape, grid.clone(), Material::incompressible(rheology()));
     let mut sliding = builder().settings(Settings::default().with_tolerance(1e-10)).build_sliding().unwrap();
     let report = sliding.at([speed, 0.0], Load::force(force)).unwrap();
     let at = |k: usize, shift: f64| {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::{Draws, figures, from_environment};
+use crate::common::{Draws, builder_of, figures, from_environment};
 use viscocontact::geometry::{Rough, RoughSpec, Roughness};
 use viscocontact::prelude::*;
 
@@ -41,12 +41,11 @@ fn balls_and_cylinders_cost_few_transforms() {
                 if line { InfluenceKernel::line(&grid, 1e4) } else { InfluenceKernel::half_space(&grid) }.unwrap();
             let relaxed = 0.25e-6 * (1.0 + strength);
             let load = Load::force(draws.scale(0.03, 0.3) * 5e-3 / relaxed);
-            let mut sliding = ViscoelasticContact::builder(grid)
-                .geometry(&shape)
-                .material(Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &terms).unwrap()))
-                .kernel(kernel)
-                .build_sliding()
-                .unwrap();
+            let mut sliding =
+                builder_of(&shape, grid, Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &terms).unwrap()))
+                    .kernel(kernel)
+                    .build_sliding()
+                    .unwrap();
             let speed = draws.scale(1e-3, 1e2);
             for step in 0..3 {
                 let velocity = [speed * 10_f64.powf(0.25 * f64::from(step)), 0.0];
@@ -82,12 +81,11 @@ fn the_friction_of_a_road_converges_with_the_mesh() {
     let mut cells = coarsest;
     while cells <= finest {
         let grid = Grid::square(cells, 1e-3).unwrap();
-        let mut sliding = ViscoelasticContact::builder(grid.clone())
-            .geometry(&road)
-            .material(Material::incompressible(GeneralizedMaxwell::new(1e6, &terms).unwrap()))
-            .kernel(InfluenceKernel::periodic(&grid).unwrap())
-            .build_sliding()
-            .unwrap();
+        let mut sliding =
+            builder_of(&road, grid.clone(), Material::incompressible(GeneralizedMaxwell::new(1e6, &terms).unwrap()))
+                .kernel(InfluenceKernel::periodic(&grid).unwrap())
+                .build_sliding()
+                .unwrap();
         let speeds = (0..9).map(|k| 100.0 * 10_f64.powi(-k));
         let at = |speed: f64| {
             let report = sliding.at([speed, 0.0], Load::force(0.1)).unwrap();

@@ -1,5 +1,6 @@
 //! Steady motions against Hunter's closed form, and against the limits of slow and fast motion.
 
+use crate::common::builder_of;
 use std::f64::consts::PI;
 
 use viscocontact::analytic::SlidingLimits;
@@ -14,9 +15,7 @@ fn a_rolling_cylinder_is_hunters() {
     let friction = |cells: usize, reach: f64, axis: Axis| {
         let grid = Grid::new([cells, 1], [3.0 * half, 1.0]).unwrap();
         let cylinder = Cylinder::new(radius).unwrap();
-        let mut sliding = ViscoelasticContact::builder(grid.clone())
-            .geometry(&cylinder)
-            .material(Material::incompressible(body()))
+        let mut sliding = builder_of(&cylinder, grid.clone(), Material::incompressible(body()))
             .kernel(InfluenceKernel::line(&grid, 100.0).unwrap())
             .settings(Settings::default().with_tolerance(1e-9))
             .build_sliding()
@@ -72,9 +71,7 @@ fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
         };
         let grid = Grid::new(counts, [length * half, if line { 1.0 } else { length * half }]).unwrap();
         let kernel = if line { InfluenceKernel::line(&grid, 1.0) } else { InfluenceKernel::half_space(&grid) };
-        let mut sliding = ViscoelasticContact::builder(grid)
-            .geometry(&shape)
-            .material(body())
+        let mut sliding = builder_of(&shape, grid, body())
             .kernel(kernel.unwrap())
             .settings(Settings::default().with_tolerance(1e-9))
             .build_sliding()

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::prelude::*;
 
 /// Waves on a period of 1 m, terms with reaches up to three periods, and a force.
@@ -57,9 +57,11 @@ impl Scene {
         let terms: Vec<_> = self.terms.iter().map(|&(c, time)| (4e-6 * c, time)).collect();
         let shape = self.shape();
         let builder = || {
-            ViscoelasticContact::builder(grid.clone())
-                .geometry(&shape)
-                .material(Material::incompressible(GeneralizedKelvin::new(4e-6, 0.0, &terms).unwrap()))
+            builder_of(
+                &shape,
+                grid.clone(),
+                Material::incompressible(GeneralizedKelvin::new(4e-6, 0.0, &terms).unwrap()),
+            )
         };
         let kernel = kernel.unwrap();
         let load = Load::force(self.force);

@@ -2,10 +2,9 @@
 //! rollers, `STEADY_SEED` (1).
 
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time};
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::analytic::RollingCylinder;
 use viscocontact::contact::{Builder, Edge, Unsteady};
 use viscocontact::prelude::*;
@@ -175,10 +174,12 @@ impl Scene {
             Below::Line(datum) => InfluenceKernel::line(&grid, datum),
         };
         let terms: Vec<(f64, f64)> = self.terms.iter().map(|&(c, reach)| (4.0 * GLASSY * c, reach)).collect();
-        ViscoelasticContact::builder(grid)
-            .geometry(&self.shape())
-            .material(Material::incompressible(GeneralizedKelvin::new(4.0 * GLASSY, self.fluidity, &terms).unwrap()))
-            .kernel(Arc::new(kernel.unwrap()))
+        builder_of(
+            &self.shape(),
+            grid,
+            Material::incompressible(GeneralizedKelvin::new(4.0 * GLASSY, self.fluidity, &terms).unwrap()),
+        )
+        .kernel(kernel.unwrap())
     }
 
     /// Runs to the steady state; returns the contact, and what it lacks.
@@ -319,6 +320,21 @@ fn random_motions_that_do_as_told_arrive() {
     assert!(told > 0 && 10 * arrived >= 9 * told, "{arrived} of {told}");
 }
 
+/// A cylinder over 128 cells of a rigid body.
+fn over_cylinder(radius: f64, side: f64, force: f64) -> SteadySliding {
+    let x = |k: usize| (k as f64 + 0.5 - 64.0) * side;
+    SteadySliding {
+        below: Below::Line(100.0),
+        cells: [128, 1],
+        spacing: [side, 1.0],
+        glassy: 0.0,
+        terms: Vec::new(),
+        gap: (0..128).map(|k| 0.5 * x(k).powi(2) / radius).collect(),
+        rise: (0..128).map(|k| x(k) * side / radius).collect(),
+        force,
+    }
+}
+
 /// A body without elastic response has a dashpot beside its springs: its limit counts it, too.
 #[test]
 fn a_body_without_elastic_response_arrives() {
@@ -326,26 +342,20 @@ fn a_body_without_elastic_response_arrives() {
     let (radius, at, force) = (10.0e-3, 2.0e-3, 100.0);
     let cylinder = Shifted::new(Cylinder::new(radius).unwrap(), [at, 0.0]).unwrap();
     let terms = [(1.0e-6, 1.0e-3), (2.0e-6, 3.0e-3)];
-    let mut contact = ViscoelasticContact::builder(grid.clone())
-        .geometry(&cylinder)
-        .material(Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &terms).unwrap()))
-        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
-        .settings(Settings::default().with_frame(Frame::Indenter))
-        .build()
-        .unwrap();
+    let mut contact = builder_of(
+        &cylinder,
+        grid.clone(),
+        Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &terms).unwrap()),
+    )
+    .kernel(InfluenceKernel::line(&grid, 1.0).unwrap())
+    .settings(Settings::default().with_frame(Frame::Indenter))
+    .build()
+    .unwrap();
     let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(force));
     contact.toward_steady(motion).unwrap().run().unwrap();
-    let (side, x) = (grid.spacing()[0], |k: usize| (k as f64 + 0.5 - 64.0) * grid.spacing()[0]);
-    let sliding = SteadySliding {
-        below: Below::Line(1.0),
-        cells: [128, 1],
-        spacing: grid.spacing(),
-        glassy: 0.0,
-        terms: terms.iter().map(|&(compliance, time)| (0.25 * compliance, 0.1 * time)).collect(),
-        gap: (0..128).map(|k| 0.5 * x(k).powi(2) / radius).collect(),
-        rise: (0..128).map(|k| x(k) * side / radius).collect(),
-        force,
-    };
+    let mut sliding = over_cylinder(radius, grid.spacing()[0], force);
+    sliding.below = Below::Line(1.0);
+    sliding.terms = terms.iter().map(|&(compliance, time)| (0.25 * compliance, 0.1 * time)).collect();
     let exact = sliding.solve(Time::Exact).unwrap();
     let friction = contact.lateral_force(&cylinder)[0] / contact.force();
     let errors = [friction / exact.friction - 1.0, contact.approach() / exact.approach - 1.0];
@@ -360,18 +370,8 @@ fn the_reference_is_hunters() {
     for reach in [0.01, 0.1, 1.0, 10.0] {
         let exact = RollingCylinder::new(radius, [c0, c1], force, reach).unwrap().friction;
         let half = (4.0 * radius * (c0 + c1) * force / PI).sqrt();
-        let side = 3.0 * half / 128.0;
-        let x = |k: usize| (k as f64 + 0.5 - 64.0) * side;
-        let sliding = SteadySliding {
-            below: Below::Line(100.0),
-            cells: [128, 1],
-            spacing: [side, 1.0],
-            glassy: c0,
-            terms: vec![(c1, reach)],
-            gap: (0..128).map(|k| 0.5 * x(k).powi(2) / radius).collect(),
-            rise: (0..128).map(|k| x(k) * side / radius).collect(),
-            force,
-        };
+        let terms = vec![(c1, reach)];
+        let sliding = SteadySliding { glassy: c0, terms, ..over_cylinder(radius, 3.0 * half / 128.0, force) };
         let found = [Time::Exact, Time::Steps].map(|time| sliding.solve(time).unwrap().friction / exact - 1.0);
         println!("v τ/a = {}: {found:?}", reach / half);
         assert!(found.iter().all(|error| error.abs() < 0.01), "{reach}: {found:?}");

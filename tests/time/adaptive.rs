@@ -1,7 +1,7 @@
 //! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
 
 use crate::common::histories::{Scene, scenes};
-use crate::common::{Draws, RADIUS, builder_on, contact_of, elastic, figures, from_environment, maxwell};
+use crate::common::{Draws, RADIUS, contact_of, elastic, figures, from_environment, maxwell};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;
@@ -79,17 +79,6 @@ fn twelve_decades_of_creep_take_few_steps() {
     assert!(steps <= 150, "{steps}");
 }
 
-#[test]
-fn steps_end_on_corners_and_on_the_times_asked_for() {
-    let scene = scenes().into_iter().find(|scene| scene.name.contains("unload")).unwrap();
-    let land = [0.1, 0.77, 1.5, 3.1, 3.5];
-    let run = run(&scene, 1e-2, &land);
-    for time in land.into_iter().chain([1.0, 2.0, 2.5, 3.5]) {
-        assert!(run.history.iter().any(|state| state[0] == time), "{time}");
-    }
-    assert!(run.history.windows(2).all(|pair| pair[1][0] >= pair[0][0]));
-}
-
 /// Closures do not name their corners: a short pulse and a corner are found all the same.
 #[test]
 fn pulses_and_corners_of_closures_are_found() {
@@ -146,40 +135,6 @@ fn rejected_steps_leave_no_trace() {
     }
 }
 
-#[test]
-fn tolerances_and_impossible_loads_are_refused() {
-    let scene = &scenes()[0];
-    for tolerance in [0.0, -1.0, 1e-10, 0.2, f64::NAN] {
-        let mut contact = scene.contact(16, 1e-6);
-        let error = contact.follow(&*scene.history, Stepping::adaptive(tolerance), 1.0).next_step().unwrap_err();
-        assert!(matches!(error, Error::OutOfRange { field: "tolerance of the adaptive steps", .. }), "{error}");
-    }
-    // faster than time is resolved
-    let noise = FnHistory::new(|t: f64| Load::force(if t < 0.5 { 0.5 } else { 0.5 + 0.4 * (t * 1e18).sin() }));
-    let mut contact = scene.contact(16, 1e-6);
-    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
-    let error = loop {
-        match follow.next_step() {
-            Ok(Some(_)) => {}
-            Ok(None) => panic!("noise cannot be followed"),
-            Err(error) => break error,
-        }
-    };
-    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
-
-    // nor where the series of the body resolves longer times only: an end, not a step tried for ever
-    let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
-    let mut contact = builder_on(Grid::square(16, 4.0e-3).unwrap(), body).times(1e-2..=1e4).build().unwrap();
-    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
-    let error = loop {
-        match follow.next_step() {
-            Ok(step) => assert!(step.is_some()),
-            Err(error) => break error,
-        }
-    };
-    assert!(matches!(error, Error::Step(StepError::StepTooShort { .. })), "{error}");
-}
-
 /// Area by p² extrapolated to the edge, against Hertz, wherever the contact lies on the mesh.
 #[test]
 fn areas_are_known_to_a_part_of_a_cell() {
@@ -191,11 +146,12 @@ fn areas_are_known_to_a_part_of_a_cell() {
             let radius = 0.5e-3 * (0.5 + 0.25 * share(0.618));
             let side = 1.0e-3 / cells as f64;
             let sphere = Shifted::new(Sphere::new(RADIUS).unwrap(), [side * share(0.37), side * share(0.71)]).unwrap();
-            let mut contact = ViscoelasticContact::builder(Grid::square(cells, 1.0e-3).unwrap())
-                .geometry(&sphere)
-                .material(Material::incompressible(Elastic::new(0.25e6).unwrap()))
-                .build()
-                .unwrap();
+            let mut contact = contact_of(
+                &sphere,
+                Grid::square(cells, 1.0e-3).unwrap(),
+                Material::incompressible(Elastic::new(0.25e6).unwrap()),
+                Settings::default(),
+            );
             contact.step(0.0, Load::force(4.0e6 * radius.powi(3) / (3.0 * RADIUS))).unwrap();
             let exact = std::f64::consts::PI * radius * radius;
             let counted = contact.contact_cells() as f64 * contact.grid().cell_area();
@@ -213,11 +169,12 @@ fn areas_are_known_to_a_part_of_a_cell() {
         format!("{coarse} at 64² cells and {fine} at 256²; that of counted cells is {counted} and {counted_fine}");
     figures::figure("areas", &all).unwrap();
     // a square punch ends with its cells
-    let mut contact = ViscoelasticContact::builder(Grid::square(64, 1.0e-3).unwrap())
-        .geometry(&FlatPunch::rectangular([0.5e-3, 0.25e-3]).unwrap())
-        .material(elastic())
-        .build()
-        .unwrap();
+    let mut contact = contact_of(
+        &FlatPunch::rectangular([0.5e-3, 0.25e-3]).unwrap(),
+        Grid::square(64, 1.0e-3).unwrap(),
+        elastic(),
+        Settings::default(),
+    );
     contact.step(0.0, Load::force(1.0)).unwrap();
     let exact = contact.contact_cells() as f64 * contact.grid().cell_area();
     assert_abs_diff_eq!(contact.contact_area() / exact, 1.0, epsilon = 2e-3);

@@ -230,42 +230,6 @@ fn a_state_within_a_long_step_follows_the_relaxation() {
     assert!(contact.within_step(time).is_err() && contact.within_step(10.0).is_ok());
 }
 
-/// A ball under steps, and ramps with holds, of force and approach: the quarters of all adaptive steps, some of which span the
-/// whole relaxation.
-#[test]
-fn states_within_steps_of_a_held_ball_are_exact() {
-    let zener = || Material::incompressible(Zener::with_time(1.0e6, 0.3e6, 1.0).unwrap());
-    let four = [(0.4e6, 3.0e-3), (0.3e6, 3.0e-2), (0.2e6, 0.3), (0.1e6, 3.0)];
-    let four_times = || Material::incompressible(GeneralizedMaxwell::new(0.1e6, &four).unwrap());
-    let (depth, force) = (Load::approach(3.0e-5), Load::force(0.5));
-    let (no_depth, no_force) = (Load::approach(0.0), Load::force(0.0));
-    let histories: [(&str, Box<dyn LoadHistory>); 4] = [
-        ("approach step", Box::new(StepLoad::new(depth).unwrap())),
-        ("approach ramp and hold", Box::new(Ramp::new(no_depth, depth, 1.0).unwrap())),
-        ("force step", Box::new(StepLoad::new(force).unwrap())),
-        ("force ramp and hold", Box::new(Ramp::new(no_force, force, 1.0).unwrap())),
-    ];
-    let (cells, tolerance) = (from_environment("INSIDE_CELLS", 24) as usize, 1e-4);
-    for (name, history) in &histories {
-        for (body, material) in [("Zener", zener()), ("four times", four_times())] {
-            let contact = |tolerance: f64| {
-                let grid = Grid::square(cells, 5.0e-3).unwrap();
-                let settings = Settings::default().with_tolerance(tolerance);
-                builder_on(grid, material.clone()).settings(settings).build().unwrap()
-            };
-            let Run { looks, .. } = run(contact(1e-6), &**history, 10.0, tolerance).unwrap();
-            let exact = truth(contact(1e-9), &**history, 10.0, 2e-6, &looks).unwrap();
-            let worst = [0, 1, 3].map(|which| {
-                let greatest = exact.iter().fold(0.0, |most: f64, seen| most.max(seen.values[which].abs()));
-                let off = looks.iter().zip(&exact).map(|(look, exact)| differences(&look.seen, exact)[which]);
-                off.fold(0.0, f64::max) / greatest / tolerance
-            });
-            println!("{name}, {body}: {} looks, approach, force, pressure {worst:.2?} of what was asked", looks.len());
-            assert!(worst[0] <= 2.0 && worst[1] <= 2.0, "{name}, {body}: {worst:?}");
-        }
-    }
-}
-
 /// Greatest and mean error of approach and force inside the steps of an adaptive run, of the contact and on the line
 /// between the ends of the steps, relative to their greatest values; and the number of steps.
 fn errors_inside(scene: &Scene, tolerance: f64) -> ([[[f64; 2]; 2]; 2], usize) {

@@ -376,7 +376,7 @@ fn lifted_indenters_move_at_once() {
     let (grid, sphere) = (Grid::square(24, LENGTH).unwrap(), Sphere::new(10.0e-3).unwrap());
     let lifted = Load::approach(-DEPTH);
     let build = |frame| {
-        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&sphere).material(voigt());
+        let builder = builder_of(&sphere, grid.clone(), voigt());
         builder.settings(Settings::default().with_frame(frame)).build().unwrap()
     };
     let travel = Travel::new(sphere, Straight::new([-1.0e-3, 0.0], [0.0, 0.0]).unwrap());

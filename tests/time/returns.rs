@@ -5,84 +5,39 @@
 //! `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`; `RETURNS_FIRST=17`
 //! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes. `RETURNS_SPRINGS` counts those by springs.
 
+use super::honest::Promise;
 use crate::common::watched_runs::watch;
 use crate::common::{Features, Ratios, Scene, Truth, builder_on, from_environment};
 use viscocontact::prelude::*;
 
-const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
-/// What 99 % of the errors are at most, over these tolerances, and all of them.
-const BOUNDS: [f64; 4] = [1.2, 1.8, 2.0, 2.7];
-const MOST: f64 = 5.0;
-/// The same by springs.
-const BOUNDS_BY_SPRINGS: [f64; 4] = [2.0; 4];
-const MOST_BY_SPRINGS: f64 = 3.0;
 /// A run of so many contact problems does not end.
 const MOST_PROBLEMS: u64 = 50_000;
-/// So many times more given steps find the truth where a run seems to err by too much.
-const MORE_STEPS: u64 = 16;
+
+/// The least tolerance in long populations alone.
+fn returns(count: &'static str, features: Features) -> Promise {
+    Promise {
+        features,
+        chosen: [(count, 16), ("RETURNS_SEED", 2), ("RETURNS_FIRST", 0), ("RETURNS_STEPS", 20_000)],
+        most_problems: MOST_PROBLEMS,
+        tolerances: if from_environment(count, 16) > 16 { 4 } else { 3 },
+        high: [2.0; 4],
+        most: 3.0,
+        by_budget: true,
+    }
+}
 
 /// True errors are at most twice the tolerance in 99 % of random scenes down to 1e-4, somewhat more at 1e-5, and in 98 % at
 /// most twice what the budget states in as many: of approach or force, and of the greatest pressure.
 #[test]
 fn errors_are_honest_on_random_returns() {
-    check_returns(Features::RETURNING, ("RETURNS_SCENES", 16), BOUNDS, MOST);
+    Promise { high: [1.2, 1.8, 2.0, 2.7], most: 5.0, ..returns("RETURNS_SCENES", Features::RETURNING) }.check();
 }
 
 /// True errors of approach and force are at most twice the tolerance in 99 % of random scenes under springs, 1/20 to 20 times as stiff as the
 /// bodies, and three times in all.
 #[test]
 fn errors_are_honest_on_random_returns_by_springs() {
-    check_returns(Features::RETURNING_BY_SPRING, ("RETURNS_SPRINGS", 16), BOUNDS_BY_SPRINGS, MOST_BY_SPRINGS);
-}
-
-fn check_returns(features: Features, count: (&str, u64), bounds: [f64; 4], most: f64) {
-    let [scenes, seed, first, most_steps] =
-        [count, ("RETURNS_SEED", 2), ("RETURNS_FIRST", 0), ("RETURNS_STEPS", 20_000)]
-            .map(|(name, default)| from_environment(name, default));
-    // at most tolerances whose truth takes few steps, unless more are asked for
-    let tolerances = if scenes > 16 { &TOLERANCES[..] } else { &TOLERANCES[..3] };
-    let mut of_tolerance: Vec<Ratios> = tolerances.iter().map(|_| Ratios::default()).collect();
-    let [mut of_budget, mut of_pressure] = [Ratios::default(), Ratios::default()];
-    let (mut problems, mut unjudged) = (0, 0);
-    for number in first..first + scenes {
-        let scene = Scene::draw(seed, number, features);
-        let mut truth = Truth::of(&scene, 0.1 * tolerances[tolerances.len() - 1], most_steps).unwrap();
-        for (&tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
-            let mut contact = scene.contact(Settings::default().tolerance());
-            let stepping = Stepping::adaptive(tolerance);
-            let run = watch(&scene, &mut contact, scene.load(), stepping, &scene.stops, MOST_PROBLEMS)
-                .unwrap_or_else(|stopped| panic!("{} at {tolerance:e}: {stopped}", scene.name));
-            problems += run.problems();
-            if truth.errors(&run)[0] > 2.0 * tolerance && truth.uncertainty[0] > 0.1 * tolerance {
-                truth = Truth::of(&scene, 1e-6, MORE_STEPS * most_steps).unwrap_or(truth);
-            }
-            let (errors, name) = (truth.errors(&run), format!("at {tolerance:e}: {}", scene.name));
-            let known = |k: usize| truth.uncertainty[k] <= 0.1 * tolerance.max(errors[k]);
-            unjudged += u64::from(!known(0));
-            if known(0) {
-                ratios.push(errors[0] / tolerance, &name);
-                // an error far below the tolerance is no news
-                of_budget.push(errors[0] / run.time_budget.max(0.3 * tolerance), &name);
-            }
-            if known(1) {
-                of_pressure.push(errors[1] / run.pressure_budget.max(tolerance), &name);
-            }
-        }
-    }
-    println!(
-        "seed {seed}, scenes {first} to {}: {problems} contact problems, {unjudged} of unknown truth",
-        first + scenes
-    );
-    for (tolerance, ratios) in tolerances.iter().zip(&of_tolerance) {
-        ratios.print(&format!("over {tolerance:.0e}"), 3);
-    }
-    of_budget.print("over the budget", 3);
-    of_pressure.print("pressure over its budget", 3);
-    for ((tolerance, ratios), bound) in tolerances.iter().zip(&of_tolerance).zip(bounds) {
-        assert!(ratios.quantile(0.99) <= bound && ratios.quantile(1.0) < most, "at {tolerance:e}");
-    }
-    assert!(of_budget.quantile(0.98) <= 2.0);
-    assert!(of_pressure.quantile(0.98) <= 2.0);
+    returns("RETURNS_SPRINGS", Features::RETURNING_BY_SPRING).check();
 }
 
 /// Step loads on bodies of one relaxation time err by at most twice 1e-4, and the greatest pressure under short ramps before long holds by

@@ -13,7 +13,7 @@ use viscocontact::prelude::*;
 use viscocontact::run::RunContact;
 use viscocontact::{Error, UserError};
 
-use crate::common::{Draws, Temporary, from_environment};
+use crate::common::{Draws, Temporary, builder_of, contact_of, from_environment};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -103,11 +103,15 @@ behaviours! {
             let error = kind.run(hold(0.5), stepping, until).next_step().unwrap_err();
             assert!(matches!(error, Error::OutOfRange { field, .. } if field == name), "{error}");
         };
-        refused(Stepping::fixed(0.1), -1.0, "end of the run");
-        refused(Stepping::fixed(0.1), f64::NAN, "end of the run");
-        refused(Stepping::fixed(0.0), 1.0, "fixed step");
-        refused(Stepping::fixed(f64::INFINITY), 1.0, "fixed step");
-        refused(Stepping::adaptive(0.2), 1.0, "tolerance of the adaptive steps");
+        for end in [-1.0, f64::NAN, f64::INFINITY] {
+            refused(Stepping::fixed(0.1), end, "end of the run");
+        }
+        for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            refused(Stepping::fixed(dt), 1.0, "fixed step");
+        }
+        for tolerance in [0.0, -1.0, 1e-10, 0.2, f64::NAN] {
+            refused(Stepping::adaptive(tolerance), 1.0, "tolerance of the adaptive steps");
+        }
         let run = || kind.run(hold(0.5), Stepping::fixed(0.1), 1.0);
         let error = run().stop_at([f64::NAN]).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { field: "time to stop at or to sample", .. }), "{error}");
@@ -186,6 +190,10 @@ behaviours! {
                 count += 1;
                 let progress = run.progress();
                 assert_eq!((progress.steps, progress.time, progress.share_of_time()), (count, report.time, report.time / 4.0));
+                assert!(run.within_step(report.time + 1e-3).is_err() && run.within_step(-1e-3).is_err());
+                if let Stepping::Adaptive { tolerance } = stepping {
+                    assert!(report.time_error.is_some_and(|error| error <= tolerance));
+                }
             }
             assert!(count > 3 && run.progress().share_of_decades() == 1.0);
             assert_eq!(run.into_contact().time(), 4.0);
@@ -409,9 +417,8 @@ fn errors_of_paths_and_attraction_come_out_as_themselves() {
         let fails = Arc::new(AtomicBool::new(true));
         let law = || Drifting(ExponentialAttraction::new(1.0, 1.0e-5).unwrap(), Arc::clone(&fails));
         let builder = || {
-            let builder = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(material());
-            let builder =
-                if periodic { builder.kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap())) } else { builder };
+            let builder = builder_of(&ball, grid.clone(), material());
+            let builder = if periodic { builder.kernel(InfluenceKernel::periodic(&grid).unwrap()) } else { builder };
             builder.attraction(law())
         };
         own(builder().build().unwrap_err());
@@ -425,7 +432,7 @@ fn errors_of_paths_and_attraction_come_out_as_themselves() {
     }
     let path = FnPath::fallible(|t| if t < 0.15 { Ok([1.0e-3 * t, 0.0]) } else { "x".parse().map(|x1| [x1, 0.0]) });
     let travel = Travel::new(ball, path);
-    let mut contact = ViscoelasticContact::builder(grid.clone()).geometry(&ball).material(material()).build().unwrap();
+    let mut contact = contact_of(&ball, grid.clone(), material(), Settings::default());
     contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap();
     own(contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap_err());
     assert_eq!(contact.time(), 0.1);
@@ -471,11 +478,11 @@ fn a_resumed_run_continues_its_files() {
                     }
                 }
                 assert_eq!(run.progress().steps as usize, steps);
-                run.progress()
+                (run.progress(), run.error_budget())
             };
             let whole = go_on("whole", None);
-            assert!(whole.steps > 8);
-            for step in 1..whole.steps as usize {
+            assert!(whole.0.steps > 8);
+            for step in 1..whole.0.steps as usize {
                 let name = format!("resumed-{step}");
                 go_on(&name, Some(step));
                 assert_eq!(go_on(&name, None), whole);

@@ -1,5 +1,6 @@
 //! Curves of runs of few steps: states sampled within steps, and steps that end at times of the user's choice.
 
+use crate::common::contact_of;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::contact::StepReport;
 use viscocontact::prelude::*;
@@ -12,11 +13,7 @@ fn rubber() -> Material {
 }
 
 fn contact() -> ViscoelasticContact {
-    ViscoelasticContact::builder(Grid::square(64, 4.0e-3).unwrap())
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(rubber())
-        .build()
-        .unwrap()
+    contact_of(&Sphere::new(RADIUS).unwrap(), Grid::square(64, 4.0e-3).unwrap(), rubber(), Settings::default())
 }
 
 /// A rise, a hold, a fall and a release.
@@ -146,30 +143,4 @@ fn steps_end_where_they_are_stopped() {
         }
         assert!(met(&multiples, &ends) && met(&decades, &ends), "{ends:?}");
     }
-}
-
-/// The same of elastic states: the steps stay, and the samples are states within them.
-#[test]
-fn samples_of_elastic_states_leave_the_steps_as_they_are() {
-    let history = protocol();
-    let states = Sweep::new(Grid::square(32, 4.0e-3).unwrap(), &Sphere::new(RADIUS).unwrap());
-    let states = states.run(Reach::Level(6.0e-7)).unwrap();
-    let steps = |sampled: bool| {
-        let mut contact = StatesContact::new(&states, &rubber()).unwrap();
-        let mut run = contact.follow(&history, Stepping::adaptive(1e-3), 80.0);
-        if sampled {
-            run = run.sample_at(Times::decades(1e-3, 10).and(Times::every(5.0))).unwrap().sample_at([0.77]).unwrap();
-        }
-        let (mut reports, mut points) = (Vec::new(), Vec::new());
-        while let Some(report) = run.next_step().unwrap() {
-            reports.push(report);
-            points.extend(run.samples().map(|sample| sample.unwrap().report().time));
-        }
-        (reports, points)
-    };
-    let ((plain, ends), (sampled, points)) = (steps(false), steps(true));
-    assert_eq!(plain, sampled);
-    assert_eq!(ends.len(), plain.len());
-    println!("{} steps, {} points", plain.len(), points.len());
-    assert!(points.len() > plain.len() + 30 && points.is_sorted());
 }

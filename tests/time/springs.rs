@@ -1,8 +1,6 @@
 //! Bodies that springs drive, against bodies whose approach or force is given.
 
-use std::sync::Arc;
-
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, contact_of, from_environment};
 use viscocontact::contact::TimeRule;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -61,7 +59,7 @@ fn random_scene(number: u64) -> Scene {
     let material = Material::constant_poisson(body, if kind == 5 { 0.4 } else { 0.5 }).unwrap();
     let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance);
     let settings = settings.with_time_rule(rule).with_solver(solver).with_window(draws.chance(0.5));
-    let contact = builder.material(material).kernel(Arc::new(kernel.unwrap())).settings(settings).build().unwrap();
+    let contact = builder.material(material).kernel(kernel.unwrap()).settings(settings).build().unwrap();
     Scene { name: format!("{name} {number}, {rule:?}, {solver:?}"), contact, tilts, depth, tolerance }
 }
 
@@ -165,11 +163,12 @@ fn soft_springs_are_forces_and_stiff_ones_approaches() {
 #[test]
 fn springs_are_loads_like_others() {
     let build = || {
-        ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap())
-            .geometry(&Sphere::new(10.0e-3).unwrap())
-            .material(Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap()))
-            .build()
-            .unwrap()
+        contact_of(
+            &Sphere::new(10.0e-3).unwrap(),
+            Grid::square(24, 4.0e-3).unwrap(),
+            Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap()),
+            Settings::default(),
+        )
     };
     let (mut contact, stiffness) = (build(), 3.0e4);
     let driven = Ramp::new(Load::spring(stiffness, -20.0e-6), Load::spring(stiffness, 60.0e-6), 1.0).unwrap();

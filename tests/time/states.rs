@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use approx::assert_relative_eq;
 use viscocontact::contact::{Edge, TimeRule};
 use viscocontact::geometry::Sum;
@@ -116,7 +116,7 @@ fn any_shape_is_retracted_and_sprung_as_its_states() {
         let settings = Settings::default().with_tolerance(1e-10);
         let sweep = Sweep::new(grid.clone(), &*shape).accuracy(1e-6).max_states(1000).settings(settings);
         let depth = 0.03;
-        let touch = ViscoelasticContact::builder(grid.clone()).geometry(&*shape).material(quarter_body());
+        let touch = builder_of(&*shape, grid.clone(), quarter_body());
         let touch = touch.build().unwrap().approach();
         let states = sweep.run(Reach::Approach(touch + 1.01 * depth)).unwrap();
         let elastic = states.level_at(touch + depth);
@@ -126,7 +126,7 @@ fn any_shape_is_retracted_and_sprung_as_its_states() {
                 false => Load::approach(touch + depth * part),
                 true => Load::spring(stiffness, touch + depth * part),
             };
-            let builder = ViscoelasticContact::builder(grid.clone()).geometry(&*shape).material(quarter_body());
+            let builder = builder_of(&*shape, grid.clone(), quarter_body());
             let mut full = builder.settings(settings).build().unwrap();
             let mut contact = StatesContact::new(&states, &quarter_body()).unwrap();
             let mut worst = 0.0f64;
@@ -202,7 +202,7 @@ impl Scene {
     }
 
     fn builder(&self, material: Material) -> Builder {
-        let builder = ViscoelasticContact::builder(self.grid.clone()).geometry(&*self.geometry).material(material);
+        let builder = builder_of(&*self.geometry, self.grid.clone(), material);
         builder.kernel(Arc::clone(&self.kernel)).settings(Scene::settings())
     }
 
@@ -341,41 +341,4 @@ fn other_load_points_and_levels_beyond_the_sweep_are_refused() {
     let refused = contact.step(1.0, Load::approach(1.0)).unwrap_err();
     assert!(matches!(refused, Error::States(StatesError::Beyond { .. })), "{refused}");
     assert_eq!(format!("{contact:?}"), before);
-}
-
-/// Adaptive runs keep to their tolerance: against runs at a hundredth of it.
-#[test]
-fn adaptive_runs_keep_their_tolerance() {
-    let states = ball_states();
-    let mut worst = 0.0f64;
-    for number in 0..from_environment("STATES_RUNS", 40) {
-        let mut draws = Draws::new(number.wrapping_add(91));
-        let terms: Vec<(f64, f64)> =
-            (0..1 + draws.below(8)).map(|_| (draws.between(0.05, 0.5), draws.power_of_ten(-3.0, 1.0))).collect();
-        let material = body(draws.between(0.1, 0.5), &terms);
-        let (unit, tolerance) = (3.0e-8, draws.power_of_ten(-5.0, -2.0));
-        let points: Vec<(f64, Load)> =
-            (0..6).map(|k| (f64::from(k), Load::force(unit * draws.between(0.1, 1.0)))).collect();
-        let load = PiecewiseLinear::new(&points).unwrap();
-        let mut fine = StatesContact::new(&states, &material).unwrap();
-        let mut contact = fine.clone();
-        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 8.0);
-        let mut exact = fine.follow(&load, Stepping::adaptive(1e-2 * tolerance), 8.0);
-        let mut deepest = 0.0f64;
-        for stop in 1..=8 {
-            let [mut coarse, mut reference] = [0.0; 2];
-            for (run, depth) in [(&mut run, &mut coarse), (&mut exact, &mut reference)] {
-                while run.contact().time() < f64::from(stop) {
-                    let Some(report) = run.next_step().unwrap() else { break };
-                    *depth = report.approach;
-                }
-            }
-            deepest = deepest.max(reference.abs());
-            if stop <= 5 {
-                worst = worst.max((coarse - reference).abs() / deepest / tolerance);
-            }
-        }
-    }
-    println!("greatest error over the tolerance {worst:.2}");
-    assert!(worst < 1.0, "{worst}");
 }

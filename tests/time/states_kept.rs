@@ -175,39 +175,6 @@ fn states_in_files_are_the_states() {
     assert_eq!(read_states(folder.join("absent.npz")).unwrap_err().kind(), ErrorKind::File);
 }
 
-/// A state within a step is as exact as one at its end.
-#[test]
-fn runs_on_states_can_be_looked_at_within_their_steps() {
-    let states = rough_states(false);
-    let driven = Ramp::new(Load::spring(0.2, -0.005), Load::spring(0.2, 0.03), 1.0).unwrap();
-    let exact = |time: f64| {
-        let mut contact = StatesContact::new(&states, &material()).unwrap();
-        let mut run = contact.follow(&driven, Stepping::adaptive(1e-7), time);
-        while run.next_step().unwrap().is_some() {}
-        contact
-    };
-    let greatest = exact(1.0).force();
-    for stepping in [Stepping::adaptive(1e-5), Stepping::fixed(0.01)] {
-        let mut contact = StatesContact::new(&states, &material()).unwrap();
-        let mut run = contact.follow(&driven, stepping, 3.0);
-        let mut last = 0.0;
-        let mut looked = 0;
-        while let Some(report) = run.next_step().unwrap() {
-            let parts = if looked < 20 { vec![0.3, 0.8] } else { Vec::new() };
-            for part in parts {
-                let time = last + part * (report.time - last);
-                let (within, exact) = (run.within_step(time).unwrap(), exact(time));
-                assert_eq!(within.time(), time);
-                let [forces, approaches] = [within.force() - exact.force(), within.approach() - exact.approach()];
-                assert!(forces.abs() < 1e-4 * greatest && approaches.abs() < 2e-6, "{time} {forces:e} {approaches:e}");
-            }
-            assert!(run.within_step(last - 1e-3).is_err() && run.within_step(report.time + 1e-3).is_err());
-            last = report.time;
-            looked += usize::from(last > 0.2);
-        }
-    }
-}
-
 /// Tables that are no elastic states are refused.
 #[test]
 fn tables_that_are_no_states_are_refused() {
@@ -258,31 +225,6 @@ fn histories_of_states_are_written_and_drawn() {
     assert_eq!(history.column(HistoryColumn::ContactArea).last(), Some(&contact.contact_area()));
     history.chart(HistoryColumn::ContactArea).unwrap();
     assert!(matches!(history.chart(HistoryColumn::MaxPressure), Err(Error::WrongLength { .. })));
-}
-
-/// A run on states tells how far it is, and can be ended by another thread.
-#[test]
-fn runs_on_states_show_their_progress_and_can_be_cancelled() {
-    use std::sync::atomic::{AtomicBool, Ordering};
-
-    let mut contact = StatesContact::new(&ElasticStates::sphere(1.0).unwrap(), &material()).unwrap();
-    let (load, flag) = (StepLoad::new(Load::force(1.0e-3)).unwrap(), Arc::new(AtomicBool::new(false)));
-    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 100.0).cancelled_by(Arc::clone(&flag));
-    let (mut steps, mut last) = (0, 0.0);
-    while let Some(report) = run.next_step().unwrap() {
-        steps += 1;
-        let progress = run.progress();
-        assert!(progress.steps == steps && progress.time == report.time && progress.share_of_decades() >= last);
-        assert!(report.time_error.is_some_and(|error| error <= 1e-3));
-        last = progress.share_of_decades();
-        if steps == 5 {
-            flag.store(true, Ordering::Relaxed);
-            assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
-            assert_eq!(run.contact().time(), report.time);
-            flag.store(false, Ordering::Relaxed);
-        }
-    }
-    assert_eq!(last, 1.0);
 }
 
 /// Between the states of a table whose stiffnesses contradict its depths, the depth rises nevertheless.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, builder_of, from_environment};
 use approx::assert_relative_eq;
 use viscocontact::contact::Edge;
 use viscocontact::contact::StepError;
@@ -339,7 +339,7 @@ fn free_tilts_under_no_force_are_the_limit_of_small_forces() {
         let sweep = Sweep::new(grid.clone(), &shape).tilt(tilt).settings(settings).accuracy(1e-4);
         let states = sweep.run(Reach::Level(0.02)).unwrap();
         let mut contact = StatesContact::new(&states, &zener(0.25)).unwrap();
-        let builder = ViscoelasticContact::builder(grid).geometry(&shape).material(zener(0.25)).settings(settings);
+        let builder = builder_of(&shape, grid, zener(0.25)).settings(settings);
         let mut full = builder.build().unwrap();
         let of_point = |approach: f64, tilt: [f64; 2]| approach + tilt[0] * at[0] + tilt[1] * at[1];
         for held in [false, true] {

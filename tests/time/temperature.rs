@@ -184,29 +184,6 @@ fn steps_are_those_of_the_reduced_time_on_random_scenes() {
     }
 }
 
-/// ω ∝ C(ξ(t))^(2/3) under a constant force.
-#[test]
-fn a_held_ball_follows_the_reduced_time() {
-    let arrhenius = TimeTemperature::arrhenius(100.0e3, REFERENCE).unwrap();
-    let history = TemperatureHistory::table(arrhenius.clone(), &[(0.0, 295.0), (2.0, 330.0)]).unwrap();
-    let mut contact = builder_on(grid(128), Material::incompressible(zener())).temperature(history).build().unwrap();
-    let load = StepLoad::new(Load::force(0.1)).unwrap();
-    let mut run = contact.follow(&load, Stepping::adaptive(1e-5), 2.0);
-    let rate = |t: f64| 1.0 / arrhenius.shift_factor(295.0 + 17.5 * t).unwrap();
-    let (mut first, mut steps) = (None, 0);
-    while let Some(report) = run.next_step().unwrap() {
-        let parts = 2000;
-        let h = report.time / f64::from(parts);
-        let reduced: f64 = (0..parts).map(|k| h * rate(h * (f64::from(k) + 0.5))).sum();
-        let compliance = |t: f64| run.contact().material().contact_compliance(t);
-        let law = (compliance(reduced) / compliance(0.0)).powf(2.0 / 3.0);
-        let start = *first.get_or_insert(report.approach);
-        close(report.approach / start, law, 1e-4, &format!("at {} s", report.time));
-        steps += 1;
-    }
-    assert!((10..100).contains(&steps), "{steps} steps");
-}
-
 #[test]
 fn adaptive_steps_end_on_corners_and_keep_their_error() {
     let table = [(0.0, 290.0), (1.0, 290.0), (1.0, 325.0), (2.0, 325.0), (3.0, 295.0)];

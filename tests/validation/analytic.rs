@@ -153,45 +153,6 @@ fn states_retract_a_cone_as_ting() {
     }
 }
 
-/// Unloading: force- and approach-driven runs of the same history are the same run.
-#[test]
-fn states_driven_by_their_own_approach() {
-    let zener = Material::constant_poisson(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap(), 0.3).unwrap();
-    let new = || StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &zener).unwrap();
-    let (mut pressed, mut indented) = (new(), new());
-    for step in 1..=200 {
-        let t = 0.01 * step as f64;
-        pressed.step(0.01, Load::force(1.0 - (t - 1.0).abs())).unwrap();
-        indented.step(0.01, Load::approach(pressed.approach())).unwrap();
-        assert!((indented.force() - pressed.force()).abs() < 1e-9, "{t}");
-        assert_abs_diff_eq!(radius(&indented), radius(&pressed), epsilon = 1e-9);
-    }
-    // let go: the surface has not recovered, so the bodies touch deeper than they did at first
-    assert_eq!(pressed.force(), 0.0);
-    assert!(pressed.approach() > 0.0);
-}
-
-/// Sphere, cone and punch, and the shape c r⁴: δ = 8/3 c a⁴, l = 8/5 δ a (Sneddon 1965).
-#[test]
-fn closed_states_are_the_textbooks() {
-    let level = |states: &ElasticStates, depth: f64| states.level_at(depth);
-    let (sphere, cone, punch) = (ElasticStates::sphere(0.3), ElasticStates::cone(0.2), ElasticStates::punch(1.0e-3));
-    let quartic = ElasticStates::power(5.0, 4.0).unwrap();
-    for depth in [1e-9, 3e-6, 1e-4] {
-        let a = (0.3_f64 * depth).sqrt();
-        assert_abs_diff_eq!(level(sphere.as_ref().unwrap(), depth) / (4.0 / 3.0 * a * depth), 1.0, epsilon = 1e-12);
-        let a = 2.0 * depth / (PI * 0.2);
-        assert_abs_diff_eq!(level(cone.as_ref().unwrap(), depth) / (a * depth), 1.0, epsilon = 1e-12);
-        let punch = punch.as_ref().unwrap();
-        assert_abs_diff_eq!(level(punch, depth) / (2.0e-3 * depth), 1.0, epsilon = 1e-12);
-        assert_abs_diff_eq!(punch.area(level(punch, depth)), PI * 1e-6, epsilon = 1e-18);
-        let a = (3.0 / 8.0 * depth / 5.0_f64).powf(0.25);
-        let found = level(&quartic, depth);
-        assert_abs_diff_eq!(found / (1.6 * a * depth), 1.0, epsilon = 1e-12);
-        assert_abs_diff_eq!(quartic.stiffness(found) / (2.0 * a), 1.0, epsilon = 1e-12);
-    }
-}
-
 #[test]
 fn ellipses_tend_to_the_circle_and_the_line() {
     let circle = Hertz::new(RADIUS, 4.0e6, 1.0).unwrap();

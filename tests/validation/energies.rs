@@ -1,5 +1,6 @@
 //! What bodies store and dissipate of the work of their load, against integrals by hand.
 
+use crate::common::builder_of;
 use std::f64::consts::PI;
 
 use viscocontact::adhesion::ExponentialAttraction;
@@ -177,7 +178,7 @@ fn energies_are_columns_of_histories() {
     let late = EnergyBalance::new(&contact).unwrap_err();
     assert!(late.to_string().contains("before any step"), "{late}");
     let settings = Settings::default().with_frame(Frame::Indenter);
-    let builder = ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap()).geometry(&ball).material(zener());
+    let builder = builder_of(&ball, Grid::square(24, 4.0e-3).unwrap(), zener());
     let moving = EnergyBalance::new(&builder.settings(settings).build().unwrap()).unwrap_err();
     assert!(matches!(moving, Error::WrongFrame { .. }), "{moving}");
 }

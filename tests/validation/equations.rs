@@ -1,5 +1,6 @@
 //! The equations of the source paper, evaluated as they stand from what a caller sees of a run.
 
+use crate::common::builder_of;
 use std::f64::consts::PI;
 
 use approx::assert_abs_diff_eq;
@@ -50,7 +51,7 @@ fn run(material: Material) -> Run {
     let grid = Grid::new(CELLS, [1.0e-3, 0.9e-3]).unwrap();
     let settings = Settings::paper().with_tolerance(1e-11);
     let shape = FnGeometry::new(initial_gap);
-    let builder = ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(material);
+    let builder = builder_of(&shape, grid.clone(), material);
     let mut contact = builder.settings(settings).build().unwrap();
     let mut states = Vec::new();
     for (dt, force, at) in STEPS {

@@ -281,7 +281,7 @@ fn a_wave_in_full_contact_with_a_creeping_layer_is_the_closed_form() {
     for layer in [Layer::bonded_to_rigid(0.3e-3, 0.3).unwrap(), Layer::frictionless_on_rigid(0.3e-3, 0.3).unwrap()] {
         let material = Material::constant_poisson(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap(), 0.3).unwrap();
         let mut contact = builder_of(&Wavy::new(amplitude, length).unwrap(), grid.clone(), material.clone())
-            .kernel(Arc::new(InfluenceKernel::layer_periodic(&grid, layer).unwrap()))
+            .kernel(InfluenceKernel::layer_periodic(&grid, layer).unwrap())
             .settings(Settings::default().with_tolerance(1e-10))
             .build()
             .unwrap();
@@ -314,7 +314,7 @@ fn a_cylinder_on_a_thin_layer_rests_on_springs() {
     let errors = [0.1e-3, 0.05e-3].map(|thickness| {
         let layer = Layer::bonded_to_rigid(thickness, 0.3).unwrap();
         let mut contact = builder_of(&Cylinder::new(radius).unwrap(), grid.clone(), material.clone())
-            .kernel(Arc::new(InfluenceKernel::layer_line(&grid, layer, None).unwrap()))
+            .kernel(InfluenceKernel::layer_line(&grid, layer, None).unwrap())
             .build()
             .unwrap();
         contact.step(0.0, Load::approach(half_width * half_width / (2.0 * radius))).unwrap();

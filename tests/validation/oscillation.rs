@@ -39,11 +39,12 @@ fn the_contact_of_a_ball_changes_the_loss_of_large_amplitudes() {
         let foundation = StatesContact::new(&ElasticStates::sphere(ball).unwrap(), &material).unwrap();
         let exact = force.follow_on(foundation, 256).unwrap().loss();
         assert_abs_diff_eq!(exact / force.loss_of_fixed_contact(&creep, radius), over_fixed, epsilon = allowed);
-        let mut contact = ViscoelasticContact::builder(Grid::square(96, 2.7 * radius).unwrap())
-            .geometry(&Sphere::new(ball).unwrap())
-            .material(material.clone())
-            .build()
-            .unwrap();
+        let mut contact = contact_of(
+            &Sphere::new(ball).unwrap(),
+            Grid::square(96, 2.7 * radius).unwrap(),
+            material.clone(),
+            Settings::default(),
+        );
         let computed = force.follow(&mut contact, 32, 1e-5).unwrap().loss();
         assert!((computed / exact - 1.0).abs() < 3e-3, "{amplitude}: {computed} {exact}");
     }

@@ -3,12 +3,11 @@
 use crate::common::{E_STAR, builder_of, elastic};
 use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use viscocontact::prelude::*;
 
 fn contact(grid: &Grid, kernel: InfluenceKernel, shape: &dyn Geometry, settings: Settings) -> ViscoelasticContact {
-    builder_of(shape, grid.clone(), elastic()).kernel(Arc::new(kernel)).settings(settings).build().unwrap()
+    builder_of(shape, grid.clone(), elastic()).kernel(kernel).settings(settings).build().unwrap()
 }
 
 /// A wavy surface under less than the pressure of full contact, against H. M. Westergaard, J. Appl. Mech. 6 (1939):
@@ -119,7 +118,7 @@ fn flat_on_flat_is_solved_and_let_go() {
         .geometry(&FnGeometry::new(|x1, _| if x1 < 0.0 { 0.0 } else { f64::INFINITY }))
         .another_body(&FnGeometry::new(|x1, _| if x1 < 0.0 { f64::INFINITY } else { 0.0 }))
         .material(elastic())
-        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .kernel(InfluenceKernel::periodic(&grid).unwrap())
         .build()
         .unwrap();
     let error = two.step(0.0, &[Load::approach(1.0); 2]).unwrap_err();

@@ -1,7 +1,7 @@
 //! A cylinder rolling over a standard solid, step by step to its steady state, against a formulation that has no steps.
 
+use crate::common::builder_of;
 use approx::assert_abs_diff_eq;
-use std::sync::Arc;
 
 use crate::common::figures;
 use crate::common::rolling::{RollingCylinder, scaled_e1, scaled_ei};
@@ -53,13 +53,12 @@ pub(super) fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Roll
     let grid = Grid::new([cells, 1], [cells as f64 * side, 1.0]).unwrap();
     let at = direction * (0.5 * cells as f64 * side - 2.0 * relaxed);
     let shape = Shifted::new(Cylinder::new(scene.radius).unwrap(), [at, 0.0]).unwrap();
-    let mut contact = ViscoelasticContact::builder(grid.clone())
-        .geometry(&shape)
-        .material(Material::incompressible(Zener::new(G, G_K, G_K * TAU).unwrap()))
-        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
-        .settings(Settings::default().with_frame(Frame::Indenter))
-        .build()
-        .unwrap();
+    let mut contact =
+        builder_of(&shape, grid.clone(), Material::incompressible(Zener::new(G, G_K, G_K * TAU).unwrap()))
+            .kernel(InfluenceKernel::line(&grid, 1.0).unwrap())
+            .settings(Settings::default().with_frame(Frame::Indenter))
+            .build()
+            .unwrap();
     let velocity = direction * scene.reach / TAU;
     let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(4e-3);
     let lacks = match contact.toward_steady(motion).unwrap().run() {

@@ -2,7 +2,6 @@
 
 use crate::common::{G, builder_of, elastic, sphere_on};
 use approx::assert_abs_diff_eq;
-use std::sync::Arc;
 
 use crate::common::rough::self_affine;
 use viscocontact::prelude::*;
@@ -31,7 +30,7 @@ fn stiffness_is_the_slope_of_the_force() {
     let spec = self_affine(0.5e-3, 0.1e-3, 3);
     for kernel in [InfluenceKernel::periodic(&grid), InfluenceKernel::half_space(&grid)] {
         let mut contact = builder_of(&Rough::new(&grid, spec).unwrap(), grid.clone(), elastic())
-            .kernel(Arc::new(kernel.unwrap()))
+            .kernel(kernel.unwrap())
             .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(1e-10))
             .build()
             .unwrap();
@@ -44,7 +43,7 @@ fn stiffness_is_the_slope_of_the_force() {
         assert_abs_diff_eq!(slope, middle.1, epsilon = 2e-3 * middle.1);
     }
     let mut full = builder_of(&Wavy::new(1.0e-6, 1.0e-3).unwrap(), grid.clone(), elastic())
-        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .kernel(InfluenceKernel::periodic(&grid).unwrap())
         .build()
         .unwrap();
     full.step(0.0, Load::force(1.0)).unwrap();

@@ -2,11 +2,9 @@
 //! the closed forms of a body whose Poisson's ratio changes.
 
 use crate::common::{G, builder_of, contact_of, maxwell};
-use std::sync::Arc;
 
 use super::rolling::{FINE, roll, scene};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use viscocontact::KernelError;
 use viscocontact::analytic::Hertz;
 use viscocontact::contact::StressHistory;
 use viscocontact::observe::{Stress, SubsurfaceStress};
@@ -145,12 +143,12 @@ fn a_plane_carries_the_force() {
 #[test]
 fn stress_does_not_depend_on_the_window() {
     let scene = |window: bool| {
-        ViscoelasticContact::builder(Grid::square(96, 6.0e-3).unwrap())
-            .geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.6e-3, -0.3e-3]).unwrap())
-            .material(Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()))
-            .settings(Settings::default().with_tolerance(1e-10).with_window(window))
-            .build()
-            .unwrap()
+        contact_of(
+            &Shifted::new(Sphere::new(RADIUS).unwrap(), [0.6e-3, -0.3e-3]).unwrap(),
+            Grid::square(96, 6.0e-3).unwrap(),
+            Material::incompressible(Maxwell::with_time(G, 1.0).unwrap()),
+            Settings::default().with_tolerance(1e-10).with_window(window),
+        )
     };
     let (mut part, mut whole) = (scene(true), scene(false));
     let mut sizes = Vec::new();
@@ -169,39 +167,6 @@ fn stress_does_not_depend_on_the_window() {
         assert!((a / b - 1.0).abs() < 1e-7, "{a:e} {b:e}");
     }
     assert!(10 * sizes[0] < sizes[4] && sizes[4] < 96 * 96 / 4, "{sizes:?}");
-}
-
-/// A section is the planes it cuts, and a volume is its planes.
-#[test]
-fn sections_and_volumes_are_cut_from_planes() {
-    let aside = Shifted::new(Sphere::new(RADIUS).unwrap(), [0.2e-3, -0.1e-3]).unwrap();
-    let grid = Grid::new([24, 20], [3.0e-3, 2.0e-3]).unwrap();
-    let mut contact = contact_of(&aside, grid, maxwell(), Settings::default());
-    for dt in [0.0, 0.5] {
-        contact.step(dt, Load::force(0.05)).unwrap();
-    }
-    let stress = contact.stress().unwrap();
-    let depths = [0.1e-3, 0.25e-3, 1.0e-3];
-    let volume = stress.in_volume(&depths).unwrap();
-    let [first, second] =
-        [(Axis::X1, 0.07e-3), (Axis::X2, -0.4e-3)].map(|(along, at)| stress.on_section(along, at, &depths).unwrap());
-    assert_eq!([first.at, second.at], [contact.grid().center(0, 10)[1], contact.grid().center(8, 0)[0]]);
-    for (k, depth) in depths.into_iter().enumerate() {
-        let plane = stress.on_plane(depth).unwrap();
-        assert_eq!(volume.plane(k), Some(&plane[..]));
-        // a section is computed by itself
-        let same = |one: Stress, other: Stress| {
-            let pairs = one.components().into_iter().zip(other.components());
-            pairs.for_each(|(a, b)| assert!((a - b).abs() < 1e-13 * contact.max_pressure(), "{a:e} {b:e}"));
-        };
-        (0..24).for_each(|i| same(first.values[3 * i + k], plane[20 * i + 10]));
-        (0..20).for_each(|j| same(second.values[3 * j + k], plane[20 * 8 + j]));
-        let point = [first.positions[5], first.at, depth];
-        let (found, exact) = (first.values[15 + k].von_mises(), stress.at(&[point]).unwrap()[0].von_mises());
-        assert_relative_eq!(found, exact, epsilon = 0.0, max_relative = 1e-11);
-    }
-    assert_eq!(volume.plane(3), None);
-    assert_eq!(first.map(Stress::von_mises).len(), 72);
 }
 
 /// A rolling cylinder presses ahead of its axis, and there the body is stressed most; backwards is the mirror image.
@@ -333,18 +298,4 @@ fn a_constant_poisson_ratio_needs_no_history() {
     history.record(&contact).unwrap();
     let planes = [contact.stress().unwrap(), history.stress(&contact).unwrap()].map(|s| s.on_plane(0.2e-3).unwrap());
     assert_eq!(planes[0], planes[1]);
-}
-
-/// A body of which only the surface is known.
-#[test]
-fn stress_below_a_user_defined_kernel_is_refused() {
-    let grid = Grid::square(8, 2.0e-3).unwrap();
-    let kernel = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 1.0 / (q1 + q2) } else { 0.0 });
-    let contact = builder_of(&Sphere::new(RADIUS).unwrap(), grid, Material::incompressible(Elastic::new(G).unwrap()))
-        .kernel(Arc::new(kernel.unwrap()))
-        .build()
-        .unwrap();
-    let error = contact.stress().unwrap_err();
-    assert!(matches!(&error, Error::Kernel(KernelError::NoStress { .. })), "{error}");
-    assert!(error.to_string().contains("user-defined waves"), "{error}");
 }

@@ -2,6 +2,9 @@
 
 use std::f64::consts::FRAC_2_PI;
 
+use faer::linalg::solvers::Solve;
+use faer::{ColMut, Mat};
+
 /// A cylinder of radius R under P on a unit of length, rolling along x1 at v over a half-plane of contact compliance
 /// C(t) = C0 + C1 (1 − e^(−t/λ)), everything a function of v λ alone.
 #[derive(Debug, Clone, Copy)]
@@ -116,23 +119,11 @@ impl RollingCylinder {
     }
 }
 
-/// Gauss' elimination with row pivoting, the right-hand side in the last column.
-pub fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
-    let n = rows.len();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs())).unwrap();
-        rows.swap(k, pivot);
-        let (above, below) = rows.split_at_mut(k + 1);
-        for row in below {
-            let factor = row[k] / above[k][k];
-            row[k..].iter_mut().zip(&above[k][k..]).for_each(|(entry, pivot)| *entry -= factor * pivot);
-        }
-    }
-    let mut solution = vec![0.0; n];
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| rows[k][j] * solution[j]).sum();
-        solution[k] = (rows[k][n] - known) / rows[k][k];
-    }
+/// The solution of a linear system, the right-hand side in the last column.
+pub fn eliminate(rows: Vec<Vec<f64>>) -> Vec<f64> {
+    let matrix = Mat::from_fn(rows.len(), rows.len(), |i, j| rows[i][j]);
+    let mut solution: Vec<f64> = rows.iter().map(|row| row[rows.len()]).collect();
+    matrix.partial_piv_lu().solve_in_place(ColMut::from_slice_mut(&mut solution).as_mat_mut());
     solution
 }
 

@@ -16,7 +16,7 @@ use crate::error::Result;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jkr(Bodies);
+pub struct Jkr(pub(super) Bodies);
 
 impl Jkr {
     /// A sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\] with the `work` of separation w \[J/m²\].

@@ -1,6 +1,6 @@
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_PI_4;
 
-use super::Jkr;
+use super::{Bodies, Jkr};
 use crate::error::{Error, Result, StepError, length, non_negative, positive, within};
 use crate::quadrature::{GaussLegendre, bisect};
 use crate::rheology::{CreepSpectrum, Material};
@@ -58,7 +58,7 @@ pub struct PullOff {
 }
 
 /// z of a constant traction, π/4.
-const CONSTANT_TRACTION: f64 = 0.25 * PI;
+const CONSTANT_TRACTION: f64 = FRAC_PI_4;
 /// Points of the integral over the zone.
 const POINTS: usize = 48;
 /// Halvings of an interval that holds a root.
@@ -167,22 +167,20 @@ impl OpeningEdge {
     /// Force, approach, contact radius, speed of the edge and work at the greatest pull, by implicit steps of the contact radius from
     /// radius and approach at rest on.
     fn greatest_pull(&self, radius: f64, [start, at_rest]: [f64; 2], speed: f64, steps: usize) -> [f64; 5] {
-        let modulus = 1.0 / self.relaxed;
-        let approach = |a: f64, work: f64| a * a / radius - (2.0 * PI * work * a / modulus).sqrt();
-        let force = |a: f64, work: f64| {
-            4.0 * modulus * a.powi(3) / (3.0 * radius) - (8.0 * PI * work * modulus * a.powi(3)).sqrt()
-        };
+        // of the relaxed body, at another work of separation
+        let state = |a: f64, work: f64| Jkr(Bodies { length: radius, modulus: 1.0 / self.relaxed, work }).state(a);
         let ratio = LEAST_RADIUS.powf(1.0 / steps as f64);
-        let mut path = vec![[force(start, self.work), at_rest, start, 0.0, self.work]];
+        let mut path = vec![[state(start, self.work)[0], at_rest, start, 0.0, self.work]];
         for a in (1..=steps).map(|k| start * ratio.powi(k as i32)) {
             let [_, before, a_before, ..] = path[path.len() - 1];
             // while the edge takes the way a_before − a, the approach falls by V over its speed
             let is_left =
-                |[edge_speed, work]: [f64; 2]| approach(a, work) < before - speed * (a_before - a) / edge_speed;
+                |[edge_speed, work]: [f64; 2]| state(a, work)[1] < before - speed * (a_before - a) / edge_speed;
             let [edge_speed, work] = self.opening(is_left);
-            path.push([force(a, work), approach(a, work), a, edge_speed, work]);
+            let [force, approach] = state(a, work);
+            path.push([force, approach, a, edge_speed, work]);
             // the greatest pull is passed, or the edge runs away faster than the body answers
-            let is_passed = force(a, work) > path[path.len() - 2][0];
+            let is_passed = force > path[path.len() - 2][0];
             if is_passed || !is_left([edge_speed, work]) {
                 break;
             }

@@ -202,9 +202,9 @@ fn bodies_without_a_closed_form_are_refused() {
     assert!(refused(changing).contains("Poisson"));
 }
 
-/// A section equals its line of a plane, wherever the line is.
+/// A section equals its line of a plane, wherever the line is, and a volume is its planes.
 #[test]
-fn sections_are_lines_of_planes() {
+fn sections_and_volumes_are_cut_from_planes() {
     let mut kernels = kernels();
     kernels.push(InfluenceKernel::periodic(&Grid::new([1, 7], [0.8, 0.6]).unwrap()).unwrap());
     kernels.push(InfluenceKernel::half_space(&Grid::new([9, 1], [0.8, 0.6]).unwrap()).unwrap());
@@ -218,11 +218,17 @@ fn sections_are_lines_of_planes() {
         }
         for stress in bodies {
             let depths = [0.35, 0.5, 3.0];
+            let volume = stress.in_volume(&depths).unwrap();
+            assert_eq!(volume.plane(3), None);
             for (along, axis, lines) in [(Axis::X1, 0, n2), (Axis::X2, 1, n1)] {
                 for line in 0..lines {
-                    let section = stress.on_section(along, grid.coordinate(1 - axis, line), &depths).unwrap();
+                    let at = grid.coordinate(1 - axis, line);
+                    let section = stress.on_section(along, at + 0.3 * grid.spacing()[1 - axis], &depths).unwrap();
+                    let positions = (0..grid.cells()[axis]).map(|k| grid.coordinate(axis, k));
+                    assert!(section.at == at && positions.eq(section.positions.iter().copied()));
                     for (layer, depth) in depths.into_iter().enumerate() {
                         let plane = stress.on_plane(depth).unwrap();
+                        assert_eq!(volume.plane(layer), Some(&plane[..]));
                         for k in 0..grid.cells()[axis] {
                             let cell = if axis == 0 { k * n2 + line } else { line * n2 + k };
                             let found = &section.values[k * depths.len() + layer];

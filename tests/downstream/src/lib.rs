@@ -1,4 +1,4 @@
-//! What a user writes: a body, an indenter and a load history of their own, and an oscillator that the contact pushes back.
+//! What a user writes: a body, an indenter and a load history of their own.
 
 use viscocontact::load::{Load, LoadHistory};
 use viscocontact::prelude::*;

@@ -80,30 +80,3 @@ fn each_beat_presses_deeper() {
     assert!(corners >= 6, "{corners}");
     assert!(deepest[0] > 0.0 && deepest[1] > 1.02 * deepest[0] && deepest[2] > deepest[1], "{deepest:?}");
 }
-
-/// Co-simulation: a mass falls on the gel, the contact's force slows it, step by step. What it comes back with is less than
-/// what it came with, and the difference is what the force took.
-#[test]
-fn a_mass_bounces_lower() {
-    let (mass, dt) = (1.0e-3, 5.0e-5);
-    // as slow as the impact itself
-    let mut contact = contact(Gel { time: 2.0e-3, ..GEL }, 48);
-    let (mut depth, mut velocity, mut force) = (0.0, 0.05, 0.0);
-    let (start, mut taken) = (0.5 * mass * velocity * velocity, 0.0);
-    let mut steps = 0;
-    while velocity > 0.0 || force > 0.0 {
-        // leap-frog: the force at the end of the step is not known before it
-        let half = velocity - 0.5 * dt * force / mass;
-        let moved = depth + dt * half;
-        let report = contact.step(dt, Load::approach(moved)).unwrap();
-        taken += 0.5 * (force + report.force) * (moved - depth);
-        (depth, force) = (moved, report.force);
-        velocity = half - 0.5 * dt * force / mass;
-        steps += 1;
-        assert!(steps < 10_000);
-    }
-    let end = 0.5 * mass * velocity * velocity;
-    println!("restitution {:.3} after {steps} steps", -velocity / 0.05);
-    assert!(velocity < 0.0 && end < 0.98 * start && end > 0.05 * start, "{end:e} of {start:e}");
-    assert!((start - end - taken).abs() < 2e-2 * start, "{start:e} - {end:e} is not {taken:e}");
-}

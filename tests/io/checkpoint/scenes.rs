@@ -1,6 +1,6 @@
 //! Checkpoints of random scenes refused by slightly different scenes; files that many threads write.
 
-use crate::common::{Temporary, three_times, uniform};
+use crate::common::{Temporary, builder_of, three_times, uniform};
 use std::fs;
 
 use viscocontact::FileError;
@@ -40,7 +40,7 @@ impl Body {
 
 /// The scene, or none if a body has no cell to touch.
 fn build(grid: &Grid, bodies: &[Box<dyn Geometry>]) -> Option<ViscoelasticContact> {
-    let builder = ViscoelasticContact::builder(grid.clone()).geometry(&bodies[0]).material(three_times());
+    let builder = builder_of(&bodies[0], grid.clone(), three_times());
     let builder = bodies[1..].iter().fold(builder, |builder, body| builder.another_body(body));
     builder.settings(Settings::default().with_edge(Edge::Allow)).build().ok()
 }
