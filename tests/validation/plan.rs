@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::common::histories::{four_terms, triangle};
-use crate::common::{RADIUS, contact_of, elastic, figures, maxwell};
+use crate::common::{Draws, RADIUS, contact_of, elastic, figures, from_environment, maxwell, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::contact::Builder;
@@ -319,4 +319,33 @@ fn plans_of_contacts_that_shrink_take_trial_runs() {
         println!("{plan}: {error:.1e}");
         assert!(exact.len() == 6 && error < 2e-2, "{error}");
     }
+}
+
+/// An error of the history is an error of the plan, whatever part of the planning needed the load.
+#[test]
+fn errors_of_histories_come_out_of_plans() {
+    let (sphere, body, until) = (Sphere::new(RADIUS).unwrap(), zener(), 2.0);
+    let mut seen = 0;
+    for number in 0..from_environment("PLAN_ERRORS", 60) {
+        let draws = &mut Draws::new(number);
+        // between the 4097 times at which runs look at the load without a step
+        let from = until * (draws.below(4096) as f64 + 0.3) / 4096.0;
+        let is_met = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        let met = std::sync::Arc::clone(&is_met);
+        let history = FnHistory::fallible(move |t: f64| {
+            if t > from && t < from + 0.4 * until / 4096.0 {
+                met.store(true, std::sync::atomic::Ordering::Relaxed);
+                return Err(format!("no load at {t}"));
+            }
+            Ok(Load::force(0.5 * (0.2 + (2.0 * t).sin().abs())))
+        });
+        let plan = Plan::builder(&sphere, &body, &history, until).accuracy(Accuracy::COARSE);
+        let plan = plan.fields_at(&[1.0, 2.0]).build();
+        if is_met.load(std::sync::atomic::Ordering::Relaxed) {
+            seen += 1;
+            assert!(matches!(plan, Err(Error::User(_))), "{from}: {plan:?}");
+        }
+    }
+    println!("{seen} errors were met");
+    assert!(seen > 5);
 }
