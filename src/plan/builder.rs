@@ -21,8 +21,8 @@ use crate::{Grid, InfluenceKernel};
 /// Fewest cells across the widest contact: fewer do not resolve it.
 const FEWEST_ACROSS: f64 = 14.0;
 
-/// The greatest pressure is that of an elastic contact where the tractions of its levels are as nearly one as this: their greatest times the
-/// elastic pressure in the middle, over the pressure.
+/// The greatest pressure is as good as elastic where the greatest traction of a level, times the elastic pressure in the middle, is at most so
+/// many times as great.
 const AS_ELASTIC: f64 = 1.01;
 
 /// The scene of a [`Plan`] and what is asked of it, from [`Plan::builder`].
@@ -234,7 +234,7 @@ impl<'a> PlanBuilder<'a> {
         let grid = size.grid(across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
         let steps = &converged.steps;
-        // the rings that tell what cells lose of a peak are those of a half-space; what they lose of an elastic pressure is seen on any body
+        // rings of a half-space tell what cells lose of a peak; what cells lose of an elastic pressure is seen on any body
         let is_half_space = body.kernel.is_none() && !body.sides.iter().any(|side| *side != Side::Found);
         let is_known = is_half_space || steps.trace.is_none_or(|trace| trace.pressure_amplification <= AS_ELASTIC);
         let converges = laws.pressure.converges && steps.resolve_pressure(accuracy) && is_known;

@@ -121,7 +121,7 @@ impl Plan {
     /// does not converge with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and at the rim
     /// of a contact that grows fast on a body that creeps fast; the tilt or the load point changes, and the contact was small before; it is a
     /// peak in time that even the shortest steps tried may miss; the body is no half-space and has crept, so that
-    /// its greatest pressure is not that of an elastic contact; or it would require more than 8192 cells along a side.
+    /// its greatest pressure is no elastic one; or it would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.doubt.is_none()
     }

@@ -11,7 +11,7 @@ const ORDER: f64 = 1.5;
 
 #[derive(Debug)]
 pub(super) struct Coarser {
-    /// None once a step has failed.
+    /// `None` once a step has failed.
     contact: Option<Box<ViscoelasticContact>>,
     interpolant: Interpolant,
     /// Times at which both runs end a step.

@@ -17,7 +17,7 @@ const COARSE: f64 = 1e-3;
 /// Number of its own steps in each of these. Under a given approach its steps are shorter: a small force may be what is left of large ones.
 const PARTS_OF_STEP: usize = 8;
 const PARTS_BY_APPROACH: usize = 32;
-/// Greatest number of its own steps, and of those that are halved for a field.
+/// Greatest number of its own steps, and the most to be halved for a field.
 const MOST_STEPS: usize = 4000;
 const MOST_HALVED: usize = 8000;
 /// The shortest step, over the time since the start.
@@ -117,7 +117,7 @@ impl Repeated {
         self.by_steps(history, &self.ends(time), (time, after))
     }
 
-    /// The same in steps twice as long, but for those that end at corners of the load.
+    /// The same in steps twice as long, except where they end at corners of the load.
     pub(super) fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
         let mut corner = history.next_breakpoint(self.origin.time());
         let is_kept = |(k, end): &(usize, f64)| {

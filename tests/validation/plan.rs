@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::histories::{four_terms, triangle};
+use crate::common::histories::four_terms;
 use crate::common::{Draws, RADIUS, contact_of, elastic, figures, from_environment, maxwell, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::GrowingSphere;
@@ -152,32 +152,6 @@ fn a_planned_run_is_a_thousand_times_less_work_than_the_papers() {
     assert!(ratio >= 1000.0, "{ratio}");
     // the paper's rule errs by 7.7e-3 at 100 steps (step_loaded_sphere)
     assert!(outcome.pressure < 7.7e-3);
-}
-
-#[test]
-fn loads_that_come_and_go_are_as_accurate_as_planned() {
-    let sphere = Sphere::new(RADIUS).unwrap();
-    let zener = Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap());
-    let four = Material::incompressible(four_terms());
-    let sine = Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0).unwrap();
-    let cases: [(&str, Material, Box<dyn LoadHistory>, f64); 2] =
-        [("triangle", zener, Box::new(triangle()), 3.5), ("sine", four, Box::new(sine), 2.0)];
-    for (name, material, history, until) in cases {
-        for accuracy in [Accuracy::COARSE, Accuracy::STANDARD] {
-            let mut foundation = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &material).unwrap();
-            let outcome = deliver(&sphere, &material, &*history, until, accuracy, |t, _| {
-                // the foundation goes along, in steps of a thousandth
-                let start = foundation.time();
-                let count = ((t - start) * 2000.0).ceil().max(1.0) as u32;
-                for k in 1..=count {
-                    let next = if k == count { t } else { start + (t - start) * f64::from(k) / f64::from(count) };
-                    foundation.step(next - foundation.time(), history.at(next)).unwrap();
-                }
-                (foundation.approach(), None)
-            });
-            check(name, accuracy, &outcome);
-        }
-    }
 }
 
 #[test]
