@@ -39,12 +39,12 @@ enum InSpace {
 impl<'a> Run<'a> {
     /// Makes the pressure at the times to sample ([`Run::sample_at`]) exact to `accuracy`: the error in time is Σ |δp| over Σ p, or over a
     /// hundredth of the greatest force of the run if that is more. 99 % of random fields of bodies that creep up to 100-fold are below the
-    /// accuracy; more creep errs up to ten times as much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force
+    /// accuracy; up to 1000-fold the greatest error is 1.6 times as much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force
     /// alone: cells that joined in the last long step have the pressure of one moment, which is off by 1 to 30 %.
     ///
     /// Where the contact is a superposition of its elastic states ([`states`](crate::states)) the steps stay as they are, bitwise. A few
     /// elastic contacts beside the run give the pressure of [`Sample::contact`](crate::run::Sample::contact) and [`Run::within_step`] at any
-    /// time: 6 for 1e-2 and 10 for 1e-3 in the median, 12 and 41 for a tenth of the fields. Displacement and motions stay as in the run.
+    /// time: 6 for 1e-2 and 13 for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
     ///
     /// Elsewhere steps end before each of the times, and [`Run::contact`] has the pressure there. Where an elastic contact shrinks as its load
     /// grows, the levels choose these steps, 8 more for 1e-2 and 16 for 1e-3 in the median. Where load points or tilts change, or bodies are
