@@ -21,8 +21,9 @@ use crate::{Grid, InfluenceKernel};
 /// Fewest cells across the widest contact: fewer do not resolve it.
 const FEWEST_ACROSS: f64 = 14.0;
 
-/// Most by which creep amplifies the errors of an elastic pressure, on other bodies than half-spaces.
-const MOST_AMPLIFIED: f64 = 1.01;
+/// The greatest pressure is as good as elastic where the greatest traction of a level, times the elastic pressure in the middle, is at most so
+/// many times as great.
+const AS_ELASTIC: f64 = 1.01;
 
 /// The scene of a [`Plan`] and what is asked of it, from [`Plan::builder`].
 ///
@@ -233,15 +234,17 @@ impl<'a> PlanBuilder<'a> {
         let grid = size.grid(across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
         let steps = &converged.steps;
-        // levels give the rim of a half-space alone; elsewhere the pressure after a jump, which is elastic, is known
+        // rings of a half-space tell what cells lose of a peak; what cells lose of an elastic pressure is seen on any body
         let is_half_space = body.kernel.is_none() && !body.sides.iter().any(|side| *side != Side::Found);
-        let is_known = is_half_space || steps.trace.is_none_or(|trace| trace.pressure_amplification <= MOST_AMPLIFIED);
+        let is_known = is_half_space || steps.trace.is_none_or(|trace| trace.pressure_amplification <= AS_ELASTIC);
         let converges = laws.pressure.converges && steps.resolve_pressure(accuracy) && is_known;
         let at_rim = steps.trace.is_some_and(|trace| !trace.cells.converges);
         let doubt = match () {
             () if converges => None,
             () if too_many => Some("it needs more than 8192 cells along a side"),
-            () if !is_known => Some("it is not the pressure after a jump, on another body than a half-space"),
+            () if !is_known => Some(
+                "the body is no half-space and has crept: what cells lose of its pressure is known of elastic contacts alone",
+            ),
             () if at_rim => Some("it is at the rim of a contact that grows fast, narrower than cells"),
             () if laws.pressure.converges => Some("it is a peak in time, or at a fast rim, that steps do not resolve"),
             () => Some("it is no smooth peak, as at an edge, a tip or a contact of few cells"),

@@ -11,6 +11,7 @@ use crate::plan::loads::Loads;
 use crate::plan::meshes::{LEAST_ACROSS, Laws, Meshes, Wanted};
 use crate::plan::scene::TrialScene;
 use crate::plan::steps::Steps;
+use crate::states::unless_refused;
 
 /// Least width of the contact on a finer mesh, as a fraction of the width on a coarse one.
 const MIN_NARROWING: f64 = 0.25;
@@ -120,10 +121,8 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
     if highest == levels.len() && peak > 0.0 && !is_small {
         levels.push(peak);
     }
-    let fields = match FieldOnLevels::at(scene, &curve, trace.levels[1], times) {
-        Err(error) if is_asked => return Err(error),
-        found => found.unwrap_or_default(),
-    };
+    let fields = FieldOnLevels::at(scene, &curve, trace.levels[1], times).map(Some);
+    let fields = if is_asked { fields } else { unless_refused(fields) }?.unwrap_or_default();
     let fields = fields.into_iter().map(|field| {
         let off = |k: &usize| (field.level / levels[*k]).ln().abs();
         let nearest = (0..levels.len()).min_by(|one, other| off(one).total_cmp(&off(other)));

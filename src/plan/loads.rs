@@ -5,7 +5,7 @@ use crate::error::{Error, Result, StepError};
 use crate::load::Load;
 use crate::plan::domain::{ContactSize, Side};
 use crate::plan::scene::TrialScene;
-use crate::states::{as_elastic, greatest};
+use crate::states::{as_elastic, greatest, unless_refused};
 
 /// Number of even parts of the run at whose ends the load is sampled.
 const PARTS: u32 = 64;
@@ -36,11 +36,11 @@ impl Loads {
         let tilt = all[0].tilt();
         let on_states = all.iter().all(|load| load.tilt() == tilt);
         let interpolant = scene.accuracy.settings().adaptive_interpolant();
-        if on_states
-            && all.iter().all(|load| matches!(load, Load::Force { .. }))
-            && let Ok(normal) = course.greatest_level(tilt, interpolant, PARTS)
-        {
-            return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
+        if on_states && all.iter().all(|load| matches!(load, Load::Force { .. })) {
+            let level = course.greatest_level(tilt, interpolant, PARTS);
+            if let Some(normal) = unless_refused(level.map(Some))? {
+                return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
+            }
         }
         let compliance = course.softest_compliance()?;
         let thinned = all.iter().step_by(if on_states { all.len() } else { THINNED });

@@ -29,7 +29,7 @@ use crate::run::Stepping;
 /// the run bounds its error in the run. The differences between successive meshes, each twice as fine as the last, give
 /// the required fineness: they are extrapolated at most threefold, and further only beyond 128 cells across the contact, where a run that
 /// needs more than 8192 cells along a side gets finer meshes still.
-/// One coarse run, 16 cells across, gives the steps. The same steps on levels, and sixteenths of them, give the error in
+/// One coarse run, 16 cells across, gives the steps. The same steps on levels, each also in up to 64 parts, give the error in
 /// time without a contact problem; where it exceeds its share, the steps are shortened. Where the pressure is greatest
 /// while the contact is small, as under a constant force on a body that creeps much, this contact gets a separate domain.
 /// Where the tilt or the load point changes, or the pressure of the elastic contact falls somewhere while its load grows, the contact is no
@@ -102,8 +102,8 @@ pub struct Plan {
     pub convolutions: f64,
     /// Approximate memory of the contact \[bytes\]: [`Builder::memory`], and the fields of adaptive steps.
     pub bytes: u64,
-    /// Expected error in time of approach and force, relative to their greatest values: the difference from sixteenths of
-    /// the steps on elastic states, or from a run with shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
+    /// Expected error in time of approach and force, relative to their greatest values: the difference from up to
+    /// 64 parts of each step on elastic states, or from a run with shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
     pub time_error: Option<f64>,
     /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
     /// at all times, of the greatest pressure of the run, if it converges, and of the pressure field and its rim at the times of
@@ -120,7 +120,8 @@ impl Plan {
     /// Whether the greatest pressure of the run is promised, to a run that stops at [`Plan::stops`]. There are five exceptions: the pressure
     /// does not converge with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and at the rim
     /// of a contact that grows fast on a body that creeps fast; the tilt or the load point changes, and the contact was small before; it is a
-    /// peak in time that even the shortest steps tried may miss; it is not that after a jump, on another body than a half-space; or it would require more than 8192 cells along a side.
+    /// peak in time that even the shortest steps tried may miss; the body is no half-space and has crept, so that
+    /// its greatest pressure is no elastic one; or it would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.doubt.is_none()
     }

@@ -6,14 +6,15 @@ use crate::plan::Accuracy;
 use crate::plan::difference::{Differences, unseen};
 use crate::plan::levels::{Curve, Trace};
 use crate::plan::scene::{Run, TrialScene};
+use crate::states::unless_refused;
 
 /// Shares of the accuracy: greatest of the error in time, of the errors in time and of the mesh together, and least of
 /// the error of the mesh.
 const MAX_TIME_SHARE: f64 = 0.6;
 const BOTH_SHARES: f64 = 0.9;
 const MIN_MESH_SHARE: f64 = 0.2;
-/// Greatest error in time of the greatest pressure, as a share of the accuracy: on cells a greater one grows on finer meshes, whose cells a
-/// growing edge crosses faster.
+/// Greatest error in time of the greatest pressure, as a share of the accuracy: of a run on cells, and of one on levels. A run on coarse cells
+/// shows less of it than the planned run will have, whose finer cells a growing edge crosses in a shorter time.
 const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 const MAX_PEAK_TIME_SHARE_ON_LEVELS: f64 = 0.3;
 /// Greatest number of times that steps are shortened.
@@ -69,18 +70,14 @@ impl Steps {
             let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
             match Steps::with_tolerance(scene, grid, curve, tolerance) {
                 Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
-                Err(
-                    error @ (Error::Step(StepError::ContactAtEdge { .. })
-                    | Error::OutOfMemory { .. }
-                    | Error::Cancelled { .. }),
-                ) => {
-                    return Err(error);
-                }
-                _ => break,
+                Err(error @ Error::Step(StepError::ContactAtEdge { .. })) => return Err(error),
+                // shorter steps gain nothing, or are too short
+                Ok(_) | Err(Error::Step(_)) => break,
+                Err(error) => return Err(error),
             }
         }
         if let (Some(curve), Some(trace), Some(error)) = (curve, &steps.trace, steps.error.as_mut()) {
-            let found = curve.stops(scene, &steps.run, trace);
+            let found = unless_refused(curve.stops(scene, &steps.run, trace).map(Some))?;
             (steps.stops, error.pressure) = found.unwrap_or((Vec::new(), error.pressure));
         }
         Ok(steps)
@@ -100,8 +97,8 @@ impl Steps {
 
     fn with_tolerance(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>, tolerance: f64) -> Result<Steps> {
         let run = scene.follow(grid.clone(), tolerance, &[])?;
-        // a trace fails where levels leave their order, as if there were no states
-        if let Some(trace) = curve.and_then(|curve| curve.trace(scene, &run).ok()) {
+        // levels may leave their order, as if there were no states
+        if let Some(trace) = unless_refused(curve.map(|curve| curve.trace(scene, &run)).transpose())? {
             let (error, trace) = (Some(trace.error), Some(trace));
             return Ok(Steps { tolerance, run, error, unseen: 0.0, stops: Vec::new(), trace });
         }

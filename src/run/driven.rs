@@ -1,6 +1,5 @@
 //! What a run asks of its contact.
 
-use std::collections::VecDeque;
 use std::fmt::Debug;
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
@@ -40,14 +39,15 @@ pub struct FieldRequest<'a> {
     pub until: f64,
     /// Times at which fields are asked for.
     pub times: &'a [f64],
+    /// Whether the run chooses its steps by their error.
+    pub is_adaptive: bool,
 }
 
-/// Times at which steps end for fields, the tolerance of adaptive steps, and whether the contacts at the starts of the last steps are kept.
+/// Times at which steps end for fields, and the tolerance of adaptive steps.
 #[derive(Debug)]
 pub struct Prepared {
     pub stops: Vec<f64>,
     pub tolerance: f64,
-    pub keeps_starts: bool,
 }
 
 /// Finds fields to an accuracy.
@@ -55,19 +55,21 @@ pub trait FieldFinder<C>: Debug + Send + Sync {
     /// Looks at the run before its first step.
     fn prepare(&mut self, contact: &C, request: &FieldRequest<'_>) -> Result<Prepared>;
 
+    /// Sees a step of the run, from `start` to the time of its contact.
+    fn follow(&mut self, _: &C, _: &dyn LoadHistory, _start: f64) {}
+
     /// A contact of the last step with its field to the accuracy, where it does not have it itself.
-    fn with_field(&self, contact: &C, moment: &Moment<'_, C>) -> Result<(Option<C>, FieldReport)>;
+    fn with_field(&self, contact: &C, moment: &Moment<'_>) -> Result<(Option<C>, FieldReport)>;
 }
 
 /// A time of a run at which a field is asked for.
 #[derive(Debug)]
-pub struct Moment<'a, C> {
+pub struct Moment<'a> {
     pub history: &'a dyn LoadHistory,
     /// Whether a jump of the load at this time has been taken.
     pub after: bool,
-    /// Ends of the steps so far, and the contacts at the starts of the last ones, if they are kept.
+    /// Ends of the steps so far.
     pub ends: &'a [f64],
-    pub starts: &'a VecDeque<C>,
 }
 
 /// How exact the pressure of a [`Sample`](crate::run::Sample) is, and what it took.

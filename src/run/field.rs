@@ -1,6 +1,5 @@
 //! What a run knows of its fields.
 
-use std::collections::VecDeque;
 use std::sync::Mutex;
 
 use crate::run::driven::FieldFinder;
@@ -17,9 +16,6 @@ pub(super) struct RunFields<C> {
     pub(super) is_prepared: bool,
     /// Ends of the steps so far.
     pub(super) ends: Vec<f64>,
-    pub(super) keeps_starts: bool,
     /// The greatest error of a field so far.
     pub(super) worst: Mutex<Option<f64>>,
-    /// Contacts at the starts of the last steps.
-    pub(super) starts: VecDeque<C>,
 }

@@ -1,6 +1,5 @@
 //! Runs with fields to an accuracy.
 
-use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::StepReport;
@@ -9,27 +8,20 @@ use crate::run::RunContact;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Moment, Prepared};
 use crate::run::field::{MOST_FIELDS, RunFields};
 use crate::run::follow::{Run, history_of};
-
-/// Contacts at the starts of so many last steps are kept where they give the estimate.
-const STARTS: usize = 3;
+use crate::run::progress::Stepping;
 
 impl<'a, C: RunContact> Run<'a, C> {
     /// Asks for fields to an accuracy.
     pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
         let accuracy = within("accuracy of the fields", accuracy, (1e-5..=0.1).contains(&accuracy), "in [1e-5, 0.1]")?;
-        let (ends, starts, worst) = (Vec::new(), VecDeque::new(), Mutex::new(None));
-        let fields = RunFields { accuracy, finder, is_prepared: false, ends, keeps_starts: false, worst, starts };
-        self.fields = Some(fields);
+        self.fields =
+            Some(RunFields { accuracy, finder, is_prepared: false, ends: Vec::new(), worst: Mutex::new(None) });
         Ok(self)
     }
 
     /// Finds out how the fields of the run are found, before its first step.
     pub(super) fn prepare_fields(&mut self) -> Result<()> {
-        let Some(fields) = self.fields.as_mut() else { return Ok(()) };
-        if fields.is_prepared {
-            fields.starts.extend(fields.keeps_starts.then(|| C::clone(&self.contact)));
-            return Ok(());
-        }
+        let Some(fields) = self.fields.as_mut().filter(|fields| !fields.is_prepared) else { return Ok(()) };
         let (mut times, mut time) = (Vec::new(), self.progress.start);
         while let Some(next) = self.sampled.after(time).filter(|next| *next <= self.until && times.len() <= MOST_FIELDS)
         {
@@ -38,32 +30,27 @@ impl<'a, C: RunContact> Run<'a, C> {
         }
         let history = history_of(&self.history);
         let (start, until) = (self.progress.start, self.until);
-        let request = FieldRequest { history, accuracy: fields.accuracy, start, until, times: &times };
-        let Prepared { stops, tolerance, keeps_starts } = fields.finder.prepare(&self.contact, &request)?;
+        let is_adaptive = matches!(self.stepping, Stepping::Adaptive { .. });
+        let request = FieldRequest { history, accuracy: fields.accuracy, start, until, times: &times, is_adaptive };
+        let Prepared { stops, tolerance } = fields.finder.prepare(&self.contact, &request)?;
         C::tighten(&mut self.control, tolerance);
-        (fields.is_prepared, fields.keeps_starts) = (true, keeps_starts);
-        fields.starts.extend(keeps_starts.then(|| C::clone(&self.contact)));
+        fields.is_prepared = true;
         fields.ends.push(self.contact.time());
         self.stops.add(stops.into(), self.progress.start)
     }
 
-    /// Remembers the step just taken for the estimate of the fields, or forgets the start of one that was not.
-    pub(super) fn keep_step(&mut self) {
+    /// Shows the step just taken, from `start` on, to what finds the fields.
+    pub(super) fn show_step(&mut self, start: f64) {
         let Some(fields) = self.fields.as_mut() else { return };
-        match self.last {
-            Some((_, report)) => fields.ends.push(report.time),
-            None => drop(fields.starts.pop_back()),
-        }
-        while fields.starts.len() > STARTS {
-            fields.starts.pop_front();
-        }
+        fields.ends.push(self.contact.time());
+        fields.finder.follow(&self.contact, history_of(&self.history), start);
     }
 
     /// A contact of the last step with its field to the accuracy, where it does not have it itself.
     pub(super) fn with_field(&self, contact: &C, after: bool) -> Result<Option<(Option<C>, FieldReport)>> {
         let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok(None) };
         let history = history_of(&self.history);
-        let moment = Moment { history, after, ends: &fields.ends, starts: &fields.starts };
+        let moment = Moment { history, after, ends: &fields.ends };
         let (exact, report) = fields.finder.with_field(contact, &moment)?;
         if let Some(error) = report.error {
             let mut worst = fields.worst.lock().unwrap_or_else(PoisonError::into_inner);

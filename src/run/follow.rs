@@ -73,7 +73,7 @@ pub(super) fn history_of<'h>(history: &'h RunHistory<'_>) -> &'h dyn LoadHistory
 pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
     pub(super) history: RunHistory<'a>,
-    stepping: Stepping,
+    pub(super) stepping: Stepping,
     pub(super) until: f64,
     pub(super) progress: Progress,
     pub(super) control: C::Control,
@@ -224,16 +224,15 @@ impl<'a, C: RunContact> Run<'a, C> {
         self.last = None;
         self.prepare_fields()?;
         let start = self.contact.time();
-        let taken = if self.events.is_empty() { self.take_step() } else { self.take_until_event() };
-        self.last = taken.as_ref().ok().copied().flatten().map(|report| (start, report));
-        self.keep_step();
-        let mut report = taken?;
-        if let Some(report) = report.as_mut().filter(|report| report.time >= self.until) {
-            self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
+        let mut report = if self.events.is_empty() { self.take_step() } else { self.take_until_event() }?;
+        if let Some(report) = &mut report {
+            if report.time >= self.until {
+                self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
+            }
+            self.last = Some((start, *report));
+            self.progress.count(report);
+            self.show_step(start);
         }
-        self.last = report.map(|report| (start, report));
-        report.iter().for_each(|report| self.progress.count(report));
-        self.keep_step();
         Ok(report)
     }
 

@@ -23,22 +23,28 @@ const FIRST_LEVELS: i32 = 5;
 const RATIO: f64 = 8.0;
 /// Number of even parts of a run at which its load is sampled.
 const PARTS: u32 = 512;
-/// Parts of the accuracy: error of the elastic contacts, and of the level on the curve.
+/// Parts of the accuracy: error of the elastic contacts, of the level on the curve, and of the steps on levels.
 const OF_SOLVER: f64 = 1e-3;
 const OF_CURVE: f64 = 0.05;
-/// Under a given approach bodies that creep by more take elastic contacts of so many times less error, up to the last factor.
+const OF_STEPS: f64 = 0.1;
+/// Steps on levels twice as long err by so many times more, the order being 2.
+const OF_LONGER: f64 = 3.0;
+/// Bodies that creep by more take elastic contacts of so many times less error, up to the last factor: their errors count as many times in a
+/// difference of two, and in what is left of a given approach.
 const MODERATE: f64 = 10.0;
 const MOST_TIGHTENED: f64 = 1e3;
 /// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
 const FALL_OVER_TOLERANCE: f64 = 1e2;
-/// Attempts to find the level on the curve, and most elastic contacts that it goes through before it is refined no more.
+/// Attempts to find the level on the curve, and most elastic contacts that refine it for one field.
 const MOST_ATTEMPTS: u32 = 12;
-const MOST_ROWS: usize = 64;
+const MOST_REFINED: usize = 64;
 /// The curve is refined between levels that differ by more, in logarithms, and whose slope turns by this part of the greatest turn; its error is
 /// the error of a curve through every second contact over this, as at kinks.
-const FINEST: f64 = 0.02;
+const FINEST: f64 = 2e-3;
 const OF_GREATEST_TURN: f64 = 0.25;
 const OF_SECOND: f64 = 3.0;
+/// A kink between two contacts is off a smooth curve by its turn over this.
+const OF_KINK: f64 = 8.0;
 /// An error of the level counts so many times in the pressure, besides its amplification.
 const OF_LEVEL: f64 = 2.0;
 /// Levels of the curve beyond its last one, over that.
@@ -91,9 +97,7 @@ impl Beside {
             return Ok(None);
         }
         let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
-        // what is left of a given approach once the bodies have crept
-        let of_creep = if by_force { 1.0 } else { (creep / MODERATE).clamp(1.0, MOST_TIGHTENED) };
-        let tolerance = (OF_SOLVER * accuracy / of_creep).max(1e-9);
+        let tolerance = (OF_SOLVER * accuracy / (creep / MODERATE).clamp(1.0, MOST_TIGHTENED)).max(1e-9);
         let mut elastic = ElasticContact::of(contact.of_unit_compliance(tolerance)?);
         let rest = elastic.under(Load::Force { normal: 0.0, tilt })?.approach();
         let mut top = 0.0_f64;
@@ -188,21 +192,28 @@ impl Beside {
         self.repeated.on(self.curve_through(rows)?).at(history, time, after)
     }
 
-    /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join.
-    fn refine(&mut self) -> Result<()> {
+    /// The width in logarithms of the interval above each elastic contact of the curve, and the depth by which the slope turns there.
+    fn turns(&self) -> Vec<(f64, f64)> {
         let width = |k: usize| (self.rows[k + 1][0] / self.rows[k][0]).ln();
         let slope = |k: usize| (self.rows[k + 1][1] / self.rows[k][1]).ln() / width(k);
         let last = self.rows.len() - 2;
         let turn = |k: usize| {
             let beside = [k.saturating_sub(1), (k + 1).min(last)].map(|other| (slope(other) - slope(k)).abs());
-            beside[0].max(beside[1]) * width(k) * self.rows[k + 1][1]
+            (width(k), beside[0].max(beside[1]) * width(k) * self.rows[k + 1][1])
         };
-        let turns: Vec<f64> = (0..=last).map(turn).collect();
-        let most = turns.iter().copied().fold(0.0, f64::max);
+        (0..=last).map(turn).collect()
+    }
+
+    /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join. Returns their number.
+    fn refine(&mut self) -> Result<usize> {
+        let turns = self.turns();
+        let is_wide = |k: &usize| turns[*k].0 > FINEST;
+        let most = (0..turns.len()).filter(is_wide).map(|k| turns[k].1).fold(0.0, f64::max);
         let middle = |k: usize| (self.rows[k][0] * self.rows[k + 1][0]).sqrt();
-        let refined = |k: &usize| turns[*k] >= OF_GREATEST_TURN * most && width(*k) > FINEST;
-        let middles: Vec<f64> = (0..=last).filter(refined).map(middle).collect();
-        middles.into_iter().try_for_each(|level| self.solve(level).map(drop))
+        let refined = (0..turns.len()).filter(is_wide).filter(|k| turns[*k].1 >= OF_GREATEST_TURN * most);
+        let middles: Vec<f64> = refined.map(middle).collect();
+        middles.iter().try_for_each(|level| self.solve(*level).map(drop))?;
+        Ok(middles.len())
     }
 
     /// Errors of the pressure for the error of the level on the curve, and for its change since `before`; and the run on the curve as it is now.
@@ -220,7 +231,8 @@ impl Beside {
         if level == 0.0 {
             // apart by less than what the curves may err by?
             let [own, even, odd] = [found.clearance()?, even.clearance()?, odd.clearance()?];
-            let nearer = (own - even).abs().max((own - odd).abs()) / OF_SECOND - own;
+            let of_kinks = self.turns().into_iter().map(|(_, turn)| turn).fold(0.0, f64::max) / OF_KINK;
+            let nearer = ((own - even).abs().max((own - odd).abs()) / OF_SECOND).max(of_kinks) - own;
             let touched = found.contact.states().level_where(0.0, nearer);
             (off, density) = (off.max(OF_SECOND * touched), density.max(self.glass));
         }
@@ -229,12 +241,27 @@ impl Beside {
         Ok(([of_curve, change], found))
     }
 
+    /// The run to a time on the curve as it is, in steps that are short enough, and the error that they leave.
+    fn in_short_steps(&mut self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<(Found, f64)> {
+        loop {
+            let found = self.repeated.at(history, at.0, at.1)?;
+            let longer = self.repeated.by_longer_steps(history, at)?;
+            let [own, longer] = [&found, &longer].map(|found| Profile::new(found.contact.tractions()));
+            let error = own.distance(&longer, found.size()) / OF_LONGER;
+            if error <= OF_STEPS * self.repeated.accuracy || !self.repeated.halve() {
+                return Ok((found, error));
+            }
+        }
+    }
+
     /// The pressure at a time, after a jump of the load there or before it.
     pub(crate) fn pressure(&mut self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<FoundPressure> {
-        let mut found = self.repeated.at(history, time, after)?;
+        let (mut found, of_steps) = self.in_short_steps(history, (time, after))?;
         let mut solved: Vec<Solved> = Vec::new();
-        let (mut error, mut of_level) = (0.0, 0.0);
-        for attempt in 1.. {
+        let (mut error, mut of_level, mut refined) = (0.0, 0.0, 0);
+        // the bodies have not touched yet
+        let most_attempts = if found.size() > 0.0 { MOST_ATTEMPTS } else { 0 };
+        for attempt in 1..=most_attempts {
             let profile = Profile::new(found.contact.tractions());
             let top = found.contact.level();
             solved.retain(|solved| solved.level < top * (1.0 - NEAREST));
@@ -246,7 +273,7 @@ impl Beside {
                 let (levels, of_cuts) = profile.cuts(found.size(), self.repeated.accuracy);
                 (error, solved) = (of_cuts, levels.into_iter().map(|level| self.solve(level)).collect::<Result<_>>()?);
             }
-            if self.by_force || attempt == MOST_ATTEMPTS {
+            if self.by_force || attempt == most_attempts {
                 break;
             }
             self.repeated = self.repeated.on(self.curve_through(&self.rows)?);
@@ -258,8 +285,9 @@ impl Beside {
             found = next;
             of_level = of_curve + change;
             let allowed = OF_LEVEL * OF_CURVE * self.repeated.accuracy;
-            if of_curve > allowed && self.rows.len() < MOST_ROWS {
-                self.refine()?;
+            let more = if of_curve > allowed && refined < MOST_REFINED { self.refine()? } else { 0 };
+            refined += more;
+            if more > 0 {
                 self.repeated = self.repeated.on(self.curve_through(&self.rows)?);
                 found = self.repeated.at(history, time, after)?;
             } else if change <= allowed {
@@ -278,7 +306,7 @@ impl Beside {
             let by_half = off / pressure.iter().sum::<f64>() / OF_HALF;
             error = by_half.clamp(error / MOST_OVERSTATED, error);
         }
-        let error = error + of_level;
+        let error = error + of_level + of_steps;
         Ok(FoundPressure { pressure, error, spent: std::mem::take(&mut self.spent) })
     }
 

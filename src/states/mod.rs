@@ -40,6 +40,7 @@
 
 mod beside;
 mod closed_forms;
+mod coarser;
 mod contact;
 mod control;
 mod curve;
@@ -70,3 +71,13 @@ pub(crate) use repeated::Repeated;
 pub use run::StatesRun;
 pub use sweep::Sweep;
 pub(crate) use twin::Profile;
+
+use crate::error::{Error, Result};
+
+/// Nothing where elastic states do not cover a scene.
+pub(crate) fn unless_refused<T>(found: Result<Option<T>>) -> Result<Option<T>> {
+    match found {
+        Err(Error::States(_) | Error::Step(_)) => Ok(None),
+        other => other,
+    }
+}

@@ -17,14 +17,15 @@ const COARSE: f64 = 1e-3;
 /// Number of its own steps in each of these. Under a given approach its steps are shorter: a small force may be what is left of large ones.
 const PARTS_OF_STEP: usize = 8;
 const PARTS_BY_APPROACH: usize = 32;
-/// Greatest number of its own steps.
+/// Greatest number of its own steps, and the most to be halved for a field.
 const MOST_STEPS: usize = 4000;
+const MOST_HALVED: usize = 8000;
 /// The shortest step, over the time since the start.
 const SHORTEST: f64 = 1e-7;
 /// The last step before a time, over the time since the start.
 const LAST_STEP: f64 = 1e-5;
 /// The accuracy of a field holds relative to this part of the greatest force at least.
-const LEAST_FORCE: f64 = 0.01;
+pub(super) const LEAST_FORCE: f64 = 0.01;
 /// States of the curve nearer than this factor of the level are one.
 pub(super) const NEAREST: f64 = 1e-6;
 
@@ -36,6 +37,8 @@ pub(crate) struct Repeated {
     pub(super) accuracy: f64,
     /// Ends of steps that resolve the load, and what the bodies do under it.
     schedule: Vec<f64>,
+    /// The part by which steps before a time are shorter than the one before.
+    shortening: f64,
 }
 
 /// A contact on levels at a time, and the times and levels of its steps.
@@ -49,7 +52,7 @@ pub(crate) struct Found {
 impl Repeated {
     /// Before the run is known.
     pub(super) fn unknown(origin: StatesContact, accuracy: f64) -> Repeated {
-        Repeated { origin, accuracy, schedule: Vec::new() }
+        Repeated { origin, accuracy, schedule: Vec::new(), shortening: accuracy.sqrt() }
     }
 
     /// A run from `origin`; and its greatest level.
@@ -75,7 +78,7 @@ impl Repeated {
         let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
         let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
-        Ok((Repeated { origin, accuracy, schedule }, greatest))
+        Ok((Repeated { origin, accuracy, schedule, shortening: accuracy.sqrt() }, greatest))
     }
 
     /// The run on other elastic states of the same surface.
@@ -85,15 +88,45 @@ impl Repeated {
         repeated
     }
 
-    /// The contact at a time, after a jump of the load there or before it.
-    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
-        let (mut ends, mut left, rest) = (self.schedule.clone(), 1.0, 1.0 - self.accuracy.sqrt());
+    /// Halves its steps; false where they are too many already.
+    pub(super) fn halve(&mut self) -> bool {
+        if self.schedule.len() > MOST_HALVED {
+            return false;
+        }
+        let start = self.origin.time();
+        let starts = std::iter::once(start).chain(self.schedule.iter().copied());
+        let halves = starts.zip(&self.schedule).flat_map(|(start, end)| [0.5 * (start + end), *end]);
+        self.schedule = halves.collect();
+        self.shortening *= 0.5;
+        true
+    }
+
+    /// Ends of its steps to a time.
+    fn ends(&self, time: f64) -> Vec<f64> {
+        let (mut ends, mut left) = (self.schedule.clone(), 1.0);
         while left > LAST_STEP {
-            left *= rest;
+            left *= 1.0 - self.shortening;
             ends.push(time - (time - self.origin.time()) * left);
         }
         ends.sort_by(f64::total_cmp);
-        self.by_steps(history, &ends, (time, after))
+        ends
+    }
+
+    /// The contact at a time, after a jump of the load there or before it.
+    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+        self.by_steps(history, &self.ends(time), (time, after))
+    }
+
+    /// The same in steps twice as long, except where they end at corners of the load.
+    pub(super) fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
+        let mut corner = history.next_breakpoint(self.origin.time());
+        let is_kept = |(k, end): &(usize, f64)| {
+            let is_corner = corner.is_some_and(|corner| corner <= *end);
+            corner = if is_corner { history.next_breakpoint(*end) } else { corner };
+            is_corner || k % 2 == 1
+        };
+        let kept = self.ends(at.0).into_iter().enumerate().filter(is_kept).map(|(_, end)| end);
+        self.by_steps(history, &kept.collect::<Vec<_>>(), at)
     }
 
     /// The contact at a time, by steps with these ends.

@@ -4,40 +4,53 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::contact::{Scene, ViscoelasticContact};
 use crate::error::{Error, Result, count_within};
-use crate::load::LoadHistory;
+use crate::load::{Load, LoadHistory};
 use crate::run::Run;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Moment, Prepared};
 use crate::run::field::MOST_FIELDS;
 use crate::states::beside::Beside;
+use crate::states::coarser::Coarser;
 use crate::states::contact::StatesContact;
 use crate::states::reach::Course;
 use crate::states::repeated::Repeated;
+use crate::states::unless_refused;
 
-/// The run errs by this part of the accuracy of the fields where its error is amplified as many times.
-const OF_AMPLIFIED: f64 = 1.5;
+/// An error of the level counts K times in a field ([`Profile::amplification`](crate::states::Profile::amplification)): adaptive steps before it
+/// have this tolerance over K, as a part of the accuracy of the field.
+const OF_LEVEL: f64 = 1.5;
+/// Where levels do not tell K, it is taken as the creep of the bodies under a given force, up to so much.
+const MOST_CREEP: f64 = 15.0;
 /// Number and ratio of the graded steps before a field where nothing better is known.
 const GRADED: i32 = 12;
 const RATIO: f64 = 0.7;
 
-/// How the fields of a run in space are found: from elastic contacts, or by steps, whose error is known, where these shrink; without,
-/// by graded steps.
+/// How the fields of a run in space are found.
 #[derive(Debug, Default)]
-struct InSpace(Option<Mutex<Box<Beside>>>);
+enum InSpace {
+    /// The run has not begun.
+    #[default]
+    Unknown,
+    /// From elastic contacts; where these shrink, by steps, whose error levels tell.
+    Beside(Mutex<Box<Beside>>),
+    /// By graded steps, whose error longer steps tell.
+    Coarser(Coarser),
+}
 
 impl<'a> Run<'a> {
     /// Makes the pressure at the times to sample ([`Run::sample_at`]) exact to `accuracy`: the error in time is Σ |δp| over Σ p, or over a
     /// hundredth of the greatest force of the run if that is more. 99 % of random fields of bodies that creep up to 100-fold are below the
-    /// accuracy; more creep errs up to ten times as much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force
+    /// accuracy; up to 1000-fold the greatest error is 1.6 times as much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force
     /// alone: cells that joined in the last long step have the pressure of one moment, which is off by 1 to 30 %.
     ///
     /// Where the contact is a superposition of its elastic states ([`states`](crate::states)) the steps stay as they are, bitwise. A few
     /// elastic contacts beside the run give the pressure of [`Sample::contact`](crate::run::Sample::contact) and [`Run::within_step`] at any
-    /// time: 6 for 1e-2 and 10 for 1e-3 in the median, 12 and 41 for a tenth of the fields. Displacement and motions stay as in the run.
+    /// time: 6 for 1e-2 and 13 for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
     ///
     /// Elsewhere steps end before each of the times, and [`Run::contact`] has the pressure there. Where an elastic contact shrinks as its load
     /// grows, the levels choose these steps, 8 more for 1e-2 and 16 for 1e-3 in the median. Where load points or tilts change, or bodies are
-    /// several, attract each other or are shared out by ranks, 12 steps are graded by 0.7, and the estimate is the difference to the last three
-    /// steps taken in halves.
+    /// several, attract each other or are shared out by ranks, 12 steps are graded by 0.7. Under a given force the tolerance of all steps is then the
+    /// accuracy over two thirds of the creep, but a tenth at least. The estimate is the difference to a run beside in steps twice as long: half as
+    /// much work again, and the memory of a contact. There is none once a step of that run has failed.
     ///
     /// [`Sample::field`](crate::run::Sample::field) has the estimated error. Relative to the field the L2 error is about twice as large, and
     /// the error of the greatest pressure five times.
@@ -84,7 +97,7 @@ impl<'a> Run<'a, StatesContact> {
 
 impl FieldFinder<ViscoelasticContact> for InSpace {
     fn prepare(&mut self, contact: &ViscoelasticContact, request: &FieldRequest<'_>) -> Result<Prepared> {
-        let FieldRequest { history, accuracy, start, until, times } = *request;
+        let FieldRequest { history, accuracy, start, until, times, is_adaptive } = *request;
         let Scene { material, temperature, settings, attraction, .. } = &*contact.scene;
         let course = Course { material, temperature: temperature.as_ref(), history, until };
         let state = &contact.computation.state;
@@ -97,12 +110,12 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             let times = if beside.serves() { &[] } else { few(times)? };
             for &time in times {
                 let (before, amplification) = beside.stops(history, time)?;
-                finest = finest.min(OF_AMPLIFIED / amplification);
+                finest = finest.min(OF_LEVEL / amplification);
                 stops.extend(before.into_iter().chain([time]));
             }
             let tolerance = if beside.serves() { f64::INFINITY } else { finest * accuracy };
-            self.0 = Some(Mutex::new(Box::new(beside)));
-            return Ok(Prepared { stops, tolerance, keeps_starts: false });
+            *self = InSpace::Beside(Mutex::new(Box::new(beside)));
+            return Ok(Prepared { stops, tolerance });
         }
         let mut stops = Vec::new();
         for &time in few(times)? {
@@ -113,24 +126,37 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             let graded = (1..=GRADED).map(|j| time - (time - since) * RATIO.powi(j));
             stops.extend(graded.chain([time]));
         }
-        Ok(Prepared { stops, tolerance: accuracy, keeps_starts: true })
+        *self = InSpace::Coarser(Coarser::new(contact, times, is_adaptive));
+        let tolerance = match history.checked_at(start, attraction.is_some())? {
+            Load::Force { .. } => {
+                let creep = course.softest_compliance()? / material.contact_compliance(0.0);
+                OF_LEVEL / creep.clamp(OF_LEVEL, MOST_CREEP) * accuracy
+            }
+            _ => accuracy,
+        };
+        Ok(Prepared { stops, tolerance })
+    }
+
+    fn follow(&mut self, contact: &ViscoelasticContact, history: &dyn LoadHistory, start: f64) {
+        if let InSpace::Coarser(coarser) = self {
+            coarser.follow(contact, history, start);
+        }
     }
 
     fn with_field(
         &self,
         contact: &ViscoelasticContact,
-        moment: &Moment<'_, ViscoelasticContact>,
+        moment: &Moment<'_>,
     ) -> Result<(Option<ViscoelasticContact>, FieldReport)> {
-        let Moment { history, after, ends, starts } = *moment;
+        let Moment { history, after, ends } = *moment;
         let mut report = FieldReport::default();
-        let Some(beside) = &self.0 else {
-            report.error = match starts.front() {
-                Some(start) if after || start.time() < contact.time() => {
-                    Some(contact.error_by_halves(start, history, ends)?)
-                }
-                _ => None,
-            };
-            return Ok((None, report));
+        let beside = match self {
+            InSpace::Unknown => return Ok((None, report)),
+            InSpace::Coarser(coarser) => {
+                report.error = coarser.error_of(contact);
+                return Ok((None, report));
+            }
+            InSpace::Beside(beside) => beside,
         };
         let mut beside = beside.lock().unwrap_or_else(PoisonError::into_inner);
         if beside.serves() {
@@ -159,31 +185,6 @@ fn few(times: &[f64]) -> Result<&[f64]> {
     Ok(times)
 }
 
-/// Nothing where elastic states do not cover a scene.
-fn unless_refused<T>(found: Result<Option<T>>) -> Result<Option<T>> {
-    match found {
-        Err(Error::States(_) | Error::Step(_)) => Ok(None),
-        other => other,
-    }
-}
-
-impl ViscoelasticContact {
-    /// Σ |δp| over Σ p between this contact, and one that took the steps since `start` in halves.
-    fn error_by_halves(&self, start: &Self, history: &dyn LoadHistory, ends: &[f64]) -> Result<f64> {
-        let (mut contact, attracts) = (start.clone(), self.scene.attraction.is_some());
-        for &end in ends.iter().filter(|end| **end > start.time()) {
-            let middle = 0.5 * (contact.time() + end);
-            for time in [middle, end] {
-                let load = history.checked_before(time, attracts)?;
-                contact.step(time - contact.time(), load)?;
-            }
-        }
-        let differences = self.pressure().iter().zip(contact.pressure()).map(|(one, other)| (one - other).abs());
-        let sum: f64 = self.pressure().iter().sum();
-        Ok(if sum > 0.0 { differences.sum::<f64>() / sum } else { 0.0 })
-    }
-}
-
 /// A run on states in fine steps.
 #[derive(Debug, Default)]
 struct OnStates(Option<Repeated>);
@@ -192,14 +193,10 @@ impl FieldFinder<StatesContact> for OnStates {
     fn prepare(&mut self, contact: &StatesContact, request: &FieldRequest<'_>) -> Result<Prepared> {
         let FieldRequest { history, accuracy, until, .. } = *request;
         self.0 = Some(Repeated::new(contact.clone(), history, until, accuracy)?.0);
-        Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY, keeps_starts: false })
+        Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY })
     }
 
-    fn with_field(
-        &self,
-        contact: &StatesContact,
-        moment: &Moment<'_, StatesContact>,
-    ) -> Result<(Option<StatesContact>, FieldReport)> {
+    fn with_field(&self, contact: &StatesContact, moment: &Moment<'_>) -> Result<(Option<StatesContact>, FieldReport)> {
         let found = self.0.as_ref().map(|run| run.at(moment.history, contact.time(), moment.after)).transpose()?;
         Ok((found.map(|found| found.contact), FieldReport::default()))
     }

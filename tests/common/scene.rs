@@ -39,6 +39,25 @@ impl Features {
     }
 }
 
+/// What is touched.
+#[derive(Debug, Clone, Copy)]
+pub enum Beneath {
+    HalfSpace,
+    /// Periodic along both sides of the grid.
+    Periodic,
+    Layer(Layer),
+}
+
+impl Beneath {
+    pub fn kernel(self, grid: &Grid) -> Result<InfluenceKernel, Error> {
+        match self {
+            Beneath::HalfSpace => InfluenceKernel::half_space(grid),
+            Beneath::Periodic => InfluenceKernel::periodic(grid),
+            Beneath::Layer(layer) => InfluenceKernel::layer(grid, layer),
+        }
+    }
+}
+
 pub struct Scene {
     pub name: String,
     pub body: Body,
@@ -46,7 +65,8 @@ pub struct Scene {
     pub control: Control,
     /// Times to look at, besides the breakpoints of the history \[s\].
     pub stops: Vec<f64>,
-    geometry: Box<dyn Geometry>,
+    pub geometry: Box<dyn Geometry>,
+    pub beneath: Beneath,
     grid: Grid,
     kernel: Arc<InfluenceKernel>,
     law: Option<Arc<dyn Attraction>>,
@@ -134,15 +154,11 @@ impl Scene {
             false => random_shape(draws, reach),
         };
         let thickness = (returns && draws.chance(0.2)).then(|| reach * draws.power_of_ten(-0.3, 1.0));
-        let (on, kernel) = match thickness {
-            Some(thickness) => {
-                let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
-                (" on a layer", InfluenceKernel::layer(&grid, layer).unwrap())
-            }
-            None if periodic => ("", InfluenceKernel::periodic(&grid).unwrap()),
-            None => ("", InfluenceKernel::half_space(&grid).unwrap()),
+        let (on, beneath) = match thickness {
+            Some(thickness) => (" on a layer", Beneath::Layer(Layer::bonded_to_rigid(thickness, 0.5).unwrap())),
+            None => ("", if periodic { Beneath::Periodic } else { Beneath::HalfSpace }),
         };
-        let mut scene = Scene::unloaded(body, geometry, grid, kernel);
+        let mut scene = Scene::unloaded(body, geometry, grid, beneath);
         let (touch, force) = scene.answers(depth);
         // ten kinds of control; of loads that return, half are approaches
         let kind = if returns { 0 } else { draws.below(10) };
@@ -172,7 +188,8 @@ impl Scene {
         scene.called(seed, number, &format!("{shape}{on}"))
     }
 
-    fn unloaded(body: Body, geometry: Box<dyn Geometry>, grid: Grid, kernel: InfluenceKernel) -> Scene {
+    fn unloaded(body: Body, geometry: Box<dyn Geometry>, grid: Grid, beneath: Beneath) -> Scene {
+        let kernel = Arc::new(beneath.kernel(&grid).unwrap());
         Scene {
             name: String::new(),
             body,
@@ -184,8 +201,9 @@ impl Scene {
             control: Control::Force(0.0),
             stops: Vec::new(),
             geometry,
+            beneath,
             grid,
-            kernel: Arc::new(kernel),
+            kernel,
             law: None,
         }
     }

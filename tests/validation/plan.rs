@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::histories::{four_terms, triangle};
-use crate::common::{RADIUS, contact_of, elastic, figures, maxwell};
+use crate::common::histories::four_terms;
+use crate::common::{Draws, RADIUS, contact_of, elastic, figures, from_environment, maxwell, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::contact::Builder;
@@ -155,32 +155,6 @@ fn a_planned_run_is_a_thousand_times_less_work_than_the_papers() {
 }
 
 #[test]
-fn loads_that_come_and_go_are_as_accurate_as_planned() {
-    let sphere = Sphere::new(RADIUS).unwrap();
-    let zener = Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap());
-    let four = Material::incompressible(four_terms());
-    let sine = Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0).unwrap();
-    let cases: [(&str, Material, Box<dyn LoadHistory>, f64); 2] =
-        [("triangle", zener, Box::new(triangle()), 3.5), ("sine", four, Box::new(sine), 2.0)];
-    for (name, material, history, until) in cases {
-        for accuracy in [Accuracy::COARSE, Accuracy::STANDARD] {
-            let mut foundation = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &material).unwrap();
-            let outcome = deliver(&sphere, &material, &*history, until, accuracy, |t, _| {
-                // the foundation goes along, in steps of a thousandth
-                let start = foundation.time();
-                let count = ((t - start) * 2000.0).ceil().max(1.0) as u32;
-                for k in 1..=count {
-                    let next = if k == count { t } else { start + (t - start) * f64::from(k) / f64::from(count) };
-                    foundation.step(next - foundation.time(), history.at(next)).unwrap();
-                }
-                (foundation.approach(), None)
-            });
-            check(name, accuracy, &outcome);
-        }
-    }
-}
-
-#[test]
 fn punches_need_fine_meshes_and_say_so() {
     let radius = 1.0e-3;
     let punch = FlatPunch::circular(radius).unwrap();
@@ -319,4 +293,33 @@ fn plans_of_contacts_that_shrink_take_trial_runs() {
         println!("{plan}: {error:.1e}");
         assert!(exact.len() == 6 && error < 2e-2, "{error}");
     }
+}
+
+/// An error of the history is an error of the plan, whatever part of the planning needed the load.
+#[test]
+fn errors_of_histories_come_out_of_plans() {
+    let (sphere, body, until) = (Sphere::new(RADIUS).unwrap(), zener(), 2.0);
+    let mut seen = 0;
+    for number in 0..from_environment("PLAN_ERRORS", 60) {
+        let draws = &mut Draws::new(number);
+        // between the 4097 times at which runs look at the load without a step
+        let from = until * (draws.below(4096) as f64 + 0.3) / 4096.0;
+        let is_met = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        let met = std::sync::Arc::clone(&is_met);
+        let history = FnHistory::fallible(move |t: f64| {
+            if t > from && t < from + 0.4 * until / 4096.0 {
+                met.store(true, std::sync::atomic::Ordering::Relaxed);
+                return Err(format!("no load at {t}"));
+            }
+            Ok(Load::force(0.5 * (0.2 + (2.0 * t).sin().abs())))
+        });
+        let plan = Plan::builder(&sphere, &body, &history, until).accuracy(Accuracy::COARSE);
+        let plan = plan.fields_at(&[1.0, 2.0]).build();
+        if is_met.load(std::sync::atomic::Ordering::Relaxed) {
+            seen += 1;
+            assert!(matches!(plan, Err(Error::User(_))), "{from}: {plan:?}");
+        }
+    }
+    println!("{seen} errors were met");
+    assert!(seen > 5);
 }

@@ -113,6 +113,17 @@ impl ViscoelasticContact {
         self.sum_in_order(found, |rank| self.with_images(self.rows_of(rank)))
     }
 
+    /// Σ |p − p′| and Σ p over the whole grid, with the p′ of another contact of the scene. A call of all ranks.
+    pub(crate) fn pressure_beside(&self, other: &ViscoelasticContact) -> [f64; 2] {
+        let ([n1, n2], own) = (self.grid().cells(), self.rows());
+        self.sum_of_rows(|i, row| {
+            let computed = if own.contains(&i) { i } else { n1 - 1 - i };
+            let others = &other.pressure()[(computed - own.start) * n2..];
+            let off = row.iter().zip(others).map(|(one, other)| (one - other).abs());
+            [off.sum(), row.iter().sum()]
+        })
+    }
+
     /// Returns `own` if all ranks succeed, else an error on every rank.
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
