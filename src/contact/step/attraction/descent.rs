@@ -154,7 +154,7 @@ impl AttractedStep<'_> {
             let soft = if iteration < LEAST_MEASURED { own.softness } else { recent }.min(softest.unwrap_or(1.0));
             let mut leaves = None;
             let share = if iteration == 0 { SMOOTH } else { 1.0 };
-            if gradient.greatest <= share * self.tolerance(soft) {
+            if gradient.greatest <= share * self.tolerance(own.exactness * soft) {
                 if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < VERY_SOFT) {
                     looks += 1;
                     let softness = self.softest(balance, inverse, own, window, trial, counts);
@@ -166,7 +166,7 @@ impl AttractedStep<'_> {
                     }
                 }
                 let soft = soft.min(softest.unwrap_or(1.0));
-                if leaves.is_none() && gradient.greatest <= self.tolerance(soft) {
+                if leaves.is_none() && gradient.greatest <= self.tolerance(own.exactness * soft) {
                     own.softness = if iteration == 0 { own.softness } else { soft };
                     trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                     self.finish(balance, gradient.multiplier, trial);

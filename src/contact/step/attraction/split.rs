@@ -1,15 +1,19 @@
 //! Whether surfaces snapped within a step: a jump is what stays however the step is split.
 //!
-//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: eight parts release an eighth of it
-//! together. So a step that is suspected of a jump is taken again in eight parts, from its start.
+//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half releases a quarter of it. So a step
+//! that is suspected of a jump is taken again in two halves, from its start, and a half that is suspected again in its halves, as far as to an eighth of the step.
 
 use super::{PassReport, add};
 use crate::contact::{State, Step, ViscoelasticContact};
+use crate::error::Result;
+use crate::extent::Extent;
+use crate::load::Load;
 use crate::solver::Counts;
 
-const PARTS: u32 = 8;
-/// The parts of a jump release more than this share of what the step released.
-const LEFT: f64 = 0.25;
+/// The shortest parts of a step.
+const SHORTEST: f64 = 0.125;
+/// A part of a step with a jump releases more than this share of what the step released.
+const LEFT: f64 = 0.2;
 
 impl ViscoelasticContact {
     pub(in crate::contact) fn may_have_snapped(&self) -> bool {
@@ -29,8 +33,9 @@ impl ViscoelasticContact {
         let mut end = end.unwrap_or_else(|| Box::new(state.clone()));
         (*end).clone_from(state);
         state.roll_back();
-        let mut counts = Counts::default();
-        let jumped = self.releases_in_parts(step, LEFT * whole.released, &mut counts) || self.is_elsewhere(&end);
+        let (start, mut counts) = (self.load_like(0, &step.loads[0]), Counts::default());
+        let jumps = self.jumps_between([0.0, 1.0], start, step, LEFT * whole.released, &mut counts);
+        let jumped = jumps.unwrap_or(true) || self.is_elsewhere(&end);
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
         if let Some(own) = self.computation.trial.passes.as_mut() {
@@ -39,7 +44,7 @@ impl ViscoelasticContact {
     }
 
     /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.
-    fn is_elsewhere(&self, end: &State) -> bool {
+    pub(in crate::contact) fn is_elsewhere(&self, end: &State) -> bool {
         let State { current, previous, .. } = end;
         let [end, start, now] = [current, previous, &self.computation.state.current].map(|at| &at.solution.potential);
         let [off, change] = end.iter().zip(start).zip(now).fold([0.0; 2], |[off, change], ((end, start), now)| {
@@ -48,24 +53,44 @@ impl ViscoelasticContact {
         off > 0.5 * change
     }
 
-    /// Whether the parts of the step release more than this; also if one of them has no solution.
-    fn releases_in_parts(&mut self, step: &Step<'_>, most: f64, counts: &mut Counts) -> bool {
-        let (from, to, mut released) = (self.time(), step.interval.time, 0.0);
-        let start = self.load_like(0, &step.loads[0]);
-        for part in 1..=PARTS {
-            let share = f64::from(part) / f64::from(PARTS);
-            let time = if part == PARTS { to } else { from + share * (to - from) };
-            let loads = [start.towards(&step.loads[0], share)];
-            let Ok(mut own) = self.request(time, time - self.time(), &loads, step.tolerance) else { return true };
-            own.interval.interpolant = step.interval.interpolant;
-            own.cancelled = step.cancelled;
-            let taken = self.attempt(&own).and_then(|attempt| self.adopt(attempt, own, [0.0; 2]));
+    /// Whether surfaces jump, and release more than `least`, between two shares of a step that began under the load `start`.
+    fn jumps_between(
+        &mut self,
+        [from, to]: [f64; 2],
+        start: Load,
+        step: &Step<'_>,
+        least: f64,
+        counts: &mut Counts,
+    ) -> Result<bool> {
+        let middle = 0.5 * (from + to);
+        let mut jumped = false;
+        for [from, to] in [[from, middle], [middle, to]] {
+            let begun = self.time();
+            let left = step.interval.time - begun;
+            let time = if to == 1.0 { step.interval.time } else { begun + left * (to - from) / (1.0 - from) };
+            self.take_part(time, &[start.towards(&step.loads[0], to)], step)?;
             add(counts, self.computation.state.current.solution.counts);
-            released += self.passes().map_or(0.0, |report| report.released);
-            if taken.is_err() || released > most {
-                return true;
+            if self.passes().is_some_and(|report| report.may_jump(least)) {
+                jumped |= to - from <= SHORTEST || {
+                    self.computation.state.roll_back();
+                    self.jumps_between([from, to], start, step, least, counts)?
+                };
             }
         }
-        false
+        Ok(jumped)
+    }
+
+    /// Takes a part of a step, to `time`, under loads of its own; returns the rectangle of the pressed cells.
+    pub(in crate::contact) fn take_part(
+        &mut self,
+        time: f64,
+        loads: &[Load],
+        whole: &Step<'_>,
+    ) -> Result<Option<Extent>> {
+        let mut part = self.request(time, time - self.time(), loads, whole.tolerance)?;
+        part.interval.interpolant = whole.interval.interpolant;
+        part.cancelled = whole.cancelled;
+        let attempt = self.attempt(&part)?;
+        self.adopt(attempt, part, [0.0; 2])
     }
 }
