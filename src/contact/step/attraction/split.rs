@@ -1,7 +1,7 @@
 //! Whether surfaces snapped within a step: a jump is what stays however the step is split.
 //!
 //! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half releases a quarter of it. So a step
-//! that is suspected of a jump is taken again in two halves, from its start, and a half that is suspected again in its halves, as far as to an eighth of the step.
+//! that is suspected of a jump is taken again in two halves, from its start, and a half that is suspected again in its halves, as far as to a quarter of the step.
 
 use super::{PassReport, add};
 use crate::contact::{State, Step, ViscoelasticContact};
@@ -11,9 +11,9 @@ use crate::load::Load;
 use crate::solver::Counts;
 
 /// The shortest parts of a step.
-const SHORTEST: f64 = 0.125;
+const SHORTEST: f64 = 0.25;
 /// A part of a step with a jump releases more than this share of what the step released.
-const LEFT: f64 = 0.2;
+const LEFT: f64 = 0.16;
 
 impl ViscoelasticContact {
     pub(in crate::contact) fn may_have_snapped(&self) -> bool {
@@ -34,7 +34,7 @@ impl ViscoelasticContact {
         (*end).clone_from(state);
         state.roll_back();
         let (start, mut counts) = (self.load_like(0, &step.loads[0]), Counts::default());
-        let jumps = self.jumps_between([0.0, 1.0], start, step, LEFT * whole.released, &mut counts);
+        let jumps = self.jumps_between([0.0, 1.0], start, step, whole.released, &mut counts);
         let jumped = jumps.unwrap_or(true) || self.is_elsewhere(&end);
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
@@ -53,17 +53,18 @@ impl ViscoelasticContact {
         off > 0.5 * change
     }
 
-    /// Whether surfaces jump, and release more than `least`, between two shares of a step that began under the load `start`.
+    /// Whether surfaces jump between two shares of a step that began under the load `start` and `released` so much.
     fn jumps_between(
         &mut self,
         [from, to]: [f64; 2],
         start: Load,
         step: &Step<'_>,
-        least: f64,
+        released: f64,
         counts: &mut Counts,
     ) -> Result<bool> {
-        let middle = 0.5 * (from + to);
-        let mut jumped = false;
+        let (middle, part) = (0.5 * (from + to), 0.5 * (to - from));
+        // besides the jump, what is smooth
+        let least = (LEFT + (1.0 - LEFT) * part * part) * released;
         for [from, to] in [[from, middle], [middle, to]] {
             let begun = self.time();
             let left = step.interval.time - begun;
@@ -71,13 +72,16 @@ impl ViscoelasticContact {
             self.take_part(time, &[start.towards(&step.loads[0], to)], step)?;
             add(counts, self.computation.state.current.solution.counts);
             if self.passes().is_some_and(|report| report.may_jump(least)) {
-                jumped |= to - from <= SHORTEST || {
-                    self.computation.state.roll_back();
-                    self.jumps_between([from, to], start, step, least, counts)?
-                };
+                if part <= SHORTEST {
+                    return Ok(true);
+                }
+                self.computation.state.roll_back();
+                if self.jumps_between([from, to], start, step, released, counts)? {
+                    return Ok(true);
+                }
             }
         }
-        Ok(jumped)
+        Ok(false)
     }
 
     /// Takes a part of a step, to `time`, under loads of its own; returns the rectangle of the pressed cells.
