@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::adhesion_population::{SIDE, law, rough};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::temporary::Temporary;
 use viscocontact::contact::{StepError, Warnings};
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -75,7 +76,7 @@ impl Pair {
 fn states_beside_folds_are_states() {
     let (scenes, seed) = (from_environment("ADHESION_FOLDS", 3), from_environment("ADHESION_SEED", 1));
     let first = from_environment("ADHESION_FIRST", 0);
-    let checkpoint = std::env::temp_dir().join(format!("viscocontact_folds_{}", std::process::id()));
+    let checkpoint = Temporary::file("folds");
     let (mut beside, mut steps, mut jumps, mut missed, mut worst) = (0, 0, 0, 0, 0.0_f64);
     for number in first..first + scenes {
         let mut pair = Pair::draw(number, seed);
@@ -114,7 +115,6 @@ fn states_beside_folds_are_states() {
             }
         }
     }
-    std::fs::remove_file(checkpoint).unwrap();
     println!(
         "{scenes} scenes, {steps} steps, {beside} before jumps, {jumps} jumps: {missed} are off, worst {worst:.1e}"
     );

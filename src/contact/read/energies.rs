@@ -146,7 +146,8 @@ impl EnergyBalance {
         let area = contact.grid().cell_area();
         contact.traction_into(&mut self.traction)?;
         let reduced = contact.reduced_time() - self.reduced_time;
-        let [stored, dissipated] = self.branches.step(reduced, contact.displacement(), &self.traction).map(|sum| area * sum);
+        let [stored, dissipated] =
+            self.branches.step(reduced, contact.displacement(), &self.traction).map(|sum| area * sum);
         let stored = stored + self.attracted(contact)?;
         let lost = contact.passes().filter(|_| jumped).map_or(0.0, |passes| passes.released);
         let (pushed, moved) = (pushed(contact), moved(contact));
@@ -183,9 +184,7 @@ impl EnergyBalance {
         let half = 0.5 * (contact.time() - end.start.clock.time);
         let mut part = contact.within_step(contact.time() - half)?;
         self.take_in_half(&part, half, halvings)?;
-        let mut step = part.request(contact.time(), half, &loads, contact.settings().tolerance())?;
-        step.interval.interpolant = end.start.interpolant;
-        part.take_part(contact.time(), &loads, &step)?;
+        part.take_part(contact.time(), &loads, contact.settings().tolerance(), end.start.interpolant, None)?;
         self.take_in_half(&part, half, halvings)?;
         Ok(!part.is_elsewhere(end))
     }

@@ -237,7 +237,7 @@ impl AttractedStep<'_> {
             }
             if !kept && leaves.is_some() {
                 // on neither side: a state
-                looks = LOOKS;
+                (looks, measured[iteration % REMEMBERED]) = (LOOKS, 1.0);
                 continue;
             }
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down

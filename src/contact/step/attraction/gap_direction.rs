@@ -22,10 +22,10 @@ const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
 /// The softest direction is looked for in at least and at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
-const LEAST_TURNS: usize = 4;
+const LEAST_TURNS: usize = 3;
 const MOST_TURNS: usize = 20;
 const NEGATIVE: f64 = -1e-2;
-const PRECISE: f64 = 0.3;
+const PRECISE: f64 = 0.2;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.

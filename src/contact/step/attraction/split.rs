@@ -6,7 +6,6 @@
 use super::{PassReport, add};
 use crate::contact::{State, Step, ViscoelasticContact};
 use crate::error::Result;
-use crate::extent::Extent;
 use crate::load::Load;
 use crate::solver::Counts;
 
@@ -69,7 +68,8 @@ impl ViscoelasticContact {
             let begun = self.time();
             let left = step.interval.time - begun;
             let time = if to == 1.0 { step.interval.time } else { begun + left * (to - from) / (1.0 - from) };
-            self.take_part(time, &[start.towards(&step.loads[0], to)], step)?;
+            let loads = [start.towards(&step.loads[0], to)];
+            self.take_part(time, &loads, step.tolerance, step.interval.interpolant, step.cancelled)?;
             add(counts, self.computation.state.current.solution.counts);
             if self.passes().is_some_and(|report| report.may_jump(least)) {
                 if part <= SHORTEST {
@@ -82,19 +82,5 @@ impl ViscoelasticContact {
             }
         }
         Ok(false)
-    }
-
-    /// Takes a part of a step, to `time`, under loads of its own; returns the rectangle of the pressed cells.
-    pub(in crate::contact) fn take_part(
-        &mut self,
-        time: f64,
-        loads: &[Load],
-        whole: &Step<'_>,
-    ) -> Result<Option<Extent>> {
-        let mut part = self.request(time, time - self.time(), loads, whole.tolerance)?;
-        part.interval.interpolant = whole.interval.interpolant;
-        part.cancelled = whole.cancelled;
-        let attempt = self.attempt(&part)?;
-        self.adopt(attempt, part, [0.0; 2])
     }
 }
