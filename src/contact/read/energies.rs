@@ -8,7 +8,7 @@ use crate::load::{Load, Tilt};
 
 /// A step whose work the forces at its ends do not tell to this part of the energy, or of the work of separation of so many cells, is looked at in parts, as far as to a
 /// sixteenth of it.
-const INEXACT: f64 = 1e-4;
+const INEXACT: f64 = 1e-3;
 const CELLS: f64 = 10.0;
 const HALVINGS: u32 = 4;
 

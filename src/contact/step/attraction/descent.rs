@@ -43,7 +43,7 @@ const SMALLEST: f64 = 1e-3;
 const SMOOTH: f64 = 0.1;
 /// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
 /// softer than this.
-const SUSPECT: f64 = 0.9;
+const SUSPECT: f64 = 0.85;
 const VERY_SOFT: f64 = 0.02;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
