@@ -1,5 +1,5 @@
 //! Is what a step accepts beside a fold a state? Random scenes are led up to their jumps by steps that are halved, and each of their states is taken up, by
-//! a checkpoint, by a contact of tolerance 1e-9, in a step under the same load. `ADHESION_FOLDS` (3) chooses the number of scenes, `ADHESION_SEED` (1) others.
+//! a checkpoint, by a contact of tolerance 1e-9, in a step under the same load. `ADHESION_FOLDS` (8) chooses the number of scenes, `ADHESION_SEED` (1) others.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -74,7 +74,7 @@ impl Pair {
 
 #[test]
 fn states_beside_folds_are_states() {
-    let (scenes, seed) = (from_environment("ADHESION_FOLDS", 3), from_environment("ADHESION_SEED", 1));
+    let (scenes, seed) = (from_environment("ADHESION_FOLDS", 8), from_environment("ADHESION_SEED", 1));
     let first = from_environment("ADHESION_FIRST", 0);
     let checkpoint = Temporary::file("folds");
     let (mut beside, mut steps, mut jumps, mut missed, mut worst) = (0, 0, 0, 0, 0.0_f64);
