@@ -33,7 +33,7 @@ impl ViscoelasticContact {
         (*end).clone_from(state);
         state.roll_back();
         let (start, mut counts) = (self.load_like(0, &step.loads[0]), Counts::default());
-        let jumps = self.jumps_between([0.0, 1.0], start, step, whole.released, &mut counts);
+        let jumps = self.jumps_between(0.0, 1.0, start, step, whole.released, &mut counts);
         let jumped = jumps.unwrap_or(true) || self.is_elsewhere(&end);
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
@@ -55,7 +55,8 @@ impl ViscoelasticContact {
     /// Whether surfaces jump between two shares of a step that began under the load `start` and `released` so much.
     fn jumps_between(
         &mut self,
-        [from, to]: [f64; 2],
+        from: f64,
+        to: f64,
         start: Load,
         step: &Step<'_>,
         released: f64,
@@ -76,7 +77,7 @@ impl ViscoelasticContact {
                     return Ok(true);
                 }
                 self.computation.state.roll_back();
-                if self.jumps_between([from, to], start, step, released, counts)? {
+                if self.jumps_between(from, to, start, step, released, counts)? {
                     return Ok(true);
                 }
             }
