@@ -144,7 +144,8 @@ fn jumps_are_what_stays_in_parts() {
             for part in 1..=64 {
                 let share = f64::from(part) / 64.0;
                 let load = if kind == 2 && k == 1 { load(to) } else { load(from + share * (to - from)) };
-                if parts.step(dt / 64.0, load).is_err() {
+                if let Err(error) = parts.step(dt / 64.0, load) {
+                    println!("scene {number}, step {k}, part {part}: {error:?} after {:?}", parts.passes());
                     left = f64::INFINITY;
                     break;
                 }

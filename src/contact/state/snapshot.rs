@@ -154,10 +154,7 @@ impl ViscoelasticContact {
         let mut reach = None;
         if time > from {
             let loads = loads(&contact)?;
-            let mut step = contact.request(time, time - from, &loads, tolerance)?;
-            step.interval.interpolant = state.start.interpolant;
-            let attempt = contact.attempt(&step)?;
-            reach = contact.adopt(attempt, step, [0.0; 2])?;
+            reach = contact.take_part(time, &loads, tolerance, state.start.interpolant, None)?;
         }
         Ok((contact, reach))
     }

@@ -38,7 +38,7 @@ use crate::contact::{
 use crate::error::{Error, Result, Special, StepError, non_negative};
 use crate::events;
 use crate::extent::Extent;
-use crate::hereditary::{Interval, StepContext, TimeError};
+use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::{Load, Loads};
 use crate::parallel::in_pool;
 use crate::solver::{Freedom, RigidMotion, Solution, Stop};
@@ -192,6 +192,22 @@ impl ViscoelasticContact {
         let report = self.report(estimated.then_some(error.relative), reach);
         report.emit();
         Ok(report)
+    }
+
+    /// Takes a part of a step, to `time`, under loads of its own; returns the smallest rectangle that contains all pressed cells.
+    pub(in crate::contact) fn take_part(
+        &mut self,
+        time: f64,
+        loads: &[Load],
+        tolerance: f64,
+        interpolant: Interpolant,
+        cancelled: Option<&AtomicBool>,
+    ) -> Result<Option<Extent>> {
+        let mut part = self.request(time, time - self.time(), loads, tolerance)?;
+        part.interval.interpolant = interpolant;
+        part.cancelled = cancelled;
+        let attempt = self.attempt(&part)?;
+        self.adopt(attempt, part, [0.0; 2])
     }
 
     /// The report of the last step, whose pressed cells are within `reach`.

@@ -43,7 +43,7 @@ const SMALLEST: f64 = 1e-3;
 const SMOOTH: f64 = 0.1;
 /// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
 /// softer than this.
-const SUSPECT: f64 = 0.8;
+const SUSPECT: f64 = 0.85;
 const VERY_SOFT: f64 = 0.02;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
@@ -139,7 +139,6 @@ impl AttractedStep<'_> {
         }
         let mut energy = self.energy_in_gap(balance, window, trial);
         let (mut steepest, mut has_last) = (0.0, false);
-        own.has_last = false;
         // of the last iterations, of all, and of the direction that was looked for
         let (mut measured, mut least, mut softest) = ([1.0_f64; REMEMBERED], 1.0_f64, None::<f64>);
         let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
@@ -154,7 +153,7 @@ impl AttractedStep<'_> {
             let soft = if iteration < LEAST_MEASURED { own.softness } else { recent }.min(softest.unwrap_or(1.0));
             let mut leaves = None;
             let share = if iteration == 0 { SMOOTH } else { 1.0 };
-            if gradient.greatest <= share * self.tolerance(soft) {
+            if gradient.greatest <= share * self.tolerance(own.exactness * soft) {
                 if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < VERY_SOFT) {
                     looks += 1;
                     let softness = self.softest(balance, inverse, own, window, trial, counts);
@@ -166,7 +165,7 @@ impl AttractedStep<'_> {
                     }
                 }
                 let soft = soft.min(softest.unwrap_or(1.0));
-                if leaves.is_none() && gradient.greatest <= self.tolerance(soft) {
+                if leaves.is_none() && gradient.greatest <= self.tolerance(own.exactness * soft) {
                     own.softness = if iteration == 0 { own.softness } else { soft };
                     trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                     self.finish(balance, gradient.multiplier, trial);
@@ -205,7 +204,14 @@ impl AttractedStep<'_> {
             measured[iteration % REMEMBERED] = curvature;
             least = least.min(curvature);
             let mut kept = false;
-            for _ in 0..if length > 0.0 { SHORTENINGS } else { 0 } {
+            let (whole, shortenings) = (length, if leaves.is_some() { 2 * SHORTENINGS } else { SHORTENINGS });
+            for shortening in 0..if length > 0.0 { shortenings } else { 0 } {
+                if shortening == SHORTENINGS {
+                    // beside a corner of the law E may fall on the other side
+                    let InGap { direction, image, .. } = own.in_gap();
+                    direction.iter_mut().chain(image).for_each(|value| *value = -*value);
+                    length = whole;
+                }
                 let clipped = self.try_lift(balance, length, own, window, trial);
                 let InGap { image, lift, traction, .. } = own.in_gap();
                 if clipped || iteration % FRESH == FRESH - 1 {
@@ -229,15 +235,18 @@ impl AttractedStep<'_> {
             if !kept && plain {
                 break;
             }
+            if !kept && leaves.is_some() {
+                // on neither side: a state
+                (looks, measured[iteration % REMEMBERED]) = (LOOKS, 1.0);
+                continue;
+            }
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
             plain = !kept && !has_last;
             has_last = kept && leaves.is_none();
-            own.has_last = has_last;
             own.in_gap().traction.copy_from_slice(&trial.solution.pressure);
             let Trial { gap, solution, .. } = &*trial;
             let (x, cells) = (&solution.potential, gap.len());
             if let Some(profile) = front.look((gradient.greatest, curvature <= 0.0), cells, |k| gap[k] + x[k] <= 0.0) {
-                own.has_last = false;
                 let InGap { lift, image, traction, .. } = own.in_gap();
                 for (k, tried) in lift.iter_mut().enumerate() {
                     let from = profile.source(k, cells);

@@ -8,11 +8,9 @@ use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::{RigidMotion, Solution};
 
-/// Jumps release more than this part of the energy, and of the work of separation of so many cells, and the energy bends up on their way by less than this part of what it does without
-/// attraction.
+/// Jumps release more than this part of the energy, and of the work of separation of so many cells.
 const LEAST_RELEASED: f64 = 1e-3;
 const CELLS: f64 = 10.0;
-const LEAST_BEND: f64 = 0.4;
 
 /// Sums over the cells of a pass.
 pub(super) struct Found {
@@ -118,12 +116,8 @@ impl AttractedStep<'_> {
         sum == 0.0 && (0..trial.gap.len()).any(pulls)
     }
 
-    /// Whether the surfaces may have snapped. On the straight way from the state before to this one the energy bends up by the part
-    /// 1 + ΣΔs Δh/Σ(Δq cKΔq + k Δω²) of what it would without attraction, in the mean; in a jump by less than in smooth steps, or down.
-    fn is_suspected(&self, released: f64, scale: f64, trial: &Trial) -> bool {
-        if released <= LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0)) || self.is_first(trial) {
-            return false;
-        }
+    /// What the energy bends up on the straight way from the state before to this one: Σ(Δq cKΔq + k Δω²), and ΣΔs Δh of the attraction, over the area of a cell.
+    fn bends_up(&self, trial: &Trial) -> [f64; 2] {
         let (state, law, c) = (self.state, self.law, self.given[0]);
         let [start, end] = [self.free_motion(&self.state.current), self.motion_at_end(trial)];
         let [before, now] = [&state.current.solution, &trial.solution];
@@ -139,7 +133,7 @@ impl AttractedStep<'_> {
                 [(net(now) - net(before)) * displaced, (attraction(h1) - attraction(h0)) * (h1 - h0)]
             })
         });
-        -softened > (1.0 - LEAST_BEND) * (convex + self.of_spring(end.approach - start.approach))
+        [convex + self.of_spring(end.approach - start.approach), softened]
     }
 
     /// By what part of its convex part the energy bends up in the direction of the last step. Beside a fold surfaces move along the mode that is soft, in which
@@ -179,7 +173,12 @@ impl AttractedStep<'_> {
         let [before, _] =
             self.energy_of(&self.state.current.solution, self.free_motion(&self.state.current), &trial.gap);
         let [now, scale] = self.energy_of(&trial.solution, self.motion_at_end(trial), &trial.gap);
-        own.report.released = self.area() * (before - now);
-        own.report.suspected = self.is_suspected(before - now, scale, trial);
+        let [convex, softened] = self.bends_up(trial);
+        let report = &mut own.report;
+        report.released = self.area() * (before - now);
+        report.unaccounted = report.released - 0.5 * self.area() * (convex + softened);
+        report.bend = 1.0 + softened / convex;
+        let much = LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0));
+        report.suspected = report.may_jump(self.area() * much) && !self.is_first(trial);
     }
 }

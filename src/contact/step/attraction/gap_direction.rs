@@ -22,10 +22,10 @@ const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
 /// The softest direction is looked for in at least and at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
-const LEAST_TURNS: usize = 2;
+const LEAST_TURNS: usize = 3;
 const MOST_TURNS: usize = 20;
 const NEGATIVE: f64 = -1e-2;
-const PRECISE: f64 = 0.5;
+const PRECISE: f64 = 0.2;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
@@ -181,8 +181,8 @@ impl AttractedStep<'_> {
     }
 
     /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
-    /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from the last direction, if it has its image, and a random one. Writes it, with its M d/c, so long that it
-    /// changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
+    /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from a random direction: the last one has the symmetry of the state, and may have none of the one that breaks it.
+    /// Writes it, with its M d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
     pub(super) fn softest(
         &self,
         balance: Balance,
@@ -204,7 +204,6 @@ impl AttractedStep<'_> {
             }
         });
         let (softening, is_open) = (&*softening, |k: usize| gap[k] + x[k] > 0.0);
-        let has_image = own.has_last;
         let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
         // K of a field, on the open cells
         let smooth = |window: &mut Window, field: &mut [f64]| {
@@ -217,17 +216,12 @@ impl AttractedStep<'_> {
                 field.iter_mut().enumerate().filter(|(k, _)| is_open(*k)).for_each(|(_, y)| *y -= sum / open);
             }
         };
-        // the first turn goes from the last direction, which has left what is stiff, to one that has the symmetry of no state
-        p.iter_mut().enumerate().for_each(|(k, p)| *p = softening[k] * (2.0 * scattered(k) - 1.0));
-        smooth(window, p);
-        balance.tractions(inverse, window, p, image_of_p, true);
+        v.iter_mut().enumerate().for_each(|(k, v)| *v = softening[k] * (2.0 * scattered(k) - 1.0));
+        smooth(window, v);
+        balance.tractions(inverse, window, v, image, true);
         counts.convolutions += 2;
-        if !has_image || v.iter().enumerate().any(|(k, v)| *v != 0.0 && !is_open(k)) {
-            std::mem::swap(v, p);
-            std::mem::swap(image, image_of_p);
-            p.fill(0.0);
-            image_of_p.fill(0.0);
-        }
+        p.fill(0.0);
+        image_of_p.fill(0.0);
         let [mut softened, mut convex] = rows.sum_terms(|k| Some([softening[k] * v[k] * v[k], v[k] * image[k]]));
         let mut before = 0.0;
         for turn in 0..MOST_TURNS {

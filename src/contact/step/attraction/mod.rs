@@ -45,10 +45,11 @@ use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop}
 
 /// Greatest number of passes of a round.
 const MAX_PASSES: usize = 2000;
-/// Change of s in a pass, over the greatest traction, that ends a step: so many tolerances of the solver, but no more than this, or than this
-/// part of the tolerance, by which the force then errs.
+/// A step ends where a pass changes s, over the greatest traction, by less than a limit, by which the force errs: so many tolerances of the solver.
 const CHANGE: f64 = 100.0;
+/// The limit is no more than this,
 const MOST_CHANGE: f64 = 1e-4;
+/// unless the tolerance is coarse: then it is this part of the tolerance.
 const SHARE: f64 = 0.3;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;

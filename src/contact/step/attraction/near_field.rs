@@ -22,6 +22,10 @@ const MAX_EXTENT: f64 = 0.8;
 const MOST_CHANGE: f64 = 0.3;
 /// What a round may leave of the change of F (z − s) in the round before.
 const LEAST_GAIN: f64 = 0.1;
+/// A change of F (z − s) of no more than so many times what may be left is one of the error of the descents along a soft direction, if it falls no more:
+/// they go on, each time more exact by this factor.
+const NEARLY: f64 = 10.0;
+const MORE_EXACT: f64 = 0.1;
 
 impl AttractedStep<'_> {
     /// Finishes z, s and K (z − s) of the trial by descents in the gap. Returns whether that sufficed; else they are at least nearer.
@@ -34,7 +38,7 @@ impl AttractedStep<'_> {
     ) -> Result<bool> {
         let Some(mut inverse) = window.inverse.take() else { return Ok(false) };
         self.begin_in_gap(window, trial);
-        own.softness = 0.0;
+        (own.softness, own.exactness) = (0.0, 1.0);
         let solved = if window.has_near_field() {
             self.descend_in_rounds(&mut inverse, own, window, trial, counts)
         } else {
@@ -78,11 +82,15 @@ impl AttractedStep<'_> {
             }
             let [change, most] = self.correct(own, window, trial, counts);
             let most = c * most * self.scene.softening / self.law.traction(0.0);
-            if most <= MOST_CHANGE * self.tolerance(own.softness) {
+            let allowed = MOST_CHANGE * self.tolerance(own.softness);
+            if most <= allowed {
                 trial.solution.potential.iter_mut().zip(&own.far).for_each(|(v, far)| *v += far);
                 return Ok(true);
             }
             pays = change <= LEAST_GAIN * last;
+            if !pays && most <= NEARLY * allowed && own.exactness > MORE_EXACT * MORE_EXACT {
+                (own.exactness, pays) = (MORE_EXACT * own.exactness, true);
+            }
             last = change;
         }
         trial.solution.potential.iter_mut().zip(&own.far).for_each(|(v, far)| *v += far);

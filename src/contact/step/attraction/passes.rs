@@ -16,6 +16,8 @@ pub(crate) struct Attracted {
     pub(super) far: Vec<f64>,
     /// The least curvature of the energy over the curvature of its convex part, among the directions of the last descent.
     pub(super) softness: f64,
+    /// The greatest residual of a descent, over what its softness asks for.
+    pub(super) exactness: f64,
     /// Whether a state is looked at for a direction along which the energy bends down.
     pub(super) looks: bool,
     /// Whether there is a pass before, or a direction of an iteration before and its image.
@@ -63,8 +65,13 @@ pub struct PassReport {
     /// Whether the surfaces snapped together or apart ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)): `released` stays however the step is
     /// split, where each half of a smooth step releases a quarter.
     pub jumped: bool,
-    /// Whether this may be so: much is released, and the energy bends up little on the way, or down.
+    /// Whether this may be so: much is [released](PassReport::may_jump).
     pub(crate) suspected: bool,
+    /// What is released beyond what the forces at both ends of the step would, by the trapezium rule, do along its way \[J\]: the loss of a jump, and
+    /// the error of the rule, of third order in the length of the step.
+    pub(crate) unaccounted: f64,
+    /// By what part of its convex part the energy bends up on the straight way between the states at both ends.
+    pub(crate) bend: f64,
     /// The force that the attraction beyond the edge of the grid would add, over that on it; 0 where [`Edge::Allow`](crate::contact::Edge::Allow) lets it be.
     pub(crate) beyond_edge: f64,
 }
@@ -80,7 +87,16 @@ pub(super) struct Extrapolation {
     pub(super) error: f64,
 }
 
+/// In a jump the energy bends up on the way by less than this part of what it would without attraction, and at least this part of what is released is unaccounted for.
+const LEAST_BEND: f64 = 0.4;
+const UNACCOUNTED: f64 = 0.3;
+
 impl PassReport {
+    /// Whether the surfaces may have jumped and released more than this \[J\].
+    pub(crate) fn may_jump(&self, least: f64) -> bool {
+        self.released > least && self.bend < LEAST_BEND && self.unaccounted > UNACCOUNTED * self.released
+    }
+
     /// The report of a step in two halves, of which this is the second, and of a `whole` that was tried before.
     pub(crate) fn after(self, first: PassReport, whole: PassReport) -> PassReport {
         PassReport {
@@ -90,6 +106,8 @@ impl PassReport {
             released: first.released + self.released,
             jumped: whole.suspected && first.released.max(self.released) > LEFT_IN_A_HALF * whole.released,
             suspected: false,
+            unaccounted: first.unaccounted + self.unaccounted,
+            bend: self.bend,
             beyond_edge: self.beyond_edge,
         }
     }
@@ -105,6 +123,7 @@ impl Attracted {
             fields: [field(), field(), field(), field()],
             far: field(),
             softness: 0.0,
+            exactness: 1.0,
             looks: true,
             has_last: false,
             error: 1.0,

@@ -1,15 +1,18 @@
 //! Whether surfaces snapped within a step: a jump is what stays however the step is split.
 //!
-//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: eight parts release an eighth of it
-//! together. So a step that is suspected of a jump is taken again in eight parts, from its start.
+//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half releases a quarter of it. So a step
+//! that is suspected of a jump is taken again in two halves, from its start, and a half that is suspected again in its halves, as far as to a quarter of the step.
 
 use super::{PassReport, add};
 use crate::contact::{State, Step, ViscoelasticContact};
+use crate::error::Result;
+use crate::load::Load;
 use crate::solver::Counts;
 
-const PARTS: u32 = 8;
-/// The parts of a jump release more than this share of what the step released.
-const LEFT: f64 = 0.25;
+/// The shortest parts of a step.
+const SHORTEST: f64 = 0.25;
+/// A part of a step with a jump releases more than this share of what the step released.
+const LEFT: f64 = 0.16;
 
 impl ViscoelasticContact {
     pub(in crate::contact) fn may_have_snapped(&self) -> bool {
@@ -29,8 +32,9 @@ impl ViscoelasticContact {
         let mut end = end.unwrap_or_else(|| Box::new(state.clone()));
         (*end).clone_from(state);
         state.roll_back();
-        let mut counts = Counts::default();
-        let jumped = self.releases_in_parts(step, LEFT * whole.released, &mut counts) || self.is_elsewhere(&end);
+        let (start, mut counts) = (self.load_like(0, &step.loads[0]), Counts::default());
+        let jumps = self.jumps_between(0.0, 1.0, start, step, whole.released, &mut counts);
+        let jumped = jumps.unwrap_or(true) || self.is_elsewhere(&end);
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
         if let Some(own) = self.computation.trial.passes.as_mut() {
@@ -39,7 +43,7 @@ impl ViscoelasticContact {
     }
 
     /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.
-    fn is_elsewhere(&self, end: &State) -> bool {
+    pub(in crate::contact) fn is_elsewhere(&self, end: &State) -> bool {
         let State { current, previous, .. } = end;
         let [end, start, now] = [current, previous, &self.computation.state.current].map(|at| &at.solution.potential);
         let [off, change] = end.iter().zip(start).zip(now).fold([0.0; 2], |[off, change], ((end, start), now)| {
@@ -48,24 +52,36 @@ impl ViscoelasticContact {
         off > 0.5 * change
     }
 
-    /// Whether the parts of the step release more than this; also if one of them has no solution.
-    fn releases_in_parts(&mut self, step: &Step<'_>, most: f64, counts: &mut Counts) -> bool {
-        let (from, to, mut released) = (self.time(), step.interval.time, 0.0);
-        let start = self.load_like(0, &step.loads[0]);
-        for part in 1..=PARTS {
-            let share = f64::from(part) / f64::from(PARTS);
-            let time = if part == PARTS { to } else { from + share * (to - from) };
-            let loads = [start.towards(&step.loads[0], share)];
-            let Ok(mut own) = self.request(time, time - self.time(), &loads, step.tolerance) else { return true };
-            own.interval.interpolant = step.interval.interpolant;
-            own.cancelled = step.cancelled;
-            let taken = self.attempt(&own).and_then(|attempt| self.adopt(attempt, own, [0.0; 2]));
+    /// Whether surfaces jump between two shares of a step that began under the load `start` and `released` so much.
+    fn jumps_between(
+        &mut self,
+        from: f64,
+        to: f64,
+        start: Load,
+        step: &Step<'_>,
+        released: f64,
+        counts: &mut Counts,
+    ) -> Result<bool> {
+        let (middle, part) = (0.5 * (from + to), 0.5 * (to - from));
+        // besides the jump, what is smooth
+        let least = (LEFT + (1.0 - LEFT) * part * part) * released;
+        for [from, to] in [[from, middle], [middle, to]] {
+            let begun = self.time();
+            let left = step.interval.time - begun;
+            let time = if to == 1.0 { step.interval.time } else { begun + left * (to - from) / (1.0 - from) };
+            let loads = [start.towards(&step.loads[0], to)];
+            self.take_part(time, &loads, step.tolerance, step.interval.interpolant, step.cancelled)?;
             add(counts, self.computation.state.current.solution.counts);
-            released += self.passes().map_or(0.0, |report| report.released);
-            if taken.is_err() || released > most {
-                return true;
+            if self.passes().is_some_and(|report| report.may_jump(least)) {
+                if part <= SHORTEST {
+                    return Ok(true);
+                }
+                self.computation.state.roll_back();
+                if self.jumps_between(from, to, start, step, released, counts)? {
+                    return Ok(true);
+                }
             }
         }
-        false
+        Ok(false)
     }
 }
