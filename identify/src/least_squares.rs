@@ -5,6 +5,8 @@ use faer::{Col, Mat, Side};
 
 use crate::error::{Error, Result};
 
+/// Fraction of the sum of squares that no step is worth.
+const NOTHING: f64 = 1e-12;
 /// Iterations after which a search has failed.
 const MAX_ITERATIONS: usize = 200;
 /// A search ends where the sum of squares falls by less than this where steps are damped so much that the linearised residuals hold nowhere: at kinks, where samples are about to touch or to leave.
@@ -15,9 +17,12 @@ const SLOW: f64 = 1e-6;
 const LONGEST_STEP: f64 = 2.0;
 /// Rounds in which long steps are damped.
 const MAX_DAMPED: usize = 100;
-/// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
-const AHEAD: f64 = 0.1;
+/// Most trials of a step, the share of the promised reduction that needs no further one, and the longest correction over the step.
+const TRIALS: usize = 4;
+const GOOD: f64 = 0.8;
 const MOST_BENT: f64 = 0.75;
+/// Least factor of the damping after a step.
+const MOST_FALL: f64 = 0.1;
 /// Least damping, and damping at the start.
 const DAMPING: [f64; 2] = [1e-14, 1e-3];
 
@@ -30,53 +35,45 @@ pub(crate) struct Minimum {
     pub(crate) iterations: usize,
 }
 
-/// Minimises the sum of squares of `residuals` from `start`, or until it is at most `exact`, or the linearised residuals promise less than the
-/// fraction `enough` of it. Residuals that cannot be computed reject a
-/// step. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter in Marquardt's Method*, 1999).
+/// Minimises the sum of squares of `residuals` from `start`, until it is at most `exact`, or until a step reduces it by less than the fraction
+/// `enough`: what such a step leaves is far less, but for parameters that go to a limit. Residuals that cannot be computed reject a step. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter
+/// in Marquardt's Method*, 1999).
 pub(crate) fn minimise(
     start: Vec<f64>,
     [exact, enough]: [f64; 2],
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
     jacobian: impl Fn(&[f64]) -> Result<Mat<f64>>,
 ) -> Result<Minimum> {
-    let mut x = start;
-    let mut r = residuals(&x)?;
-    let mut sum = square(&r);
+    let first = residuals(&start)?;
+    let mut at = Point { sum: square(&first), residuals: first, x: start };
     let (mut damping, mut growth) = (DAMPING[1], 2.0);
     for iterations in 1..=MAX_ITERATIONS {
-        let slopes = jacobian(&x)?;
-        let model = Linear::new(&slopes, &r);
-        let moved = loop {
-            if sum <= exact || model.promised(&model.step(0.0)) <= enough * sum {
-                break None;
+        let model = Linear::new(jacobian(&at.x)?, &at.residuals);
+        loop {
+            let step = model.step(damping);
+            let (promised, least) = (model.promised(&step), NOTHING * at.sum);
+            if at.sum <= exact || promised <= least && model.promised(&model.step(0.0)) <= least {
+                return Ok(at.minimum(model.slopes, iterations));
             }
-            let mut step = model.step(damping);
-            let promised = model.promised(&step);
-            if let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
-                model.bend(&mut step, damping, &slopes, &r, &ahead);
-            }
-            let moved = along(&x, &step, 1.0);
-            let trial = residuals(&moved).ok().map(|r| (square(&r), r)).filter(|(sum, _)| sum.is_finite());
-
-            if let Some((reduced, residuals)) = trial.filter(|(reduced, _)| *reduced < sum) {
-                let gain = (sum - reduced) / promised;
+            if let Some(trial) = follow(&at, &model, &step, damping, &residuals).filter(|trial| trial.sum < at.sum) {
+                let gain = (at.sum - trial.sum) / promised;
                 // at a kink, shorter and shorter steps reduce the sum less and less
-                let reduction = promised.max(sum - reduced);
-                let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
-                let is_last = is_enough || reduction <= SLOW * sum && iterations == MAX_ITERATIONS;
-                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
+                let reduction = promised.max(at.sum - trial.sum);
+                let is_enough = reduction <= at.sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
+                let is_last = is_enough || reduction <= SLOW * at.sum && iterations == MAX_ITERATIONS;
+                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(MOST_FALL)).max(DAMPING[0]);
                 growth = 2.0;
-                (x, r, sum) = (moved, residuals, reduced);
-                break Some(is_last);
+                at = trial;
+                if is_last {
+                    let slopes = jacobian(&at.x)?;
+                    return Ok(at.minimum(slopes, iterations));
+                }
+                break;
             }
-            if promised <= enough * sum {
-                break None;
+            if promised <= least {
+                return Ok(at.minimum(model.slopes, iterations));
             }
             (damping, growth) = (damping * growth, growth * 2.0);
-        };
-        if moved != Some(false) {
-            let jacobian = if moved.is_some() { jacobian(&x)? } else { slopes };
-            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations });
         }
     }
     let reason =
@@ -84,24 +81,65 @@ pub(crate) fn minimise(
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
 }
 
-fn along(x: &[f64], step: &Col<f64>, share: f64) -> Vec<f64> {
-    x.iter().enumerate().map(|(j, x)| x + share * step[j]).collect()
+/// The end of a step that is bent to follow a curved valley: where the residuals are those of the linearised problem at the end of the straight step,
+/// up to what the damped problem cannot remove. None where the residuals cannot be computed.
+fn follow(
+    at: &Point,
+    model: &Linear,
+    step: &Col<f64>,
+    damping: f64,
+    residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
+) -> Option<Point> {
+    let (mut bent, mut best) = (step.clone(), None::<Point>);
+    for _ in 0..TRIALS {
+        let x: Vec<f64> = at.x.iter().enumerate().map(|(j, x)| x + bent[j]).collect();
+        let Ok(there) = residuals(&x) else { break };
+        let (sum, curvature) = (square(&there), model.curvature(&bent, &there));
+        if !(sum < best.as_ref().map_or(f64::INFINITY, |best| best.sum)) {
+            break;
+        }
+        best = Some(Point { x, residuals: there, sum });
+        let correction = model.solve(&vec![damping; bent.nrows()], &curvature);
+        let is_good = at.sum - sum >= GOOD * model.promised(step);
+        if is_good || !(model.size(&correction) <= MOST_BENT * model.size(step)) {
+            break;
+        }
+        bent = step + correction;
+    }
+    best
 }
 
-/// Linearised residuals: JᵀJ and −Jᵀr.
+/// Coordinates with their residuals and the sum of squares.
+struct Point {
+    x: Vec<f64>,
+    residuals: Vec<f64>,
+    sum: f64,
+}
+
+impl Point {
+    fn minimum(self, jacobian: Mat<f64>, iterations: usize) -> Minimum {
+        Minimum { coordinates: self.x, residuals: self.residuals, jacobian, iterations }
+    }
+}
+
+/// Linearised residuals r + J s, with JᵀJ and −Jᵀr.
 struct Linear {
+    slopes: Mat<f64>,
+    residuals: Col<f64>,
     gram: Mat<f64>,
     right: Col<f64>,
 }
 
 impl Linear {
-    fn new(slopes: &Mat<f64>, residuals: &[f64]) -> Linear {
-        let mut gram = slopes.transpose() * slopes;
+    fn new(slopes: Mat<f64>, residuals: &[f64]) -> Linear {
+        let residuals = Col::from_fn(residuals.len(), |k| residuals[k]);
+        let mut gram = slopes.transpose() * &slopes;
         for j in 0..gram.nrows() {
             // a coordinate that moves nothing stays
             gram[(j, j)] = if gram[(j, j)] > 0.0 { gram[(j, j)] } else { 1.0 };
         }
-        Linear { gram, right: slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]) }
+        let right = -(slopes.transpose() * &residuals);
+        Linear { slopes, residuals, gram, right }
     }
 
     /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long are damped more.
@@ -125,19 +163,15 @@ impl Linear {
         Col::zeros(count)
     }
 
-    /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
-    /// second derivative of the residuals is found from those a little `ahead`. A step whose acceleration is great is left.
-    fn bend(&self, step: &mut Col<f64>, damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
-        let linear = slopes * &*step;
-        let curvature =
-            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * (linear[k] - (ahead[k] - residuals[k]) / AHEAD));
-        let acceleration = self.solve(&vec![damping; step.nrows()], &(slopes.transpose() * curvature));
-        let square = |of: &Col<f64>| (0..of.nrows()).map(|j| of[j] * of[j] * self.gram[(j, j)]).sum::<f64>();
-        if square(&acceleration) <= MOST_BENT * MOST_BENT * square(step) {
-            for j in 0..step.nrows() {
-                step[j] += (0.5 * acceleration[j]).clamp(-LONGEST_STEP, LONGEST_STEP);
-            }
-        }
+    /// Jᵀ times the difference of the linearised residuals after a step from those that are `there`.
+    fn curvature(&self, step: &Col<f64>, there: &[f64]) -> Col<f64> {
+        let linear = &self.residuals + &self.slopes * step;
+        self.slopes.transpose() * Col::from_fn(there.len(), |k| linear[k] - there[k])
+    }
+
+    /// |D s|.
+    fn size(&self, step: &Col<f64>) -> f64 {
+        (0..step.nrows()).map(|j| step[j] * step[j] * self.gram[(j, j)]).sum::<f64>().sqrt()
     }
 
     /// The damped step of a right side; not a number where rounding hides it.

@@ -75,7 +75,7 @@ pub mod guide {
 }
 
 pub use bounds::Bounds;
-pub use data::{DataError, Recording};
+pub use data::Recording;
 pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};

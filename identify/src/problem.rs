@@ -7,7 +7,7 @@ use faer::Mat;
 
 use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
-use crate::forward::{Forward, LANES, Real, Response, Roots, Sample, Term};
+use crate::forward::{Cycle, LANES, PLAIN, Real, Response, Sample, Term, Tip};
 use crate::model::{Model, Scale};
 use crate::noise::Whitening;
 use crate::parameters::{Chosen, Kind, Parameter, Property};
@@ -18,8 +18,8 @@ use crate::series::Prony;
 const LEAST_SHARE: f64 = 1e-12;
 /// Samples of a curve with which a search begins.
 const ROUGH: usize = 128;
-/// A search ends where the linearised residuals promise less than this fraction of the sum of squares; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-12, 1e-4];
+/// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
+const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.
@@ -35,7 +35,7 @@ pub(crate) struct Part {
     pub(crate) scale: f64,
     /// A further weight of each: below 1 for outliers.
     pub(crate) outliers: Vec<f64>,
-    forward: Forward,
+    tip: Tip,
     /// Speed of the drive at each sample \[m/s\].
     speed: Vec<f64>,
 }
@@ -49,8 +49,8 @@ impl Part {
             (drive[b] - drive[a]) / (times[b] - times[a])
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
-        let forward = Forward::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Part { curve, whitening, scale: 1.0, outliers, forward, speed }
+        let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
+        Part { curve, whitening, scale: 1.0, outliers, tip, speed }
     }
 
     /// Means of neighbouring samples, as if their noise were white.
@@ -102,7 +102,7 @@ pub(crate) struct Problem {
     pub(crate) parameters: Vec<Parameter>,
     /// Shortest interval between samples and longest curve \[s\].
     pub(crate) window: [f64; 2],
-    /// Fraction of the sum of squares that a search leaves.
+    /// Fraction of the sum of squares by which the last step of a search reduces it.
     pub(crate) enough: f64,
     /// Exponentials that were advanced by a sample, each derivative counted.
     pub(crate) work: Arc<AtomicUsize>,
@@ -180,8 +180,15 @@ impl Problem {
         self.parameters.len() > 1 && self.parameters[1].name == "Einf"
     }
 
-    /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln(E0 − Einf); that of Einf below a fixed E0 is
-    /// ln(Einf/(E0 − Einf)): every coordinate is allowed.
+    /// The factor by which a part of the modulus falls to the middle of the data, or nearly so: it is better known there than at the time 0.
+    fn fall(&self, values: &[f64]) -> f64 {
+        let of = |name: &str| self.parameters.iter().position(|parameter| parameter.name == name).map(|at| values[at]);
+        let middle = (self.window[0] * self.window[1]).sqrt();
+        of("tau").map_or(1.0, |tau| 1.0 + (middle / tau).powf(of("alpha").unwrap_or(1.0)))
+    }
+
+    /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln((E0 − Einf)/fall); that of Einf below a fixed E0
+    /// is ln(Einf/(E0 − Einf)): every coordinate is allowed.
     pub(crate) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut free = coordinates.iter();
         let value = |parameter: &Parameter| match parameter.is_free {
@@ -191,7 +198,7 @@ impl Problem {
         let mut values: Vec<f64> = self.parameters.iter().map(value).collect();
         if self.has_equilibrium() {
             if self.parameters[0].is_free {
-                values[0] += values[1];
+                values[0] = values[1] + values[0] * self.fall(&values);
             } else if self.parameters[1].is_free {
                 values[1] = values[0] / (1.0 + 1.0 / values[1]);
             }
@@ -205,7 +212,7 @@ impl Problem {
         if self.has_equilibrium() {
             let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
             if self.parameters[0].is_free {
-                own[0] = relaxing;
+                own[0] = relaxing / self.fall(values);
             } else if self.parameters[1].is_free {
                 own[1] = values[1] / relaxing;
             }
@@ -260,14 +267,13 @@ impl Problem {
         prony: &Prony<Real<N>>,
         contact_point: Real<N>,
         stiffness: Real<N>,
-        roots: &mut Roots,
         record: impl FnMut(Response<N>, &[Term<N>]),
     ) -> Result<()> {
         let part = &self.parts[curve];
-        self.work.fetch_add(N.max(1) * part.len() * prony.moduli.len(), Ordering::Relaxed);
+        self.work.fetch_add(N * part.len() * prony.moduli.len(), Ordering::Relaxed);
         let Protocol { times, drive } = &part.curve.experiment.protocol;
         let drive: Vec<Real<N>> = drive.iter().map(|&z| Real::from(z) - contact_point).collect();
-        part.forward.respond(prony, times, &drive, Real::from(1.0) / stiffness, roots, record)
+        Cycle::new(prony, &part.tip, Real::from(1.0) / stiffness, times).follow(&drive, record)
     }
 
     /// Response of one curve, with the terms of the force of each sample.
@@ -276,12 +282,11 @@ impl Problem {
         curve: usize,
         values: &[f64],
         prony: &Prony,
-        record: impl FnMut(Response<0>, &[Term<0>]),
-    ) -> Result<Roots> {
-        let mut roots = Roots::default();
+        record: impl FnMut(Response<PLAIN>, &[Term<PLAIN>]),
+    ) -> Result<()> {
         let [contact_point, stiffness] =
             [self.contact_point(curve, values), self.stiffness(curve, values)].map(Real::from);
-        self.respond(curve, &prony.into(), contact_point, stiffness, &mut roots, record).map(|()| roots)
+        self.respond(curve, &prony.into(), contact_point, stiffness, record)
     }
 
     /// Response of one curve.
@@ -355,7 +360,6 @@ impl Problem {
                     None => curved.push((column, parameter)),
                 }
             }
-            let mut roots = self.terms(curve, &values, prony, |_, _| {})?;
             for lanes in curved.chunks(LANES - 1) {
                 let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
                     Real::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
@@ -381,7 +385,7 @@ impl Problem {
                 let spring = measured(self.stiffness(curve, &values), Property::Stiffness);
                 let mut forces = Vec::with_capacity(part.len());
                 let record = |response: Response<LANES>, _: &[Term<LANES>]| forces.push(response.force);
-                self.respond(curve, &derived, shift, spring, &mut roots, record)?;
+                self.respond(curve, &derived, shift, spring, record)?;
                 for (lane, &(column, _)) in lanes.iter().enumerate() {
                     put(column, forces.iter().map(|force| force.slope(lane)).collect());
                 }

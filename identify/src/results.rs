@@ -27,8 +27,6 @@ pub struct Summary {
     pub points_in_contact: usize,
     /// Iterations of the search.
     pub iterations: usize,
-    /// Runs test of the residuals.
-    pub runs: ResidualTest,
     /// Correlation test of the residuals.
     pub correlations: ResidualTest,
     /// What a user should know before the parameters are used.
@@ -93,7 +91,6 @@ impl Fit {
             autoregression: self.autoregression(),
             points_in_contact: self.points_in_contact(),
             iterations: self.iterations(),
-            runs: self.runs(),
             correlations: self.correlations(),
             warnings: self.warnings(),
         }

@@ -231,8 +231,8 @@ getters! {Fit, of:
     sigma: f64 = of.sigma();
     /// Akaike's criterion, corrected for the number of samples: less is better.
     aicc: f64 = of.aicc();
-    /// Probability of residuals as extreme by their runs of one sign, and by their correlations, if the model is right.
-    probabilities: (f64, f64) = (of.runs().probability, of.correlations().probability);
+    /// Probability of correlations of the residuals as great, if the model is right.
+    probability: f64 = of.correlations().probability;
 }
 
 impl Fit {

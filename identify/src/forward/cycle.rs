@@ -19,14 +19,11 @@ use crate::forward::column::Columns;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::moments::Moments;
 use crate::forward::real::Real;
-use crate::forward::roots::Roots;
 use crate::forward::tip::{Elastic, Tip};
 use crate::series::Prony;
 
 /// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
 const HELD: f64 = 1e-12;
-/// Roots end where they move by less than this fraction of a depth, or of an interval.
-const CONVERGED: [f64; 2] = [1e-14, 1e-11];
 
 /// The end of an interval in which the contact grew.
 #[derive(Clone, Copy, Debug)]
@@ -51,13 +48,12 @@ struct Edge<const N: usize> {
 }
 
 /// A contact up to the present.
-pub(super) struct Cycle<'a, const N: usize> {
+pub(crate) struct Cycle<'a, const N: usize> {
     prony: &'a Prony<Real<N>>,
     tip: &'a Tip,
     times: &'a [f64],
     /// 1/k of the spring \[m/N\].
     give: Real<N>,
-    roots: &'a mut Roots,
     /// Intervals of growth up to the edge, with the terms at each node.
     nodes: Vec<Node<N>>,
     past: Vec<Term<N>>,
@@ -78,20 +74,14 @@ pub(super) struct Cycle<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Cycle<'a, N> {
-    pub(super) fn new(
-        prony: &'a Prony<Real<N>>,
-        tip: &'a Tip,
-        give: Real<N>,
-        times: &'a [f64],
-        roots: &'a mut Roots,
-    ) -> Self {
+    /// A tip on a spring of this `give`; the contact is computed at some times.
+    pub(crate) fn new(prony: &'a Prony<Real<N>>, tip: &'a Tip, give: Real<N>, times: &'a [f64]) -> Self {
         let (zero, terms) = (Real::from(0.0), vec![Term::default(); prony.moduli.len()]);
         Cycle {
             prony,
             tip,
             times,
             give,
-            roots,
             nodes: Vec::new(),
             past: Vec::new(),
             edge: Edge { node: 0, share: zero, extent: zero, elastic: tip.first() },
@@ -108,8 +98,8 @@ impl<'a, const N: usize> Cycle<'a, N> {
         }
     }
 
-    /// Computes a response for each time; `record` is given each with the terms of its force.
-    pub(super) fn follow(&mut self, drive: &[Real<N>], mut record: impl FnMut(Response<N>, &[Term<N>])) -> Result<()> {
+    /// Computes a response for each time, to a drive beyond the contact point \[m\]; `record` is given each with the terms of its force.
+    pub(crate) fn follow(&mut self, drive: &[Real<N>], mut record: impl FnMut(Response<N>, &[Term<N>])) -> Result<()> {
         for (sample, (&time, &z)) in self.times.iter().zip(drive).enumerate() {
             self.advance(sample, Real::from(time), z)?;
             let (force, depth) = (self.sum(|term| term.force), self.depth);
@@ -301,7 +291,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
                 if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
                     return Err(tip.beyond(z.value()));
                 }
-                self.roots.solve([released, end], CONVERGED[0] * deepest.abs(), excess)?
+                Real::root([released, end], excess)?
             } else {
                 z
             };
