@@ -44,36 +44,38 @@ pub(crate) fn minimise(
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
     jacobian: impl Fn(&[f64]) -> Result<Mat<f64>>,
 ) -> Result<Minimum> {
-    let first = residuals(&start)?;
-    let mut at = Point { sum: square(&first), residuals: first, x: start };
+    let mut x = start;
+    let mut r = residuals(&x)?;
     let (mut damping, mut growth) = (DAMPING[1], 2.0);
     for iterations in 1..=MAX_ITERATIONS {
-        let model = Linear::new(jacobian(&at.x)?, &at.residuals);
-        loop {
+        let (model, sum) = (Linear::new(jacobian(&x)?, &r), square(&r));
+        let (is_last, has_moved) = loop {
             let step = model.step(damping);
-            let (promised, least) = (model.promised(&step), NOTHING * at.sum);
-            if at.sum <= exact || promised <= least && model.promised(&model.step(0.0)) <= least {
-                return Ok(at.minimum(model.slopes, iterations));
+            let (promised, least) = (model.promised(&step), NOTHING * sum);
+            if sum <= exact || promised <= least && model.promised(&model.step(0.0)) <= least {
+                break (true, false);
             }
-            if let Some(trial) = follow(&at, &model, &step, damping, &residuals).filter(|trial| trial.sum < at.sum) {
-                let gain = (at.sum - trial.sum) / promised;
+            if let Some((moved, there)) =
+                follow(&x, &model, &step, damping, &residuals).filter(|(_, r)| square(r) < sum)
+            {
+                let reduced = sum - square(&there);
                 // at a kink, shorter and shorter steps reduce the sum less and less
-                let reduction = promised.max(at.sum - trial.sum);
-                let is_enough = reduction <= at.sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
-                let is_last = is_enough || reduction <= SLOW * at.sum && iterations == MAX_ITERATIONS;
+                let reduction = promised.max(reduced);
+                let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
+                let gain = reduced / promised;
                 damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(MOST_FALL)).max(DAMPING[0]);
                 growth = 2.0;
-                at = trial;
-                if is_last {
-                    let slopes = jacobian(&at.x)?;
-                    return Ok(at.minimum(slopes, iterations));
-                }
-                break;
+                (x, r) = (moved, there);
+                break (is_enough || reduction <= SLOW * sum && iterations == MAX_ITERATIONS, true);
             }
             if promised <= least {
-                return Ok(at.minimum(model.slopes, iterations));
+                break (true, false);
             }
             (damping, growth) = (damping * growth, growth * 2.0);
+        };
+        if is_last {
+            let slopes = if has_moved { jacobian(&x)? } else { model.slopes };
+            return Ok(Minimum { jacobian: slopes, coordinates: x, residuals: r, iterations });
         }
     }
     let reason =
@@ -81,45 +83,32 @@ pub(crate) fn minimise(
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
 }
 
-/// The end of a step that is bent to follow a curved valley: where the residuals are those of the linearised problem at the end of the straight step,
-/// up to what the damped problem cannot remove. None where the residuals cannot be computed.
+/// Coordinates and residuals at the end of a step that is bent to follow a curved valley: where the residuals are those of the linearised problem at
+/// the end of the straight step, up to what the damped problem cannot remove. None where the residuals cannot be computed.
 fn follow(
-    at: &Point,
+    x: &[f64],
     model: &Linear,
     step: &Col<f64>,
     damping: f64,
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
-) -> Option<Point> {
-    let (mut bent, mut best) = (step.clone(), None::<Point>);
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (before, mut least) = (model.residuals.squared_norm_l2(), f64::INFINITY);
+    let (mut bent, mut best) = (step.clone(), None);
     for _ in 0..TRIALS {
-        let x: Vec<f64> = at.x.iter().enumerate().map(|(j, x)| x + bent[j]).collect();
-        let Ok(there) = residuals(&x) else { break };
-        let (sum, curvature) = (square(&there), model.curvature(&bent, &there));
-        if !(sum < best.as_ref().map_or(f64::INFINITY, |best| best.sum)) {
+        let moved: Vec<f64> = x.iter().enumerate().map(|(j, x)| x + bent[j]).collect();
+        let Ok(there) = residuals(&moved) else { break };
+        let (sum, correction) = (square(&there), model.correction(&bent, damping, &there));
+        if sum.is_nan() || sum >= least {
             break;
         }
-        best = Some(Point { x, residuals: there, sum });
-        let correction = model.solve(&vec![damping; bent.nrows()], &curvature);
-        let is_good = at.sum - sum >= GOOD * model.promised(step);
-        if is_good || !(model.size(&correction) <= MOST_BENT * model.size(step)) {
+        (least, best) = (sum, Some((moved, there)));
+        let is_good = before - sum >= GOOD * model.promised(step);
+        if is_good || model.size(&correction).is_nan() || model.size(&correction) > MOST_BENT * model.size(step) {
             break;
         }
         bent = step + correction;
     }
     best
-}
-
-/// Coordinates with their residuals and the sum of squares.
-struct Point {
-    x: Vec<f64>,
-    residuals: Vec<f64>,
-    sum: f64,
-}
-
-impl Point {
-    fn minimum(self, jacobian: Mat<f64>, iterations: usize) -> Minimum {
-        Minimum { coordinates: self.x, residuals: self.residuals, jacobian, iterations }
-    }
 }
 
 /// Linearised residuals r + J s, with JᵀJ and −Jᵀr.
@@ -163,10 +152,11 @@ impl Linear {
         Col::zeros(count)
     }
 
-    /// Jᵀ times the difference of the linearised residuals after a step from those that are `there`.
-    fn curvature(&self, step: &Col<f64>, there: &[f64]) -> Col<f64> {
-        let linear = &self.residuals + &self.slopes * step;
-        self.slopes.transpose() * Col::from_fn(there.len(), |k| linear[k] - there[k])
+    /// What is added to a straight step to have its linearised residuals where they are `there` after a bent one.
+    fn correction(&self, bent: &Col<f64>, damping: f64, there: &[f64]) -> Col<f64> {
+        let linear = &self.residuals + &self.slopes * bent;
+        let difference = Col::from_fn(there.len(), |k| linear[k] - there[k]);
+        self.solve(&vec![damping; bent.nrows()], &(self.slopes.transpose() * difference))
     }
 
     /// |D s|.

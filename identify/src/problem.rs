@@ -7,9 +7,9 @@ use faer::Mat;
 
 use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
-use crate::forward::{Cycle, LANES, PLAIN, Real, Response, Sample, Term, Tip};
+use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
 use crate::model::{Model, Scale};
-use crate::noise::Whitening;
+use crate::noise::{Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Parameter, Property};
 use crate::protocol::Protocol;
 use crate::series::Prony;
@@ -109,12 +109,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn new(
-        model: Model,
-        chosen: &Chosen,
-        curves: Vec<Curve>,
-        whitening: impl Fn(usize, usize) -> Result<Whitening>,
-    ) -> Result<Problem> {
+    pub(crate) fn new(model: Model, chosen: &Chosen, curves: Vec<Curve>, noise: &Noise) -> Result<Problem> {
         if curves.is_empty() {
             return Err(Error::TooFewPoints { points: 0, parameters: model.parameters().len() });
         }
@@ -122,7 +117,10 @@ impl Problem {
         let times = || curves.iter().map(|curve| curve.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
-        let part = |(k, curve): (usize, Curve)| Ok(Part::new(k, curve.clone(), whitening(k, curve.force.len())?));
+        let part = |(k, curve): (usize, Curve)| {
+            let whitening = Whitening::of(noise, k, curve.force.len())?;
+            Ok(Part::new(k, curve, whitening))
+        };
         let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
         Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }
@@ -260,14 +258,14 @@ impl Problem {
         self.value_of(values, Property::Stiffness, curve).unwrap_or(self.parts[curve].curve.experiment.stiffness)
     }
 
-    /// Force of the contact of a curve, and where the tip is, at each sample. `record` is given each with the terms of its force.
+    /// Computes the contact of a curve; `record` is given it at each sample.
     fn respond<const N: usize>(
         &self,
         curve: usize,
         prony: &Prony<Real<N>>,
         contact_point: Real<N>,
         stiffness: Real<N>,
-        record: impl FnMut(Response<N>, &[Term<N>]),
+        record: impl FnMut(&Cycle<N>),
     ) -> Result<()> {
         let part = &self.parts[curve];
         self.work.fetch_add(N * part.len() * prony.moduli.len(), Ordering::Relaxed);
@@ -276,24 +274,24 @@ impl Problem {
         Cycle::new(prony, &part.tip, Real::from(1.0) / stiffness, times).follow(&drive, record)
     }
 
-    /// Response of one curve, with the terms of the force of each sample.
-    pub(crate) fn terms(
+    /// What `of` tells of the contact of a curve at each sample.
+    pub(crate) fn each<T>(
         &self,
         curve: usize,
         values: &[f64],
         prony: &Prony,
-        record: impl FnMut(Response<PLAIN>, &[Term<PLAIN>]),
-    ) -> Result<()> {
+        of: impl Fn(&Cycle<PLAIN>) -> T,
+    ) -> Result<Vec<T>> {
         let [contact_point, stiffness] =
             [self.contact_point(curve, values), self.stiffness(curve, values)].map(Real::from);
-        self.respond(curve, &prony.into(), contact_point, stiffness, record)
+        let mut all = Vec::with_capacity(self.parts[curve].len());
+        self.respond(curve, &prony.into(), contact_point, stiffness, |contact| all.push(of(contact)))?;
+        Ok(all)
     }
 
     /// Response of one curve.
     pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
-        let mut samples = Vec::with_capacity(self.parts[curve].len());
-        self.terms(curve, values, prony, |response, _| samples.push(response.into()))?;
-        Ok(samples)
+        self.each(curve, values, prony, |contact| contact.sample())
     }
 
     /// The force that a curve would measure, from the force of its contact.
@@ -309,8 +307,8 @@ impl Problem {
 
     /// The modelled force of one curve.
     pub(crate) fn force(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
-        let samples = self.samples(curve, values, prony)?;
-        Ok(self.measured(curve, values, samples.iter().map(|sample| sample.force)))
+        let contact = self.each(curve, values, prony, |contact| contact.force().value())?;
+        Ok(self.measured(curve, values, contact.into_iter()))
     }
 
     /// Columns of the curves, made white, one after the other.
@@ -384,8 +382,7 @@ impl Problem {
                 let shift = measured(self.contact_point(curve, &values), Property::ContactPoint);
                 let spring = measured(self.stiffness(curve, &values), Property::Stiffness);
                 let mut forces = Vec::with_capacity(part.len());
-                let record = |response: Response<LANES>, _: &[Term<LANES>]| forces.push(response.force);
-                self.respond(curve, &derived, shift, spring, record)?;
+                self.respond(curve, &derived, shift, spring, |contact| forces.push(contact.force()))?;
                 for (lane, &(column, _)) in lanes.iter().enumerate() {
                     put(column, forces.iter().map(|force| force.slope(lane)).collect());
                 }

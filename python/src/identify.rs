@@ -37,6 +37,18 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
 }
 
+/// Values of parameters of the material, which have these names.
+fn named(given: Option<&Bound<'_, PyDict>>, names: &[String]) -> PyResult<Vec<(String, f64)>> {
+    let pair = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let (name, value): (String, f64) = (name.extract()?, value.extract()?);
+        match names.contains(&name) {
+            true => Ok((name, value)),
+            false => Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise(),
+        }
+    };
+    given.into_iter().flatten().map(pair).collect()
+}
+
 /// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
 /// Parameters
@@ -116,11 +128,12 @@ impl Identification {
         if let Some(sigma) = known_sigma {
             identification = identification.known_sigma(sigma);
         }
-        for (name, value) in fix.into_iter().flatten() {
-            identification = identification.fix(name.extract()?, value.extract()?);
+        let names = identification.model().parameters();
+        for (name, value) in named(fix, &names)? {
+            identification = identification.fix(&name, value);
         }
-        for (name, value) in start.into_iter().flatten() {
-            identification = identification.start(name.extract()?, value.extract()?);
+        for (name, value) in named(start, &names)? {
+            identification = identification.start(&name, value);
         }
         Ok(Identification(identification))
     }

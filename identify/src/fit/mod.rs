@@ -21,7 +21,7 @@ use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
 use crate::problem::{Part, Problem};
 use crate::series::Prony;
-use crate::statistics::{ResidualTest, correlation_test, student};
+use crate::statistics::{correlation_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
@@ -90,7 +90,7 @@ impl Fit {
             return Err(Error::TooFewPoints { points, parameters: count });
         }
         let freedom = (points - count) as f64;
-        let sigma = identification.sigma().unwrap_or_else(|| match identification.is_robust() {
+        let sigma = identification.sigma().unwrap_or_else(|| match identification.robust {
             true => robust_deviation(&problem, residuals, freedom),
             false => (sum / freedom).sqrt(),
         });
@@ -98,7 +98,7 @@ impl Fit {
         let scales = problem.scales(coordinates);
         let (weighted, _) = inverse(&free, jacobian, sigma)?;
         let sandwich = &scales * sandwich(&problem, &minimum, &weighted) * scales.transpose();
-        let all = match identification.is_robust() {
+        let all = match identification.robust {
             true => &problem.without_outliers().jacobian(coordinates)?,
             false => jacobian,
         };
@@ -292,8 +292,9 @@ impl Fit {
         self.samples.iter().flatten().filter(|sample| sample.contact_depth > 0.0).count()
     }
 
-    /// Correlation of residuals: a small probability means that the model is wrong, of the material or of the noise.
-    pub fn correlations(&self) -> ResidualTest {
+    /// Probability of correlations of the residuals as great, if the model is right (Ljung & Box 1978): a small one means that the model is wrong, of
+    /// the material or of the noise.
+    pub fn probability(&self) -> f64 {
         let is_fitted = |part: &&Part| part.whitening.correlation().is_some();
         let mut white = self.residuals.clone();
         white.iter_mut().zip(&self.problem.parts).for_each(|(residuals, part)| part.whiten(residuals));

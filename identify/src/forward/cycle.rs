@@ -14,7 +14,7 @@
 mod shrinking;
 
 use crate::error::Result;
-use crate::forward::Response;
+use crate::forward::Sample;
 use crate::forward::column::Columns;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::moments::Moments;
@@ -98,19 +98,28 @@ impl<'a, const N: usize> Cycle<'a, N> {
         }
     }
 
-    /// Computes a response for each time, to a drive beyond the contact point \[m\]; `record` is given each with the terms of its force.
-    pub(crate) fn follow(&mut self, drive: &[Real<N>], mut record: impl FnMut(Response<N>, &[Term<N>])) -> Result<()> {
+    /// Follows a drive beyond the contact point \[m\]; `record` is given the contact at each time.
+    pub(crate) fn follow(mut self, drive: &[Real<N>], mut record: impl FnMut(&Self)) -> Result<()> {
         for (sample, (&time, &z)) in self.times.iter().zip(drive).enumerate() {
             self.advance(sample, Real::from(time), z)?;
-            let (force, depth) = (self.sum(|term| term.force), self.depth);
-            let contact_depth = if self.nodes.is_empty() { Real::from(0.0) } else { self.edge.extent };
-            record(Response { force, depth, contact_depth }, &self.terms);
+            record(&self);
         }
         Ok(())
     }
 
-    fn sum(&self, of: impl Fn(Term<N>) -> Real<N>) -> Real<N> {
-        self.terms.iter().fold(Real::from(0.0), |sum, &term| sum + of(term))
+    pub(crate) fn force(&self) -> Real<N> {
+        self.forces().fold(Real::from(0.0), |sum, force| sum + force)
+    }
+
+    /// The force of each term of the series.
+    pub(crate) fn forces(&self) -> impl Iterator<Item = Real<N>> {
+        self.terms.iter().map(|term| term.force)
+    }
+
+    /// The present without derivatives.
+    pub(crate) fn sample(&self) -> Sample {
+        let contact_depth = if self.nodes.is_empty() { 0.0 } else { self.edge.extent.value() };
+        Sample { force: self.force().value(), depth: self.depth.value(), contact_depth }
     }
 
     /// Σ over the terms after the present interval.

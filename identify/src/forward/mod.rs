@@ -9,17 +9,8 @@ mod tip;
 
 use crate::series::Prony;
 pub(crate) use cycle::Cycle;
-pub(crate) use growth::Term;
 pub(crate) use real::{LANES, PLAIN, Real};
 pub(crate) use tip::Tip;
-
-/// A sample of a response, as [`Sample`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Response<const N: usize> {
-    pub(crate) force: Real<N>,
-    pub(crate) depth: Real<N>,
-    pub(crate) contact_depth: Real<N>,
-}
 
 /// A sample of a response.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,12 +23,6 @@ pub struct Sample {
     pub depth: f64,
     /// Depth at which the elastic contact is as large \[m\]: 0 without contact.
     pub contact_depth: f64,
-}
-
-impl From<Response<PLAIN>> for Sample {
-    fn from(of: Response<PLAIN>) -> Sample {
-        Sample { force: of.force.value(), depth: of.depth.value(), contact_depth: of.contact_depth.value() }
-    }
 }
 
 impl From<&Prony> for Prony<Real<PLAIN>> {

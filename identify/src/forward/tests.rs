@@ -9,7 +9,7 @@ use super::*;
 
 fn response(tip: &Arc<ElasticStates>, prony: &Prony, times: &[f64], drive: &[f64], give: f64) -> Vec<Sample> {
     let mut samples = Vec::new();
-    let push = |response: Response<PLAIN>, _: &[Term<PLAIN>]| samples.push(response.into());
+    let push = |contact: &Cycle<PLAIN>| samples.push(contact.sample());
     let drive: Vec<Real<PLAIN>> = drive.iter().map(|&z| Real::from(z)).collect();
     Cycle::new(&prony.into(), &Tip::new(0, tip, 0.0), Real::from(give), times).follow(&drive, push).unwrap();
     samples
@@ -184,7 +184,7 @@ fn derivatives_agree_with_differences() {
             let prony = Prony { moduli: vec![einf, e1], rates: vec![Real::from(0.0), rate] };
             let moved: Vec<Real<LANES>> = drive.iter().map(|&z| Real::from(z) - contact).collect();
             let mut found = Vec::new();
-            let push = |response: Response<LANES>, _: &[Term<LANES>]| found.push(response.force);
+            let push = |contact: &Cycle<LANES>| found.push(contact.force());
             Cycle::new(&prony, &Tip::new(0, &tip, 0.0), Real::from(give), &times).follow(&moved, push).unwrap();
             let values = plain(at);
             assert!(found.iter().zip(&values).all(|(dual, plain)| dual.value() == plain.force));
