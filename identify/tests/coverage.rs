@@ -126,7 +126,7 @@ fn outliers_have_no_weight() {
     }
 }
 
-/// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 15 million are a second of one core.
+/// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 8 million and more are a second of one core.
 #[test]
 fn searches_take_little_work() {
     let models: [(Model, &[f64], usize); 7] = [
