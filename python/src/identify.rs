@@ -37,18 +37,6 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
 }
 
-/// Values of parameters of the material, which have these names.
-fn named(given: Option<&Bound<'_, PyDict>>, names: &[String]) -> PyResult<Vec<(String, f64)>> {
-    let pair = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-        let (name, value): (String, f64) = (name.extract()?, value.extract()?);
-        match names.contains(&name) {
-            true => Ok((name, value)),
-            false => Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise(),
-        }
-    };
-    given.into_iter().flatten().map(pair).collect()
-}
-
 /// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
 /// Parameters
@@ -129,11 +117,14 @@ impl Identification {
             identification = identification.known_sigma(sigma);
         }
         let names = identification.model().parameters();
-        for (name, value) in named(fix, &names)? {
-            identification = identification.fix(&name, value);
-        }
-        for (name, value) in named(start, &names)? {
-            identification = identification.start(&name, value);
+        type Give = fn(id::Identification, &str, f64) -> id::Identification;
+        for (given, give) in [(fix, id::Identification::fix as Give), (start, id::Identification::start)] {
+            for (name, value) in given.map(named).transpose()?.unwrap_or_default() {
+                if !names.contains(&name) {
+                    return Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise();
+                }
+                identification = give(identification, &name, value);
+            }
         }
         Ok(Identification(identification))
     }
