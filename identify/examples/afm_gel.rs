@@ -114,9 +114,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     bar.finish_and_clear();
 
     let ranked = ranked(fits)?;
-    println!("{:<18} {:>9} {:>7} {:>8}", "model", "ΔAICc", "weight", "p(runs)");
+    println!("{:<18} {:>9} {:>7} {:>8}", "model", "ΔAICc", "weight", "p(white)");
     for (fit, difference, weight) in &ranked {
-        let (name, p) = (fit.model(), fit.runs().probability);
+        let (name, p) = (fit.model(), fit.probability());
         println!("{name:<18} {difference:>9.1} {weight:>7.3} {p:>8.1e}");
         fit.warnings().iter().for_each(|warning| println!("  {warning}"));
     }

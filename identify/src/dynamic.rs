@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use faer::linalg::solvers::{DenseSolveCore, Solve};
-use faer::{Col, Mat, Side};
+use faer::{Col, Mat};
 use viscocontact::num_complex::Complex;
 
-use crate::error::{Error, Result, positive, within};
+use crate::bounds::inverse_gram;
+use crate::error::{Result, positive, within};
 use crate::experiment::Curve;
 
 /// Fewest periods of an oscillation: over less, it is no more told from a drift.
@@ -134,10 +134,8 @@ fn harmonic(times: &[f64], values: &[f64], frequency: f64) -> Result<(Complex<f6
         }
     });
     let value = Col::from_fn(count, |row| values[row]);
-    let normal = rows.transpose() * &rows;
-    let singular = Error::NotConverged { iterations: 0, reason: "sine and drift are the same at these times" };
-    let factor = normal.llt(Side::Lower).map_err(|_| singular)?;
-    let solution = factor.solve(rows.transpose() * &value);
+    let inverse = inverse_gram(&rows, 0.0)?;
+    let solution = &inverse * (rows.transpose() * &value);
     let residual = (value - &rows * &solution).norm_l2() / (count.saturating_sub(COLUMNS).max(1) as f64).sqrt();
-    Ok((Complex::new(solution[0], solution[1]), solution[2], residual, factor.inverse()))
+    Ok((Complex::new(solution[0], solution[1]), solution[2], residual, inverse))
 }

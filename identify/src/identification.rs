@@ -6,7 +6,7 @@ use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
-use crate::noise::{Noise, Whitening};
+use crate::noise::Noise;
 use crate::parameters::{Chosen, Kind, Nuisance, Parameter, PerCurve, Property};
 use crate::problem::Problem;
 
@@ -38,7 +38,7 @@ pub struct Identification {
     chosen: Chosen,
     noise: Noise,
     sigma: Option<f64>,
-    robust: bool,
+    pub(crate) robust: bool,
 }
 
 impl Identification {
@@ -112,10 +112,6 @@ impl Identification {
     pub fn robust(mut self) -> Identification {
         self.robust = true;
         self
-    }
-
-    pub(crate) fn is_robust(&self) -> bool {
-        self.robust
     }
 
     /// The model.
@@ -195,7 +191,7 @@ impl Identification {
         if let Some(sigma) = self.sigma {
             positive("standard deviation of the noise", sigma)?;
         }
-        Problem::new(self.model, &self.chosen, curves, |curve, len| Whitening::of(&self.noise, curve, len))
+        Problem::new(self.model, &self.chosen, curves, &self.noise)
     }
 
     /// The problem of experiments that have no data yet.

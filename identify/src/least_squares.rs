@@ -5,6 +5,8 @@ use faer::{Col, Mat, Side};
 
 use crate::error::{Error, Result};
 
+/// Fraction of the sum of squares that no step is worth.
+const NOTHING: f64 = 1e-12;
 /// Iterations after which a search has failed.
 const MAX_ITERATIONS: usize = 200;
 /// A search ends where the sum of squares falls by less than this where steps are damped so much that the linearised residuals hold nowhere: at kinks, where samples are about to touch or to leave.
@@ -15,9 +17,12 @@ const SLOW: f64 = 1e-6;
 const LONGEST_STEP: f64 = 2.0;
 /// Rounds in which long steps are damped.
 const MAX_DAMPED: usize = 100;
-/// Share of a step at which its curvature is found, and the greatest acceleration over a step that bends it.
-const AHEAD: f64 = 0.1;
+/// Most trials of a step, the share of the promised reduction that needs no further one, and the longest correction over the step.
+const TRIALS: usize = 4;
+const GOOD: f64 = 0.8;
 const MOST_BENT: f64 = 0.75;
+/// Least factor of the damping after a step.
+const MOST_FALL: f64 = 0.1;
 /// Least damping, and damping at the start.
 const DAMPING: [f64; 2] = [1e-14, 1e-3];
 
@@ -30,9 +35,9 @@ pub(crate) struct Minimum {
     pub(crate) iterations: usize,
 }
 
-/// Minimises the sum of squares of `residuals` from `start`, or until it is at most `exact`, or the linearised residuals promise less than the
-/// fraction `enough` of it. Residuals that cannot be computed reject a
-/// step. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter in Marquardt's Method*, 1999).
+/// Minimises the sum of squares of `residuals` from `start`, until it is at most `exact`, or until a step reduces it by less than the fraction
+/// `enough`: what such a step leaves is far less, but for parameters that go to a limit. Residuals that cannot be computed reject a step. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter
+/// in Marquardt's Method*, 1999).
 pub(crate) fn minimise(
     start: Vec<f64>,
     [exact, enough]: [f64; 2],
@@ -41,42 +46,36 @@ pub(crate) fn minimise(
 ) -> Result<Minimum> {
     let mut x = start;
     let mut r = residuals(&x)?;
-    let mut sum = square(&r);
     let (mut damping, mut growth) = (DAMPING[1], 2.0);
     for iterations in 1..=MAX_ITERATIONS {
-        let slopes = jacobian(&x)?;
-        let model = Linear::new(&slopes, &r);
-        let moved = loop {
-            if sum <= exact || model.promised(&model.step(0.0)) <= enough * sum {
-                break None;
+        let (model, sum) = (Linear::new(jacobian(&x)?, &r), square(&r));
+        let (is_last, has_moved) = loop {
+            let step = model.step(damping);
+            let (promised, least) = (model.promised(&step), NOTHING * sum);
+            if sum <= exact || promised <= least && model.promised(&model.step(0.0)) <= least {
+                break (true, false);
             }
-            let mut step = model.step(damping);
-            let promised = model.promised(&step);
-            if let Ok(ahead) = residuals(&along(&x, &step, AHEAD)) {
-                model.bend(&mut step, damping, &slopes, &r, &ahead);
-            }
-            let moved = along(&x, &step, 1.0);
-            let trial = residuals(&moved).ok().map(|r| (square(&r), r)).filter(|(sum, _)| sum.is_finite());
-
-            if let Some((reduced, residuals)) = trial.filter(|(reduced, _)| *reduced < sum) {
-                let gain = (sum - reduced) / promised;
+            if let Some((moved, there)) =
+                follow(&x, &model, &step, damping, &residuals).filter(|(_, r)| square(r) < sum)
+            {
+                let reduced = sum - square(&there);
                 // at a kink, shorter and shorter steps reduce the sum less and less
-                let reduction = promised.max(sum - reduced);
+                let reduction = promised.max(reduced);
                 let is_enough = reduction <= sum * if damping > 1.0 { AT_KINK.max(enough) } else { enough };
-                let is_last = is_enough || reduction <= SLOW * sum && iterations == MAX_ITERATIONS;
-                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING[0]);
+                let gain = reduced / promised;
+                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(MOST_FALL)).max(DAMPING[0]);
                 growth = 2.0;
-                (x, r, sum) = (moved, residuals, reduced);
-                break Some(is_last);
+                (x, r) = (moved, there);
+                break (is_enough || reduction <= SLOW * sum && iterations == MAX_ITERATIONS, true);
             }
-            if promised <= enough * sum {
-                break None;
+            if promised <= least {
+                break (true, false);
             }
             (damping, growth) = (damping * growth, growth * 2.0);
         };
-        if moved != Some(false) {
-            let jacobian = if moved.is_some() { jacobian(&x)? } else { slopes };
-            return Ok(Minimum { coordinates: x, residuals: r, jacobian, iterations });
+        if is_last {
+            let slopes = if has_moved { jacobian(&x)? } else { model.slopes };
+            return Ok(Minimum { jacobian: slopes, coordinates: x, residuals: r, iterations });
         }
     }
     let reason =
@@ -84,24 +83,52 @@ pub(crate) fn minimise(
     Err(Error::NotConverged { iterations: MAX_ITERATIONS, reason })
 }
 
-fn along(x: &[f64], step: &Col<f64>, share: f64) -> Vec<f64> {
-    x.iter().enumerate().map(|(j, x)| x + share * step[j]).collect()
+/// Coordinates and residuals at the end of a step that is bent to follow a curved valley: where the residuals are those of the linearised problem at
+/// the end of the straight step, up to what the damped problem cannot remove. None where the residuals cannot be computed.
+fn follow(
+    x: &[f64],
+    model: &Linear,
+    step: &Col<f64>,
+    damping: f64,
+    residuals: impl Fn(&[f64]) -> Result<Vec<f64>>,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (before, mut least) = (model.residuals.squared_norm_l2(), f64::INFINITY);
+    let (mut bent, mut best) = (step.clone(), None);
+    for _ in 0..TRIALS {
+        let moved: Vec<f64> = x.iter().enumerate().map(|(j, x)| x + bent[j]).collect();
+        let Ok(there) = residuals(&moved) else { break };
+        let (sum, correction) = (square(&there), model.correction(&bent, damping, &there));
+        if sum.is_nan() || sum >= least {
+            break;
+        }
+        (least, best) = (sum, Some((moved, there)));
+        let is_good = before - sum >= GOOD * model.promised(step);
+        if is_good || model.size(&correction).is_nan() || model.size(&correction) > MOST_BENT * model.size(step) {
+            break;
+        }
+        bent = step + correction;
+    }
+    best
 }
 
-/// Linearised residuals: JᵀJ and −Jᵀr.
+/// Linearised residuals r + J s, with JᵀJ and −Jᵀr.
 struct Linear {
+    slopes: Mat<f64>,
+    residuals: Col<f64>,
     gram: Mat<f64>,
     right: Col<f64>,
 }
 
 impl Linear {
-    fn new(slopes: &Mat<f64>, residuals: &[f64]) -> Linear {
-        let mut gram = slopes.transpose() * slopes;
+    fn new(slopes: Mat<f64>, residuals: &[f64]) -> Linear {
+        let residuals = Col::from_fn(residuals.len(), |k| residuals[k]);
+        let mut gram = slopes.transpose() * &slopes;
         for j in 0..gram.nrows() {
             // a coordinate that moves nothing stays
             gram[(j, j)] = if gram[(j, j)] > 0.0 { gram[(j, j)] } else { 1.0 };
         }
-        Linear { gram, right: slopes.transpose() * Col::from_fn(residuals.len(), |k| -residuals[k]) }
+        let right = -(slopes.transpose() * &residuals);
+        Linear { slopes, residuals, gram, right }
     }
 
     /// Solves (JᵀJ + λ D²) s = −Jᵀr, with D the norms of the columns. Coordinates whose step would be too long are damped more.
@@ -125,19 +152,16 @@ impl Linear {
         Col::zeros(count)
     }
 
-    /// Bends a step by half of the acceleration along it, so that it follows a curved valley (M. K. Transtrum & J. P. Sethna, 2012): the
-    /// second derivative of the residuals is found from those a little `ahead`. A step whose acceleration is great is left.
-    fn bend(&self, step: &mut Col<f64>, damping: f64, slopes: &Mat<f64>, residuals: &[f64], ahead: &[f64]) {
-        let linear = slopes * &*step;
-        let curvature =
-            Col::from_fn(residuals.len(), |k| 2.0 / AHEAD * (linear[k] - (ahead[k] - residuals[k]) / AHEAD));
-        let acceleration = self.solve(&vec![damping; step.nrows()], &(slopes.transpose() * curvature));
-        let square = |of: &Col<f64>| (0..of.nrows()).map(|j| of[j] * of[j] * self.gram[(j, j)]).sum::<f64>();
-        if square(&acceleration) <= MOST_BENT * MOST_BENT * square(step) {
-            for j in 0..step.nrows() {
-                step[j] += (0.5 * acceleration[j]).clamp(-LONGEST_STEP, LONGEST_STEP);
-            }
-        }
+    /// What is added to a straight step to have its linearised residuals where they are `there` after a bent one.
+    fn correction(&self, bent: &Col<f64>, damping: f64, there: &[f64]) -> Col<f64> {
+        let linear = &self.residuals + &self.slopes * bent;
+        let difference = Col::from_fn(there.len(), |k| linear[k] - there[k]);
+        self.solve(&vec![damping; bent.nrows()], &(self.slopes.transpose() * difference))
+    }
+
+    /// |D s|.
+    fn size(&self, step: &Col<f64>) -> f64 {
+        (0..step.nrows()).map(|j| step[j] * step[j] * self.gram[(j, j)]).sum::<f64>().sqrt()
     }
 
     /// The damped step of a right side; not a number where rounding hides it.

@@ -49,8 +49,6 @@ mod fit;
 mod forward;
 mod identification;
 mod least_squares;
-mod loading;
-mod many;
 mod model;
 mod noise;
 mod parameters;
@@ -75,7 +73,7 @@ pub mod guide {
 }
 
 pub use bounds::Bounds;
-pub use data::{DataError, Recording};
+pub use data::Recording;
 pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
@@ -89,7 +87,6 @@ pub use parameters::{Nuisance, PerCurve};
 pub use protocol::{Protocol, ProtocolBuilder};
 pub use results::Summary;
 pub use spectrum::{Decade, FreeSpectrum};
-pub use statistics::ResidualTest;
 pub use verify::Verification;
 
 #[doc = include_str!("../README.md")]

@@ -144,16 +144,16 @@ impl Model {
         Ok(self.prony(parameters, [t.max(f64::MIN_POSITIVE); 2])?.modulus(t))
     }
 
-    /// Models of which this one is a generalisation: the last links of a chain, whose first is the elastic body.
-    pub(crate) fn contained(&self) -> Vec<Model> {
-        match *self {
-            Model::Elastic | Model::Custom(_) => vec![],
-            Model::PowerLawSolid { cutoff } => vec![Model::PowerLaw { cutoff }],
-            Model::Maxwell | Model::PowerLaw { .. } | Model::Prony(0) => vec![Model::Elastic],
-            Model::Zener => vec![Model::Maxwell],
-            Model::Prony(1) | Model::FractionalZener | Model::Stretched => vec![Model::Zener],
-            Model::Prony(terms) => vec![Model::Prony(terms - 1)],
-        }
+    /// The model of which this one is the next generalisation, in a chain whose first link is the elastic body.
+    pub(crate) fn contained(&self) -> Option<Model> {
+        Some(match *self {
+            Model::Elastic | Model::Custom(_) => return None,
+            Model::PowerLawSolid { cutoff } => Model::PowerLaw { cutoff },
+            Model::Maxwell | Model::PowerLaw { .. } | Model::Prony(0) => Model::Elastic,
+            Model::Zener => Model::Maxwell,
+            Model::Prony(1) | Model::FractionalZener | Model::Stretched => Model::Zener,
+            Model::Prony(terms) => Model::Prony(terms - 1),
+        })
     }
 
     /// The parameters with which this model is a contained one, or next to it, for curves of a length \[s\].

@@ -7,9 +7,9 @@ use faer::Mat;
 
 use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
-use crate::forward::{Forward, LANES, Real, Response, Roots, Sample, Term};
+use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
 use crate::model::{Model, Scale};
-use crate::noise::Whitening;
+use crate::noise::{Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Parameter, Property};
 use crate::protocol::Protocol;
 use crate::series::Prony;
@@ -18,8 +18,8 @@ use crate::series::Prony;
 const LEAST_SHARE: f64 = 1e-12;
 /// Samples of a curve with which a search begins.
 const ROUGH: usize = 128;
-/// A search ends where the linearised residuals promise less than this fraction of the sum of squares; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-12, 1e-4];
+/// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
+const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.
@@ -35,7 +35,7 @@ pub(crate) struct Part {
     pub(crate) scale: f64,
     /// A further weight of each: below 1 for outliers.
     pub(crate) outliers: Vec<f64>,
-    forward: Forward,
+    tip: Tip,
     /// Speed of the drive at each sample \[m/s\].
     speed: Vec<f64>,
 }
@@ -49,8 +49,8 @@ impl Part {
             (drive[b] - drive[a]) / (times[b] - times[a])
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
-        let forward = Forward::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Part { curve, whitening, scale: 1.0, outliers, forward, speed }
+        let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
+        Part { curve, whitening, scale: 1.0, outliers, tip, speed }
     }
 
     /// Means of neighbouring samples, as if their noise were white.
@@ -102,19 +102,14 @@ pub(crate) struct Problem {
     pub(crate) parameters: Vec<Parameter>,
     /// Shortest interval between samples and longest curve \[s\].
     pub(crate) window: [f64; 2],
-    /// Fraction of the sum of squares that a search leaves.
+    /// Fraction of the sum of squares by which the last step of a search reduces it.
     pub(crate) enough: f64,
     /// Exponentials that were advanced by a sample, each derivative counted.
     pub(crate) work: Arc<AtomicUsize>,
 }
 
 impl Problem {
-    pub(crate) fn new(
-        model: Model,
-        chosen: &Chosen,
-        curves: Vec<Curve>,
-        whitening: impl Fn(usize, usize) -> Result<Whitening>,
-    ) -> Result<Problem> {
+    pub(crate) fn new(model: Model, chosen: &Chosen, curves: Vec<Curve>, noise: &Noise) -> Result<Problem> {
         if curves.is_empty() {
             return Err(Error::TooFewPoints { points: 0, parameters: model.parameters().len() });
         }
@@ -122,7 +117,10 @@ impl Problem {
         let times = || curves.iter().map(|curve| curve.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
-        let part = |(k, curve): (usize, Curve)| Ok(Part::new(k, curve.clone(), whitening(k, curve.force.len())?));
+        let part = |(k, curve): (usize, Curve)| {
+            let whitening = Whitening::of(noise, k, curve.force.len())?;
+            Ok(Part::new(k, curve, whitening))
+        };
         let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
         Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }
@@ -180,8 +178,15 @@ impl Problem {
         self.parameters.len() > 1 && self.parameters[1].name == "Einf"
     }
 
-    /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln(E0 − Einf); that of Einf below a fixed E0 is
-    /// ln(Einf/(E0 − Einf)): every coordinate is allowed.
+    /// The factor by which a part of the modulus falls to the middle of the data, or nearly so: it is better known there than at the time 0.
+    fn fall(&self, values: &[f64]) -> f64 {
+        let of = |name: &str| self.parameters.iter().position(|parameter| parameter.name == name).map(|at| values[at]);
+        let middle = (self.window[0] * self.window[1]).sqrt();
+        of("tau").map_or(1.0, |tau| 1.0 + (middle / tau).powf(of("alpha").unwrap_or(1.0)))
+    }
+
+    /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln((E0 − Einf)/fall); that of Einf below a fixed E0
+    /// is ln(Einf/(E0 − Einf)): every coordinate is allowed.
     pub(crate) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut free = coordinates.iter();
         let value = |parameter: &Parameter| match parameter.is_free {
@@ -191,7 +196,7 @@ impl Problem {
         let mut values: Vec<f64> = self.parameters.iter().map(value).collect();
         if self.has_equilibrium() {
             if self.parameters[0].is_free {
-                values[0] += values[1];
+                values[0] = values[1] + values[0] * self.fall(&values);
             } else if self.parameters[1].is_free {
                 values[1] = values[0] / (1.0 + 1.0 / values[1]);
             }
@@ -205,7 +210,7 @@ impl Problem {
         if self.has_equilibrium() {
             let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
             if self.parameters[0].is_free {
-                own[0] = relaxing;
+                own[0] = relaxing / self.fall(values);
             } else if self.parameters[1].is_free {
                 own[1] = values[1] / relaxing;
             }
@@ -253,42 +258,40 @@ impl Problem {
         self.value_of(values, Property::Stiffness, curve).unwrap_or(self.parts[curve].curve.experiment.stiffness)
     }
 
-    /// Force of the contact of a curve, and where the tip is, at each sample. `record` is given each with the terms of its force.
+    /// Computes the contact of a curve; `record` is given it at each sample.
     fn respond<const N: usize>(
         &self,
         curve: usize,
         prony: &Prony<Real<N>>,
         contact_point: Real<N>,
         stiffness: Real<N>,
-        roots: &mut Roots,
-        record: impl FnMut(Response<N>, &[Term<N>]),
+        record: impl FnMut(&Cycle<N>),
     ) -> Result<()> {
         let part = &self.parts[curve];
-        self.work.fetch_add(N.max(1) * part.len() * prony.moduli.len(), Ordering::Relaxed);
+        self.work.fetch_add(N * part.len() * prony.moduli.len(), Ordering::Relaxed);
         let Protocol { times, drive } = &part.curve.experiment.protocol;
         let drive: Vec<Real<N>> = drive.iter().map(|&z| Real::from(z) - contact_point).collect();
-        part.forward.respond(prony, times, &drive, Real::from(1.0) / stiffness, roots, record)
+        Cycle::new(prony, &part.tip, Real::from(1.0) / stiffness, times).follow(&drive, record)
     }
 
-    /// Response of one curve, with the terms of the force of each sample.
-    pub(crate) fn terms(
+    /// What `of` tells of the contact of a curve at each sample.
+    pub(crate) fn each<T>(
         &self,
         curve: usize,
         values: &[f64],
         prony: &Prony,
-        record: impl FnMut(Response<0>, &[Term<0>]),
-    ) -> Result<Roots> {
-        let mut roots = Roots::default();
+        of: impl Fn(&Cycle<PLAIN>) -> T,
+    ) -> Result<Vec<T>> {
         let [contact_point, stiffness] =
             [self.contact_point(curve, values), self.stiffness(curve, values)].map(Real::from);
-        self.respond(curve, &prony.into(), contact_point, stiffness, &mut roots, record).map(|()| roots)
+        let mut all = Vec::with_capacity(self.parts[curve].len());
+        self.respond(curve, &prony.into(), contact_point, stiffness, |contact| all.push(of(contact)))?;
+        Ok(all)
     }
 
     /// Response of one curve.
     pub(crate) fn samples(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<Sample>> {
-        let mut samples = Vec::with_capacity(self.parts[curve].len());
-        self.terms(curve, values, prony, |response, _| samples.push(response.into()))?;
-        Ok(samples)
+        self.each(curve, values, prony, |contact| contact.sample())
     }
 
     /// The force that a curve would measure, from the force of its contact.
@@ -304,8 +307,8 @@ impl Problem {
 
     /// The modelled force of one curve.
     pub(crate) fn force(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
-        let samples = self.samples(curve, values, prony)?;
-        Ok(self.measured(curve, values, samples.iter().map(|sample| sample.force)))
+        let contact = self.each(curve, values, prony, |contact| contact.force().value())?;
+        Ok(self.measured(curve, values, contact.into_iter()))
     }
 
     /// Columns of the curves, made white, one after the other.
@@ -355,7 +358,6 @@ impl Problem {
                     None => curved.push((column, parameter)),
                 }
             }
-            let mut roots = self.terms(curve, &values, prony, |_, _| {})?;
             for lanes in curved.chunks(LANES - 1) {
                 let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
                     Real::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
@@ -380,8 +382,7 @@ impl Problem {
                 let shift = measured(self.contact_point(curve, &values), Property::ContactPoint);
                 let spring = measured(self.stiffness(curve, &values), Property::Stiffness);
                 let mut forces = Vec::with_capacity(part.len());
-                let record = |response: Response<LANES>, _: &[Term<LANES>]| forces.push(response.force);
-                self.respond(curve, &derived, shift, spring, &mut roots, record)?;
+                self.respond(curve, &derived, shift, spring, |contact| forces.push(contact.force()))?;
                 for (lane, &(column, _)) in lanes.iter().enumerate() {
                     put(column, forces.iter().map(|force| force.slope(lane)).collect());
                 }

@@ -6,7 +6,6 @@ use std::io::Write;
 use crate::error::{Error, Result};
 use crate::fit::{Estimate, Fit, FitWarning};
 use crate::model::Model;
-use crate::statistics::ResidualTest;
 
 /// The numbers of a fit without its curves: what a table of results contains.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,10 +26,8 @@ pub struct Summary {
     pub points_in_contact: usize,
     /// Iterations of the search.
     pub iterations: usize,
-    /// Runs test of the residuals.
-    pub runs: ResidualTest,
-    /// Correlation test of the residuals.
-    pub correlations: ResidualTest,
+    /// Probability of correlations of the residuals as great, if the model is right.
+    pub probability: f64,
     /// What a user should know before the parameters are used.
     pub warnings: Vec<FitWarning>,
 }
@@ -93,8 +90,7 @@ impl Fit {
             autoregression: self.autoregression(),
             points_in_contact: self.points_in_contact(),
             iterations: self.iterations(),
-            runs: self.runs(),
-            correlations: self.correlations(),
+            probability: self.probability(),
             warnings: self.warnings(),
         }
     }

@@ -1,14 +1,20 @@
-//! Parts of a curve, and the pull-off that a fit does not describe.
+//! Parts of a curve, the pull-off that a fit does not describe, and the elastic law fitted to the loading.
 
 use std::ops::Range;
+
+use viscocontact::numeric::least;
 
 use crate::error::{Result, within};
 use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
-use crate::statistics::{mean, range, scatter};
+use crate::statistics::{line, mean, range, scatter};
 
-/// Drives that differ from the greatest by less than this share of the range belong to its hold.
-const SAME_DRIVE: f64 = 1e-2;
+/// Drives that differ from the greatest by less than this share of the range are at the top of a segment.
+const TOP: f64 = 1e-2;
+/// Drives that differ from the greatest one by less than this share of the range belong to its hold.
+const SAME_DRIVE: f64 = 1e-3;
+/// Contact points that are tried first.
+const POINTS: usize = 60;
 /// Samples of a mean.
 const BLOCK: usize = 5;
 /// Standard deviations by which the mean of a block is below the base line of a curve with pull-off.
@@ -42,7 +48,7 @@ impl Curve {
     /// # Errors
     /// As [`Curve::within`].
     pub fn approach(&self) -> Result<Curve> {
-        self.samples(0..self.top(SAME_DRIVE).0 + 1)
+        self.samples(0..self.top(TOP).0 + 1)
     }
 
     /// The curve until the drive leaves its greatest value: approach and hold.
@@ -50,7 +56,7 @@ impl Curve {
     /// # Errors
     /// As [`Curve::within`].
     pub fn loading(&self) -> Result<Curve> {
-        self.samples(0..self.top(SAME_DRIVE).1 + 1)
+        self.samples(0..self.top(TOP).1 + 1)
     }
 
     /// The curve until the force returns to the base line before the contact: without the pull-off of an adhesive tip.
@@ -58,7 +64,7 @@ impl Curve {
     /// # Errors
     /// As [`Curve::within`].
     pub fn until_release(&self) -> Result<Curve> {
-        let (base, last) = (self.base_line(), self.top(SAME_DRIVE).1);
+        let (base, last) = (self.base_line(), self.top(TOP).1);
         let is_released = |block: &[f64]| mean(block) <= base;
         let end = self.force[last..].windows(BLOCK).position(is_released).map_or(self.force.len(), |at| last + at);
         self.samples(0..end)
@@ -68,7 +74,7 @@ impl Curve {
     /// it, and [`Curve::until_release`] leaves it out.
     pub fn pull_off(&self) -> Option<f64> {
         let base = self.base_line();
-        let after = &self.force[self.top(SAME_DRIVE).1..];
+        let after = &self.force[self.top(TOP).1..];
         let pull = after.windows(BLOCK).map(|block| base - mean(block)).fold(0.0, f64::max);
         // less than a hundredth of the force is a base line that is not straight
         let least = (PULL * scatter(&self.force) / (BLOCK as f64).sqrt()).max(0.01 * (range(&self.force)[1] - base));
@@ -77,7 +83,7 @@ impl Curve {
 
     /// Mean force of the first twentieth of the samples up to the top.
     fn base_line(&self) -> f64 {
-        mean(&self.force[..(self.top(SAME_DRIVE).0 / 20).max(1)])
+        mean(&self.force[..(self.top(TOP).0 / 20).max(1)])
     }
 
     fn samples(&self, samples: Range<usize>) -> Result<Curve> {
@@ -87,5 +93,37 @@ impl Curve {
         let protocol = Protocol::new(times[samples.clone()].to_vec(), drive[samples.clone()].to_vec())?;
         let experiment = Experiment { protocol, ..self.experiment.clone() };
         Curve::new(experiment, self.force[samples].to_vec())
+    }
+
+    /// First and last sample at which the drive differs from the greatest one by less than a `share` of its range.
+    pub(crate) fn top(&self, share: f64) -> (usize, usize) {
+        let drive = self.experiment.protocol.drive();
+        let [low, high] = range(drive);
+        let is_near = |z: &f64| *z >= high - share * (high - low);
+        (drive.iter().position(is_near).unwrap_or(0), drive.iter().rposition(is_near).unwrap_or(0))
+    }
+
+    /// First and last sample of the hold at the greatest drive.
+    pub(crate) fn hold(&self) -> (usize, usize) {
+        self.top(SAME_DRIVE)
+    }
+
+    /// Offset, modulus and sum of squares of the elastic law that fits the forces up to the hold best, for a contact point and a spring of
+    /// `give` 1/k; an infinite sum where there is none.
+    pub(crate) fn elastic_law(&self, contact_point: f64, give: f64, has_offset: bool) -> [f64; 3] {
+        let (drive, force) = (&self.experiment.protocol.drive[..=self.hold().0], &self.force[..=self.hold().0]);
+        let depth = |(z, force): (&f64, &f64)| z - contact_point - give * force.max(0.0);
+        let levels: Vec<f64> = drive.iter().zip(force).map(|pair| self.experiment.level(depth(pair))).collect();
+        let [offset, modulus, sum] = line(&levels, force, has_offset);
+        if modulus > 0.0 && sum.is_finite() { [offset, modulus, sum] } else { [0.0, 0.0, f64::INFINITY] }
+    }
+
+    /// The contact point for which the elastic law fits best: also a little before the first point, and a contact over a tenth of the drive at least.
+    pub(crate) fn elastic_contact_point(&self, give: f64, has_offset: bool) -> f64 {
+        let drive = &self.experiment.protocol.drive[..=self.hold().0];
+        let (lowest, last) = (range(drive)[0], drive[drive.len() - 1]);
+        let travel = last - lowest;
+        let misfit = |point: f64| self.elastic_law(point, give, has_offset)[2];
+        least(lowest - 0.1 * travel, lowest + 0.9 * travel, POINTS, misfit)
     }
 }

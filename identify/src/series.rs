@@ -14,7 +14,7 @@ use crate::model::{Model, Scale};
 /// Spacing of the logarithms of the rates: sums of such exponentials are within 1e-6 of smooth relaxation.
 const SPACING: f64 = 0.55;
 /// Least rate times the longest time, and greatest rate times the shortest.
-const RATES: [f64; 2] = [0.2, 50.0];
+const RATES: [f64; 2] = [0.5, 20.0];
 /// A narrow peak of a spectrum has twice as many rates up to so many halves of the spacing from it.
 const PEAK: i64 = 4;
 /// First time at which sums and laws agree, over the shortest; two last exponentials have the integral of the law before.
@@ -115,25 +115,23 @@ impl Model {
         Ok(())
     }
 
-    /// The exponentials of some parameters, of which all are near the first.
+    /// The exponentials of some parameters, of which all are near the first: as many for each.
     pub(crate) fn sums(&self, all: &[Vec<f64>], window: [f64; 2]) -> Result<Vec<Prony>> {
         self.check(&all[0])?;
-        let few = |parameters: &Vec<f64>| match (*self, parameters.as_slice()) {
-            (Model::Elastic, &[e]) => Some(Prony::of([(e, 0.0)])),
-            (Model::Maxwell, &[e0, tau]) => Some(Prony::of([(e0, 1.0 / tau)])),
-            (Model::Zener, &[e0, einf, tau]) => Some(Prony::of([(einf, 0.0), (e0 - einf, 1.0 / tau)])),
+        let sum = |of: &Vec<f64>| match (*self, of.as_slice()) {
+            (Model::Elastic, &[e]) => Prony::of([(e, 0.0)]),
+            (Model::Maxwell, &[e0, tau]) => Prony::of([(e0, 1.0 / tau)]),
+            (Model::Zener, &[e0, einf, tau]) => Prony::of([(einf, 0.0), (e0 - einf, 1.0 / tau)]),
             (Model::Prony(_), [einf, terms @ ..]) => {
                 let relaxing = terms.chunks_exact(2).map(|term| (term[0], 1.0 / term[1]));
-                Some(Prony::of(std::iter::once((*einf, 0.0)).chain(relaxing)))
+                Prony::of(std::iter::once((*einf, 0.0)).chain(relaxing))
             }
-            _ => None,
+            _ => {
+                let rates = self.rates(of, &all[0], window);
+                nearest_sum(&rates, self.law(of, &rates), [FIRST * window[0], window[1]])
+            }
         };
-        if let Some(sums) = all.iter().map(few).collect() {
-            return Ok(sums);
-        }
-        let rates = self.rates(&all[0], window);
-        let laws: Vec<_> = all.iter().map(|parameters| self.law(parameters, &rates)).collect();
-        Ok(nearest_sums(&rates, &laws, [FIRST * window[0], window[1]]))
+        Ok(all.iter().map(sum).collect())
     }
 
     /// E(t) of a model that is no sum of a few exponentials, between the times that some rates show.
@@ -155,23 +153,24 @@ impl Model {
         }
     }
 
-    /// Rates at equal distances of their logarithms, of which one is the peak of the spectrum of a fractional element.
-    fn rates(&self, parameters: &[f64], [shortest, longest]: [f64; 2]) -> Vec<f64> {
+    /// Rates at equal distances of their logarithms, of which one is the peak of the spectrum of a fractional element; as many as `near` has.
+    fn rates(&self, parameters: &[f64], near: &[f64], [shortest, longest]: [f64; 2]) -> Vec<f64> {
         let [slowest, fastest] = [(RATES[0] / longest).ln(), (RATES[1] / shortest).ln()];
-        let peak = (*self == Model::FractionalZener).then(|| -parameters[2].ln());
+        let is_peaked = *self == Model::FractionalZener;
+        let centre = |of: &[f64]| if is_peaked { -of[2].ln() } else { slowest };
         // the spectrum of an unknown law may have peaks anywhere
-        let (centre, is_custom) = (peak.unwrap_or(slowest), matches!(self, Model::Custom(_)));
-        let [from, to] = [slowest, fastest].map(|end| (2.0 * (end - centre) / SPACING).round() as i64);
-        let is_rate = |k: &i64| k % 2 == 0 || is_custom || peak.is_some() && k.abs() < PEAK;
-        (from..=to).filter(is_rate).map(|k| (centre + 0.5 * SPACING * k as f64).exp()).collect()
+        let is_custom = matches!(self, Model::Custom(_));
+        let [from, to] = [slowest, fastest].map(|end| (2.0 * (end - centre(near)) / SPACING).round() as i64);
+        let is_rate = |k: &i64| k % 2 == 0 || is_custom || is_peaked && k.abs() < PEAK;
+        (from..=to).filter(is_rate).map(|k| (centre(parameters) + 0.5 * SPACING * k as f64).exp()).collect()
     }
 }
 
-/// The sums of exponentials of given rates and an equilibrium that are nearest to some laws, relative to the first of them. Two last
-/// terms have E(0) and the integral of the law before the first time.
-fn nearest_sums(rates: &[f64], laws: &[Relaxation], [first, last]: [f64; 2]) -> Vec<Prony> {
+/// The sum of exponentials of given rates and an equilibrium that is nearest to a law, relative to the law. Two last terms have E(0) and the
+/// integral of the law before the first time.
+fn nearest_sum(rates: &[f64], law: Relaxation, [first, last]: [f64; 2]) -> Prony {
     let times = times([first, last], 2 * rates.len());
-    let weights: Vec<f64> = times.iter().map(|&t| 1.0 / laws[0](t)).collect();
+    let weights: Vec<f64> = times.iter().map(|&t| 1.0 / law(t)).collect();
     let columns = rates.len() + 1;
     let matrix = Mat::from_fn(times.len() + columns, columns, |row, column| match times.get(row) {
         Some(_) if column == 0 => weights[row],
@@ -179,26 +178,19 @@ fn nearest_sums(rates: &[f64], laws: &[Relaxation], [first, last]: [f64; 2]) -> 
         None if row - times.len() == column => RIDGE * weights[0],
         None => 0.0,
     });
-    let right = Mat::from_fn(matrix.nrows(), laws.len(), |row, law| {
-        times.get(row).map_or(0.0, |&t| weights[row] * laws[law](t))
-    });
+    let right = Mat::from_fn(matrix.nrows(), 1, |row, _| f64::from(u8::from(row < times.len())));
     let solved = matrix.qr().solve_lstsq(&right);
-    let mut fast = None;
-    let sum = |(column, law): (usize, &Relaxation)| {
-        let moduli = (0..columns).map(|row| solved[(row, column)]);
-        let mut sum = Prony::of(moduli.zip(std::iter::once(0.0).chain(rates.iter().copied())));
-        let rest = |t: f64| law(t) - sum.modulus(t);
-        let (integral, instant) = (integral(rest, first), rest(0.0));
-        let slow = LAST * rates[rates.len() - 1];
-        // the rate of all laws is that of the first: its modulus alone has both, if that is fast enough
-        let fast =
-            *fast.get_or_insert(Some(instant / integral).filter(|r| r.is_finite()).unwrap_or(0.0).max(2.0 * slow));
-        let modulus = (instant - slow * integral) / (1.0 - slow / fast);
-        sum.moduli.extend([instant - modulus, modulus]);
-        sum.rates.extend([slow, fast]);
-        sum
-    };
-    laws.iter().enumerate().map(sum).collect()
+    let mut sum =
+        Prony::of((0..columns).map(|row| solved[(row, 0)]).zip(std::iter::once(0.0).chain(rates.iter().copied())));
+    let rest = |t: f64| law(t) - sum.modulus(t);
+    let (integral, instant) = (integral(rest, first), rest(0.0));
+    let slow = LAST * rates[rates.len() - 1];
+    // one modulus alone has both, if its rate is fast enough
+    let fast = Some(instant / integral).filter(|rate| rate.is_finite()).unwrap_or(0.0).max(2.0 * slow);
+    let modulus = (instant - slow * integral) / (1.0 - slow / fast);
+    sum.moduli.extend([instant - modulus, modulus]);
+    sum.rates.extend([slow, fast]);
+    sum
 }
 
 /// ∫ f dt from 0 to a time, where f may be steep at 0: by the rule of H. Takahasi & M. Mori (1974).

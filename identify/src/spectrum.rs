@@ -6,6 +6,7 @@ use viscocontact::numeric::non_negative_least_squares;
 
 use crate::error::{Error, Result};
 use crate::fit::Fit;
+use crate::forward::Real;
 use crate::problem::Problem;
 use crate::series::Prony;
 
@@ -172,16 +173,14 @@ fn nearest(prony: &Prony, rates: &[f64]) -> Prony {
 
 /// Force of each term per unit modulus, made white.
 fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Mat<f64>> {
-    let mut columns = vec![Vec::with_capacity(problem.parts.len()); prony.moduli.len()];
-    for curve in 0..problem.parts.len() {
-        columns.iter_mut().for_each(|column| column.push(Vec::new()));
-        problem.terms(curve, values, prony, |_, terms| {
-            for ((column, term), modulus) in columns.iter_mut().zip(terms).zip(&prony.moduli) {
-                column[curve].push(term.force.value() / modulus);
-            }
-        })?;
-    }
-    let white: Vec<Vec<f64>> = columns.into_iter().map(|column| problem.white(column)).collect();
+    let forces =
+        |curve: usize| problem.each(curve, values, prony, |contact| contact.forces().map(Real::value).collect());
+    let curves: Vec<Vec<Vec<f64>>> = (0..problem.parts.len()).map(forces).collect::<Result<_>>()?;
+    let column = |term: usize| {
+        let of_term = |rows: &Vec<Vec<f64>>| rows.iter().map(|row| row[term] / prony.moduli[term]).collect();
+        problem.white(curves.iter().map(of_term))
+    };
+    let white: Vec<Vec<f64>> = (0..prony.moduli.len()).map(column).collect();
     Ok(Mat::from_fn(problem.len(), white.len(), |row, column| white[column][row]))
 }
 

@@ -4,7 +4,6 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::parameters::{Kind, Parameter, Property};
 use crate::problem::Problem;
-use crate::statistics::is_flat;
 
 /// Searches at most.
 const STARTS: usize = 4;
@@ -61,12 +60,6 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
 
 fn is_modulus(name: &str) -> bool {
     name.starts_with('E')
-}
-
-/// Refuses curves without contact.
-pub(crate) fn check_contact(problem: &Problem) -> Result<()> {
-    let flat = problem.parts.iter().position(|part| is_flat(&part.curve.force));
-    flat.map_or(Ok(()), |curve| Err(Error::NoContact { curve }))
 }
 
 /// Scales the free moduli to the data; returns the sum of squared deviations.

@@ -126,17 +126,17 @@ fn outliers_have_no_weight() {
     }
 }
 
-/// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 15 million are a second of one core.
+/// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 8 million and more are a second of one core.
 #[test]
 fn searches_take_little_work() {
     let models: [(Model, &[f64], usize); 7] = [
         (Model::Zener, &[4.0e3, 1.0e3, 0.5], 1),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 3),
-        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 5),
+        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 4),
         (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 3),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 18),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 6),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 6),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 13),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 4),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 3),
     ];
     let rng = &mut ChaCha8Rng::seed_from_u64(3);
     for (model, values, millions) in models {

@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::TextFormat;
 use viscocontact::prelude::*;
-use viscocontact_identify::{Curve, DataError, Error, Experiment, Protocol, Recording, Result};
+use viscocontact_identify::{Curve, Error, Experiment, Protocol, Recording, Result};
 
 use crate::random::normal;
 
@@ -54,8 +54,8 @@ fn columns_are_found_by_name_and_scaled_by_unit() -> Result<()> {
     // blanks, decimal commas, semicolons and quotes
     let blanks = text.lines().skip(2).map(|line| line.replace(',', "  ")).collect::<Vec<_>>().join("\n");
     let columns = |recording: Recording| -> Vec<Vec<f64>> {
-        let columns = [recording.force(), recording.deflection(), recording.drive()];
-        columns.into_iter().flatten().chain([recording.times()]).map(<[f64]>::to_vec).collect()
+        let columns = [recording.force, recording.deflection, recording.drive];
+        columns.into_iter().flatten().chain([recording.times]).collect()
     };
     assert_eq!(columns(read(&blanks)?), columns(read(&text)?));
     let semicolons = text.replace(',', ";").replace('.', ",").replace("Defl (nm)", "\"Defl (nm)\"");
@@ -102,9 +102,9 @@ fn columns_that_a_curve_needs_are_named() -> Result<()> {
         (read("t [s],depth [nm],F [nN]\n")?.spring_curve(&tip, 0.1), "drive"),
     ] {
         let error = curve.expect_err(column);
-        assert!(matches!(error, Error::Data(DataError::NoColumn { column: found, .. }) if found == column), "{error}");
+        assert!(matches!(error, Error::NoColumn { column: found, .. } if found == column), "{error}");
     }
-    assert!(matches!(recording.spring_curve(&tip, 0.1), Err(Error::Data(DataError::TooFewPoints { points: 2, .. }))));
+    assert!(matches!(recording.spring_curve(&tip, 0.1), Err(Error::ShortCurve { points: 2, .. })));
     Ok(())
 }
 
@@ -120,12 +120,12 @@ fn faults_of_a_curve_are_told_apart_under_noise() -> Result<()> {
         let check = |units: [f64; 2]| curve(&protocol, &noisy, &tip, units)?.check();
         check([1.0; 2]).unwrap_or_else(|error| panic!("noise {noise}, seed {seed}: {error}"));
         let [force, drive, both_1000] = [check([1.0, -1.0]), check([-1.0, 1.0]), check([1e3, 1e3])];
-        assert!(matches!(force, Err(Error::Data(DataError::ForceFlipped { .. }))), "noise {noise}: {force:?}");
-        assert!(matches!(drive, Err(Error::Data(DataError::DriveFlipped { .. }))), "noise {noise}: {drive:?}");
-        assert!(matches!(both_1000, Err(Error::Data(DataError::DepthTooLarge { .. }))), "noise {noise}: {both_1000:?}");
+        assert!(matches!(force, Err(Error::ForceFlipped { .. })), "noise {noise}: {force:?}");
+        assert!(matches!(drive, Err(Error::DriveFlipped { .. })), "noise {noise}: {drive:?}");
+        assert!(matches!(both_1000, Err(Error::DepthTooLarge { .. })), "noise {noise}: {both_1000:?}");
         // a force in µN that is nN
         let soft = check([1.0, 1e3]);
-        assert!(matches!(soft, Err(Error::Data(DataError::SpringTooSoft { .. }))), "noise {noise}: {soft:?}");
+        assert!(matches!(soft, Err(Error::SpringTooSoft { .. })), "noise {noise}: {soft:?}");
     }
     Ok(())
 }
@@ -164,7 +164,7 @@ fn curves_that_do_not_fit_the_tip_are_refused() -> Result<()> {
         protocol.drive().iter().zip(&force).map(|(drive, force)| 1e-9 * (drive - force / 0.1)).collect();
     let experiment = Experiment::new(Protocol::new(protocol.times().to_vec(), depths)?, Arc::clone(&tip));
     let modulus = Curve::new(experiment, force.iter().map(|force| 1e3 * force).collect())?.check();
-    assert!(matches!(modulus, Err(Error::Data(DataError::Modulus { .. }))), "{modulus:?}");
+    assert!(matches!(modulus, Err(Error::Modulus { .. })), "{modulus:?}");
     Ok(())
 }
 

@@ -279,20 +279,9 @@ impl Recording {
                 Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")))
             }
         };
-        let mut recording = id::Recording::new(times);
-        if let Some(force) = given("force", force)? {
-            recording = recording.with_force(force);
-        }
-        if let Some(deflection) = given("deflection", deflection)? {
-            recording = recording.with_deflection(deflection);
-        }
-        if let Some(drive) = given("drive", drive)? {
-            recording = recording.with_drive(drive);
-        }
-        if let Some(depth) = given("depth", depth)? {
-            recording = recording.with_depth(depth);
-        }
-        Ok(Recording(recording))
+        let (force, deflection) = (given("force", force)?, given("deflection", deflection)?);
+        let (drive, depth) = (given("drive", drive)?, given("depth", depth)?);
+        Ok(Recording(id::Recording { times, force, deflection, drive, depth, columns: Vec::new() }))
     }
 
     /// Reads a text file whose headings name the columns and their units, with the keywords of `Measurements.from_csv`.
@@ -319,18 +308,18 @@ impl Recording {
     /// The columns taken from a file: name, number of the column from 0, and its heading.
     #[getter]
     fn columns(&self) -> Vec<(&str, usize, &str)> {
-        self.0.columns().iter().map(|taken| (taken.name(), taken.index(), taken.heading())).collect()
+        self.0.columns.iter().map(|taken| (taken.name(), taken.index(), taken.heading())).collect()
     }
 
     /// A column by its name: "times", "force", "deflection", "drive" or "depth"; None without it.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         let names = [("times", 0), ("force", 1), ("deflection", 2), ("drive", 3), ("depth", 4)];
         let column = match choice("name", name, &names)? {
-            0 => Some(self.0.times()),
-            1 => self.0.force(),
-            2 => self.0.deflection(),
-            3 => self.0.drive(),
-            _ => self.0.depth(),
+            0 => Some(&self.0.times),
+            1 => self.0.force.as_ref(),
+            2 => self.0.deflection.as_ref(),
+            3 => self.0.drive.as_ref(),
+            _ => self.0.depth.as_ref(),
         };
         Ok(column.map(|column| column.to_vec().into_pyarray(py).into_any()))
     }

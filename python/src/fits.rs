@@ -24,10 +24,7 @@ pub struct Estimate(id::Estimate);
 #[pymethods]
 impl Estimate {
     fn __repr__(&self) -> String {
-        format!(
-            "Estimate({}={:e}, 95 %: {:e} to {:e})",
-            self.0.name, self.0.value, self.0.interval[0], self.0.interval[1]
-        )
+        format!("Estimate({})", self.0)
     }
 }
 
@@ -204,9 +201,8 @@ impl Fit {
     }
 
     fn __repr__(&self) -> String {
-        let all: Vec<String> =
-            self.0.estimates().iter().map(|of| format!("{}={:e} ± {:.1e}", of.name, of.value, of.deviation)).collect();
-        format!("Fit({})", all.join(", "))
+        let all: Vec<String> = self.0.estimates().iter().map(id::Estimate::to_string).collect();
+        format!("Fit({})", all.join("; "))
     }
 }
 
@@ -231,8 +227,8 @@ getters! {Fit, of:
     sigma: f64 = of.sigma();
     /// Akaike's criterion, corrected for the number of samples: less is better.
     aicc: f64 = of.aicc();
-    /// Probability of residuals as extreme by their runs of one sign, and by their correlations, if the model is right.
-    probabilities: (f64, f64) = (of.runs().probability, of.correlations().probability);
+    /// Probability of correlations of the residuals as great, if the model is right.
+    probability: f64 = of.probability();
 }
 
 impl Fit {

@@ -116,11 +116,15 @@ impl Identification {
         if let Some(sigma) = known_sigma {
             identification = identification.known_sigma(sigma);
         }
-        for (name, value) in fix.into_iter().flatten() {
-            identification = identification.fix(name.extract()?, value.extract()?);
-        }
-        for (name, value) in start.into_iter().flatten() {
-            identification = identification.start(name.extract()?, value.extract()?);
+        let names = identification.model().parameters();
+        type Give = fn(id::Identification, &str, f64) -> id::Identification;
+        for (given, give) in [(fix, id::Identification::fix as Give), (start, id::Identification::start)] {
+            for (name, value) in given.map(named).transpose()?.unwrap_or_default() {
+                if !names.contains(&name) {
+                    return Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise();
+                }
+                identification = give(identification, &name, value);
+            }
         }
         Ok(Identification(identification))
     }

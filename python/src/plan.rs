@@ -85,7 +85,8 @@ impl Plan {
         let mut listener = Listener::new(progress);
         let plan = py.detach(|| {
             let of_grid = |grid: &viscocontact::Grid| kernel_on(made, grid);
-            let mut plan = vp::Plan::builder(geometry, body, &*history, until).accuracy(accuracy).area(area).fields_at(&fields);
+            let mut plan =
+                vp::Plan::builder(geometry, body, &*history, until).accuracy(accuracy).area(area).fields_at(&fields);
             for (axis, period) in Axis::BOTH.into_iter().zip([periods.0, periods.1]) {
                 if let Some(length) = period {
                     plan = plan.period(axis, length);

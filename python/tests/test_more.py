@@ -109,6 +109,10 @@ def test_identification():
     assert fit.material().contact_compliance(1e9) == pytest.approx(1 / fit["Einf"].value, rel=1e-6)
     with pytest.raises(KeyError, match="there are E0, Einf, tau"):
         fit["G"]
+    assert "95 %" in repr(fit) and 0 <= fit.probability <= 1
+    for given in ("fix", "start"):
+        with pytest.raises(ValueError, match="E1.*E0, Einf, tau"):
+            vc.Identification("zener", **{given: {"E1": 1.0}})
     assert [type(one) for one in zener.fit_each([curve, curve])] == [vc.Fit, vc.Fit]
 
 

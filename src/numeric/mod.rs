@@ -3,11 +3,13 @@
 mod hermite;
 mod least;
 mod non_negative;
+mod root;
 
 pub use hermite::{hermite, hermite_slope};
 pub use least::{golden_section, least};
 pub use non_negative::non_negative_least_squares;
 pub(crate) use non_negative::solve;
+pub use root::root;
 
 /// Euler's constant γ.
 pub(crate) const EULER: f64 = 0.577_215_664_901_532_9;

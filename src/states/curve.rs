@@ -7,14 +7,15 @@ use crate::Grid;
 use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::Tilt;
-use crate::numeric::{hermite, hermite_slope};
-use crate::states::interpolation::root;
+use crate::numeric::{hermite, hermite_slope, root};
 use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.
 const NEAREST: f64 = 1e-12;
 /// Least dln δ/dln l of the power below the first state: far below the slope of any shape that contacts are made of.
 const LEAST_SLOPE: f64 = 0.01;
+/// Rounding of a root between states.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// An elastic contact of unit compliance at one level.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -291,7 +292,7 @@ impl ElasticStates {
             // one of the summands is half of the sum at least
             let low = ((half - first.depth) / first.slope).min(half - give - first.level);
             let at = |s: f64| excess([first.depth + first.slope * s, first.slope, first.level + s]);
-            let level = (first.level + root([low, 0.0], at)).exp();
+            let level = (first.level + root([low, 0.0], ROUNDING, at)).exp();
             // what has no digits left is no contact
             return if level < f64::MIN_POSITIVE { 0.0 } else { level };
         }
@@ -303,7 +304,7 @@ impl ElasticStates {
                 excess([hermite(depths, slopes, s), hermite_slope(depths, slopes, s) / length, a.level + s * length]);
             [value, slope * length]
         };
-        (a.level + root([0.0, 1.0], at) * length).exp()
+        (a.level + root([0.0, 1.0], ROUNDING, at) * length).exp()
     }
 
     /// A quantity of the states that is a power of the level between two of them; below the first one, it falls as the power

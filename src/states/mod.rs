@@ -46,7 +46,6 @@ mod control;
 mod curve;
 mod elastic;
 mod fields;
-mod interpolation;
 mod levels;
 mod outside;
 mod pressed;

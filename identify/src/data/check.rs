@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use crate::data::error::DataError;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::statistics::{is_flat, mean, range, scatter};
@@ -33,12 +32,12 @@ impl Curve {
     /// may pass.
     ///
     /// # Errors
-    /// [`DataError`], [`Error::NoContact`] or [`Error::BeyondStates`], with what to change.
+    /// What is wrong and what to change, such as [`Error::ForceFlipped`] or [`Error::BeyondStates`].
     pub fn check(&self) -> Result<()> {
         let (drive, force) = (self.experiment.protocol.drive(), self.force());
         let (points, [first, last]) = (force.len(), range(drive));
         if points < LEAST_POINTS {
-            return Err(DataError::TooFewPoints { points, least: LEAST_POINTS }.into());
+            return Err(Error::ShortCurve { points, least: LEAST_POINTS });
         }
         if is_flat(force) {
             return Err(Error::NoContact { curve: 0 });
@@ -63,8 +62,8 @@ impl Curve {
                 (high - low).max(0.0)
             });
             let is_at_low_drive = shallow > 2.0 * deep;
-            let drive_flipped = is_at_low_drive.then_some(DataError::DriveFlipped { shallow, deep });
-            return Err(drive_flipped.unwrap_or(DataError::ForceFlipped { fall }).into());
+            let drive_flipped = is_at_low_drive.then_some(Error::DriveFlipped { shallow, deep });
+            return Err(drive_flipped.unwrap_or(Error::ForceFlipped { fall }));
         }
         let squares: f64 = lowest.iter().map(|force| (force - shallow).powi(2)).sum();
         if greatest - shallow <= ABOVE_BASELINE * (squares / lowest.len() as f64).sqrt() {
@@ -85,7 +84,7 @@ impl Curve {
         let [rise, travel] = [force[peak] - force[touch], drive[peak] - drive[touch]];
         let deflection = rise / self.experiment.stiffness;
         if deflection > 1.1 * travel {
-            return Err(DataError::SpringTooSoft { deflection, travel }.into());
+            return Err(Error::SpringTooSoft { deflection, travel });
         }
         let depth = travel - deflection;
         if depth <= 0.0 {
@@ -95,9 +94,9 @@ impl Curve {
         let level = self.experiment.level_within(depth)?;
         let radius = |depth: f64| (self.experiment.tip.area(self.experiment.level(depth)) / PI).sqrt();
         if depth > STEEPEST * radius(depth) && 1e-3 * depth < radius(1e-3 * depth) {
-            return Err(DataError::DepthTooLarge { depth, radius: radius(depth) }.into());
+            return Err(Error::DepthTooLarge { depth, radius: radius(depth) });
         }
         let modulus = rise / level;
-        if (MODULI[0]..=MODULI[1]).contains(&modulus) { Ok(()) } else { Err(DataError::Modulus { modulus }.into()) }
+        if (MODULI[0]..=MODULI[1]).contains(&modulus) { Ok(()) } else { Err(Error::Modulus { modulus }) }
     }
 }

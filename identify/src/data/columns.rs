@@ -4,8 +4,7 @@ use viscocontact::TextError;
 use viscocontact::input::{Quantity, TakenColumn, TextTable, WantedColumn};
 
 use crate::data::Recording;
-use crate::data::error::DataError;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 const fn wanted(name: &'static str, words: &'static [&'static str], quantity: Quantity) -> WantedColumn {
     WantedColumn { name, words, others: &["rate", "speed", "velocity"], quantity, by_unit: false }
@@ -50,7 +49,7 @@ impl Recording {
         for pair in rows.windows(2) {
             let [previous, value] = [&pair[0], &pair[1]].map(|row| units[0] * row.values[0]);
             if value <= previous {
-                return Err(DataError::TimesNotAscending { line: pair[1].line, value, previous }.into());
+                return Err(Error::RowsNotAscending { line: pair[1].line, value, previous });
             }
         }
         let column = |wanted: &WantedColumn| -> Option<Vec<f64>> {

@@ -2,7 +2,6 @@
 
 mod check;
 mod columns;
-mod error;
 
 use std::io::Read;
 use std::path::Path;
@@ -12,10 +11,9 @@ use viscocontact::TextFormat;
 use viscocontact::input::{TakenColumn, TextTable};
 use viscocontact::states::ElasticStates;
 
-use crate::error::{Result, positive};
+use crate::error::{Error, Result, positive};
 use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
-pub use error::DataError;
 
 /// The columns of a measured curve: from a text file with headings, or from arrays.
 ///
@@ -46,59 +44,30 @@ pub use error::DataError;
 /// let recording = Recording::from_csv_reader(text.as_bytes(), TextFormat::default())?;
 /// let curve = recording.spring_curve(&ElasticStates::sphere(5.0e-6)?, 0.1)?;
 /// assert_eq!(curve.force().len(), 100);
+/// // the same from arrays
+/// let [drive, deflection] = [recording.drive, recording.deflection];
+/// let arrays = Recording { times: recording.times, drive, deflection, ..Recording::default() };
+/// assert_eq!(arrays.spring_curve(&ElasticStates::sphere(5.0e-6)?, 0.1)?, curve);
 /// # Ok::<(), viscocontact_identify::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "users write it out")]
 pub struct Recording {
-    times: Vec<f64>,
-    force: Option<Vec<f64>>,
-    deflection: Option<Vec<f64>>,
-    drive: Option<Vec<f64>>,
-    depth: Option<Vec<f64>>,
-    /// What was taken for what in a file.
-    columns: Vec<TakenColumn>,
+    /// The times \[s\].
+    pub times: Vec<f64>,
+    /// The force at each time \[N\], positive where it presses.
+    pub force: Option<Vec<f64>>,
+    /// The deflection of the spring \[m\].
+    pub deflection: Option<Vec<f64>>,
+    /// The position of the base of the spring \[m\].
+    pub drive: Option<Vec<f64>>,
+    /// The depth of the tip \[m\].
+    pub depth: Option<Vec<f64>>,
+    /// What was taken for what in a file, with headings and units; empty for arrays.
+    pub columns: Vec<TakenColumn>,
 }
 
 impl Recording {
-    /// A recording at `times` \[s\]; its columns are added by [`Recording::with_force`] and the like.
-    ///
-    /// ```
-    /// use viscocontact_identify::Recording;
-    ///
-    /// let times: Vec<f64> = (0..100).map(|k| 0.01 * f64::from(k)).collect();
-    /// let depth: Vec<f64> = times.iter().map(|t| 1.0e-6 * t).collect();
-    /// let force = depth.iter().map(|d| 2.0 * d.powf(1.5)).collect();
-    /// let recording = Recording::new(times).with_depth(depth).with_force(force);
-    /// # let _ = recording;
-    /// ```
-    pub fn new(times: Vec<f64>) -> Recording {
-        Recording { times, force: None, deflection: None, drive: None, depth: None, columns: Vec::new() }
-    }
-
-    /// The same with the force \[N\] at each time, positive where it presses.
-    #[must_use]
-    pub fn with_force(self, force: Vec<f64>) -> Recording {
-        Recording { force: Some(force), ..self }
-    }
-
-    /// The same with the deflection of the spring \[m\] at each time.
-    #[must_use]
-    pub fn with_deflection(self, deflection: Vec<f64>) -> Recording {
-        Recording { deflection: Some(deflection), ..self }
-    }
-
-    /// The same with the position of the base of the spring \[m\] at each time.
-    #[must_use]
-    pub fn with_drive(self, drive: Vec<f64>) -> Recording {
-        Recording { drive: Some(drive), ..self }
-    }
-
-    /// The same with the depth of the tip \[m\] at each time.
-    #[must_use]
-    pub fn with_depth(self, depth: Vec<f64>) -> Recording {
-        Recording { depth: Some(depth), ..self }
-    }
-
     /// Reads a text file. `format` says how it is written, where this is not found out.
     ///
     /// # Errors
@@ -114,36 +83,6 @@ impl Recording {
     /// As [`Recording::from_csv`].
     pub fn from_csv_reader(reader: impl Read, format: TextFormat) -> Result<Recording> {
         Recording::from_table(&TextTable::read(reader, format)?)
-    }
-
-    /// The times \[s\].
-    pub fn times(&self) -> &[f64] {
-        &self.times
-    }
-
-    /// The force \[N\].
-    pub fn force(&self) -> Option<&[f64]> {
-        self.force.as_deref()
-    }
-
-    /// The deflection of the spring \[m\].
-    pub fn deflection(&self) -> Option<&[f64]> {
-        self.deflection.as_deref()
-    }
-
-    /// The position of the base of the spring \[m\].
-    pub fn drive(&self) -> Option<&[f64]> {
-        self.drive.as_deref()
-    }
-
-    /// The depth of the tip \[m\].
-    pub fn depth(&self) -> Option<&[f64]> {
-        self.depth.as_deref()
-    }
-
-    /// The columns of the file that were read, with their headings and units; none of arrays.
-    pub fn columns(&self) -> &[TakenColumn] {
-        &self.columns
     }
 
     /// The same with the other sign of force and deflection: for instruments whose force is negative where it presses.
@@ -170,9 +109,9 @@ impl Recording {
     /// If there is no column of the depth or of the force; those of [`Curve::check`].
     pub fn depth_curve(&self, tip: &Arc<ElasticStates>) -> Result<Curve> {
         let cure = "name a column 'depth', or use Recording::spring_curve";
-        let depth = self.depth.clone().ok_or(DataError::NoColumn { column: "depth", cure })?;
+        let depth = self.depth.clone().ok_or(Error::NoColumn { column: "depth", cure })?;
         let cure = "name a column 'F', or use Recording::spring_curve, which takes a deflection";
-        let force = self.force.clone().ok_or(DataError::NoColumn { column: "force", cure })?;
+        let force = self.force.clone().ok_or(Error::NoColumn { column: "force", cure })?;
         let curve = Curve::new(Experiment::new(Protocol::new(self.times.clone(), depth)?, Arc::clone(tip)), force)?;
         curve.check().map(|()| curve)
     }
@@ -186,11 +125,11 @@ impl Recording {
     pub fn spring_curve(&self, tip: &Arc<ElasticStates>, stiffness: f64) -> Result<Curve> {
         positive("stiffness of the spring", stiffness)?;
         let cure = "name a column 'z', or use Recording::depth_curve";
-        let drive = self.drive.clone().ok_or(DataError::NoColumn { column: "drive", cure })?;
+        let drive = self.drive.clone().ok_or(Error::NoColumn { column: "drive", cure })?;
         let deflected = || self.deflection.as_ref().map(|column| column.iter().map(|d| stiffness * d).collect());
         let cure = "name a column 'F' or 'deflection'";
         let force =
-            self.force.clone().or_else(deflected).ok_or(DataError::NoColumn { column: "force or deflection", cure })?;
+            self.force.clone().or_else(deflected).ok_or(Error::NoColumn { column: "force or deflection", cure })?;
         let protocol = Protocol::new(self.times.clone(), drive)?;
         let curve = Curve::new(Experiment::new(protocol, Arc::clone(tip)).with_spring(stiffness)?, force)?;
         curve.check().map(|()| curve)

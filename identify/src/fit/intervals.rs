@@ -1,15 +1,16 @@
 //! Intervals from the profile of the sum of squares.
 
+use viscocontact::numeric::root;
+
 use crate::error::{Error, Result, within};
 use crate::fit::Fit;
-use crate::forward::root;
 use crate::least_squares::square;
 use crate::parameters::Parameter;
 use crate::statistics::fisher;
 
 /// Widest interval that is searched, in standard deviations.
 const WIDEST: f64 = 30.0;
-/// Where no fit is found, the sum of squares is beyond the threshold by so many times its distance from the least one.
+/// Where no fit is found, the sum of squares is above the least one by so many times the distance of the threshold.
 const NO_FIT: f64 = 100.0;
 /// Accuracy of a limit, in standard deviations.
 const ENOUGH: f64 = 1e-3;
@@ -27,7 +28,7 @@ impl Fit {
         let unknown = || Error::UnknownParameter { name: name.to_string(), names: names() };
         let deviation = self.estimate(name).ok_or_else(unknown)?.deviation;
         let mut problem = self.problem.clone();
-        let threshold = self.sum + self.sigma * self.sigma * fisher(confidence, self.freedom.max(1.0));
+        let threshold = self.sigma * self.sigma * fisher(confidence, self.freedom.max(1.0));
         let index = problem.parameters.iter().position(|parameter| parameter.name == name).ok_or_else(unknown)?;
         let Parameter { scale, unit, .. } = problem.parameters[index];
         // at a limit, a factor of e
@@ -37,23 +38,27 @@ impl Fit {
         let mut limits = [0.0; 2];
         for (limit, side) in limits.iter_mut().zip([-1.0, 1.0]) {
             let mut values = self.values.clone();
-            // the threshold less the sum of squares, at a distance in standard deviations
-            let mut rest = |distance: f64| -> f64 {
+            // the sum of squares above the least one, at a distance in standard deviations
+            let mut rise = |distance: f64| -> f64 {
                 values[index] = scale.back(centre + side * distance * deviation);
                 problem.parameters[index].given = Some(values[index]);
                 match self.identification.minimum(&problem, problem.coordinates(&values)) {
                     Ok(minimum) => {
                         values = problem.values(&minimum.coordinates);
-                        threshold - square(&minimum.residuals)
+                        square(&minimum.residuals) - self.sum
                     }
-                    Err(_) => NO_FIT * (self.sum - threshold),
+                    Err(_) => NO_FIT * threshold,
                 }
             };
             let (mut low, mut high) = (0.0, 1.0);
-            while high < WIDEST && rest(high) > 0.0 {
+            while high < WIDEST && rise(high) < threshold {
                 (low, high) = (high, 1.7 * high);
             }
-            let found = root::<Error>([low, high], ENOUGH, |distance| Ok(rest(distance)))?;
+            // nearly a parabola
+            let found = root([low, high], ENOUGH, |distance| {
+                let rise = rise(distance);
+                [rise - threshold, 2.0 * rise / distance]
+            });
             *limit = scale.back(if found < WIDEST { centre + side * found * deviation } else { side * f64::INFINITY });
         }
         Ok(limits)

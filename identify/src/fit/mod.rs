@@ -21,11 +21,14 @@ use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
 use crate::problem::{Part, Problem};
 use crate::series::Prony;
-use crate::statistics::{ResidualTest, correlation_test, runs_test, student};
+use crate::statistics::{correlation_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
 pub use variants::Variant;
+
+/// A parameter that moves by less than this fraction with a coordinate hardly depends on it.
+const LITTLE: f64 = 0.1;
 
 /// One identified parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,7 +90,7 @@ impl Fit {
             return Err(Error::TooFewPoints { points, parameters: count });
         }
         let freedom = (points - count) as f64;
-        let sigma = identification.sigma().unwrap_or_else(|| match identification.is_robust() {
+        let sigma = identification.sigma().unwrap_or_else(|| match identification.robust {
             true => robust_deviation(&problem, residuals, freedom),
             false => (sum / freedom).sqrt(),
         });
@@ -95,7 +98,7 @@ impl Fit {
         let scales = problem.scales(coordinates);
         let (weighted, _) = inverse(&free, jacobian, sigma)?;
         let sandwich = &scales * sandwich(&problem, &minimum, &weighted) * scales.transpose();
-        let all = match identification.is_robust() {
+        let all = match identification.robust {
             true => &problem.without_outliers().jacobian(coordinates)?,
             false => jacobian,
         };
@@ -115,8 +118,8 @@ impl Fit {
         let quantile = student(0.95, freedom.max(1.0));
         let at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
         let estimate = |((k, parameter), at): ((usize, &Parameter), usize)| {
-            // a coordinate at its limit has no deviation; its parameter may have that of another
-            let is_known = (0..count).any(|j| scales[(k, j)] != 0.0 && !limits[j]);
+            // a coordinate at its limit may have any value
+            let is_known = (0..count).all(|j| !limits[j] || scales[(k, j)].abs() < LITTLE);
             let known = |variance: f64| if is_known { variance.sqrt() } else { f64::INFINITY };
             let (value, deviation) = (values[at], known(spread.covariance[k][k]));
             let on_scale = parameter.scale.forward(value);
@@ -289,22 +292,13 @@ impl Fit {
         self.samples.iter().flatten().filter(|sample| sample.contact_depth > 0.0).count()
     }
 
-    /// Runs of residuals of one sign: few of them mean that the model is wrong.
-    pub fn runs(&self) -> ResidualTest {
-        runs_test(&self.white())
-    }
-
-    /// Correlation of residuals: a small probability means that the model is wrong, of the material or of the noise.
-    pub fn correlations(&self) -> ResidualTest {
+    /// Probability of correlations of the residuals as great, if the model is right (Ljung & Box 1978): a small one means that the model is wrong, of
+    /// the material or of the noise.
+    pub fn probability(&self) -> f64 {
         let is_fitted = |part: &&Part| part.whitening.correlation().is_some();
-        correlation_test(&self.white(), self.problem.parts.iter().filter(is_fitted).count())
-    }
-
-    /// The residuals of each curve, made white.
-    fn white(&self) -> Vec<Vec<f64>> {
         let mut white = self.residuals.clone();
         white.iter_mut().zip(&self.problem.parts).for_each(|(residuals, part)| part.whiten(residuals));
-        white
+        correlation_test(&white, self.problem.parts.iter().filter(is_fitted).count())
     }
 
     /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better.

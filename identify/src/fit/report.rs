@@ -85,8 +85,8 @@ pub enum FitWarning {
     },
 }
 
-/// Probability below which a test of the residuals is a warning; there are two tests.
-const UNLIKELY: f64 = 0.005;
+/// Probability below which a test of the residuals is a warning.
+const UNLIKELY: f64 = 0.01;
 /// Correlation of neighbours that is warned of.
 const GREAT_CORRELATION: f64 = 0.98;
 /// Sums of squares that differ by less than this fraction are of one minimum.
@@ -98,8 +98,7 @@ impl Fit {
     /// What a user should know before the parameters are used.
     pub fn warnings(&self) -> Vec<FitWarning> {
         let mut warnings = Vec::new();
-        let is_long = self.runs().probability < UNLIKELY && self.runs().statistic < 0.0;
-        if is_long || self.correlations().probability < UNLIKELY {
+        if self.probability() < UNLIKELY {
             let [over_noise, over_force] = self.misfit();
             warnings.push(FitWarning::Misfit { over_noise, over_force });
         }
@@ -160,7 +159,7 @@ pub fn ranked(candidates: impl IntoIterator<Item = Result<Fit>>) -> Result<Vec<(
     fits.sort_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let Some(best) = fits.first() else { return failure.map_or(Ok(Vec::new()), Err) };
     let of_best = best.aicc();
-    let is_same = |fit: &Fit| !fit.identification.is_robust() && fit.curves == best.curves;
+    let is_same = |fit: &Fit| !fit.identification.robust && fit.curves == best.curves;
     if fits.len() > 1 && !fits.iter().all(is_same) {
         return Err(Error::OtherData);
     }

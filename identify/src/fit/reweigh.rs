@@ -22,7 +22,7 @@ const MEDIAN: f64 = 0.6745;
 impl Identification {
     /// Whether something of the noise is found from the residuals of a fit, and changes the fit.
     pub(super) fn finds_noise(&self, problem: &Problem) -> bool {
-        self.fits_correlation() || self.is_robust() || self.finds_deviations(problem)
+        self.fits_correlation() || self.robust || self.finds_deviations(problem)
     }
 
     /// Whether each curve has a standard deviation of its own.
@@ -62,7 +62,7 @@ impl Identification {
             };
             // of all parameters, the share that this curve determines
             let fitted: f64 = rows.clone().map(leverage).sum();
-            let deviation = if self.is_robust() {
+            let deviation = if self.robust {
                 let mut sizes: Vec<f64> = own.iter().map(|r| r.abs()).collect();
                 sizes.sort_by(f64::total_cmp);
                 sizes[sizes.len() / 2] / MEDIAN
@@ -72,10 +72,10 @@ impl Identification {
             deviations.push(deviation);
             let weight = |r: f64| {
                 let u = r / (REJECTED * deviation);
-                if self.is_robust() && deviation > 0.0 { (1.0 - u * u).max(0.0) } else { 1.0 }
+                if self.robust && deviation > 0.0 { (1.0 - u * u).max(0.0) } else { 1.0 }
             };
             let weights: Vec<f64> = own.iter().map(|&r| weight(r)).collect();
-            if self.is_robust() {
+            if self.robust {
                 let change = weights.iter().zip(&part.outliers).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
                 is_found &= change < FOUND;
             }

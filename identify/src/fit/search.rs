@@ -1,5 +1,8 @@
 //! The search for the parameters of a fit.
 
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::fit::Fit;
@@ -7,8 +10,8 @@ use crate::identification::Identification;
 use crate::least_squares::{Minimum, square};
 use crate::model::Model;
 use crate::problem::Problem;
-use crate::start::{check_contact, starts};
-use crate::statistics::scatter;
+use crate::start::starts;
+use crate::statistics::{is_flat, scatter};
 
 /// Rounds of fits, each with the noise of the one before.
 const MAX_ROUNDS: usize = 12;
@@ -30,7 +33,9 @@ impl Identification {
     /// last elastic state, there are not more points than parameters, or the search does not converge.
     pub fn fit(&self, curves: &[Curve]) -> Result<Fit> {
         let mut problem = self.problem(curves.to_vec())?;
-        check_contact(&problem)?;
+        if let Some(curve) = curves.iter().position(|curve| is_flat(&curve.force)) {
+            return Err(Error::NoContact { curve });
+        }
         let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
         self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
@@ -49,30 +54,65 @@ impl Identification {
         if points <= parameters { Err(Error::TooFewPoints { points, parameters }) } else { Ok(fit) }
     }
 
+    /// Fits each curve alone, as the curves of a force map: the results are in the order of the curves. With the feature `rayon` the
+    /// curves are shared between the threads of the present pool. `done` is called after each fit, for a progress bar. A list of contact points,
+    /// springs, or starts of the material has one for each curve ([`Identification::parameter`]).
+    ///
+    /// ```
+    /// use std::sync::atomic::{AtomicUsize, Ordering};
+    /// use viscocontact::states::ElasticStates;
+    /// use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol};
+    ///
+    /// let protocol = Protocol::trapezoid(1.0e-6, [0.1, 1.0, 0.1], 0.05)?;
+    /// let experiment = Experiment::new(protocol, ElasticStates::sphere(5.0e-6)?);
+    /// let maxwell = Identification::new(Model::Maxwell);
+    /// let curve = |modulus: f64| -> viscocontact_identify::Result<Curve> {
+    ///     let samples = maxwell.respond(&experiment, &[("E0", modulus), ("tau", 0.5)])?;
+    ///     Curve::new(experiment.clone(), samples.iter().map(|sample| sample.force).collect())
+    /// };
+    /// let map = [curve(1.0e3)?, curve(2.0e3)?, curve(3.0e3)?];
+    /// let done = AtomicUsize::new(0);
+    /// let fits = maxwell.fit_each(&map, |_| { done.fetch_add(1, Ordering::Relaxed); });
+    /// assert_eq!((fits.len(), done.into_inner()), (3, 3));
+    /// # Ok::<(), viscocontact_identify::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
+    pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
+        let fit = |(index, curve): (usize, &Curve)| {
+            let fit = self.of_curve(index).fit(std::slice::from_ref(curve));
+            done(&fit);
+            fit
+        };
+        #[cfg(feature = "rayon")]
+        return curves.par_iter().enumerate().map(fit).collect();
+        #[cfg(not(feature = "rayon"))]
+        curves.iter().enumerate().map(fit).collect()
+    }
+
     /// The least of the minima from several starts, of which one is the minimum of each model that this one contains. Most of the search is on
     /// few samples.
     fn global_minimum(&self, problem: &Problem) -> Result<Found> {
-        let (mut contained, mut inside) = (None, Vec::new());
-        for inner in problem.model.contained() {
-            let Some(simpler) = problem.with_model(inner) else { continue };
-            if let Ok(Found { minimum, .. }) = self.global_minimum(&simpler) {
-                contained = Some((inner, square(&minimum.residuals)));
-                let values = simpler.values(&minimum.coordinates);
-                inside.push(problem.coordinates(&problem.of_contained(inner, &values)));
-            }
-        }
+        let inside = problem.model.contained().and_then(|inner| {
+            let simpler = problem.with_model(inner)?;
+            let minimum = self.global_minimum(&simpler).ok()?.minimum;
+            let values = problem.of_contained(inner, &simpler.values(&minimum.coordinates));
+            Some((inner, square(&minimum.residuals), problem.coordinates(&values)))
+        });
+        let start = inside.iter().map(|(.., coordinates)| coordinates.clone());
         let rough = problem.thinned();
         let some = rough.as_ref().unwrap_or(problem);
-        let mut best = self.least(some, inside.iter().cloned().chain(starts(some)?), AGREED.max(some.enough));
+        let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
             best = self.least(problem, best.map(|minimum| minimum.coordinates).into_iter(), AGREED);
             let sum = |found: &Result<Minimum>| found.as_ref().map_or(f64::INFINITY, |m| square(&m.residuals));
-            if contained.is_none_or(|(_, least)| sum(&best) > least) {
-                let again = self.least(problem, inside.into_iter(), AGREED);
+            if inside.as_ref().is_none_or(|(_, least, _)| sum(&best) > *least) {
+                let again = self.least(problem, start, AGREED);
                 best = if sum(&again) < sum(&best) { again } else { best };
             }
         }
-        Ok(Found { minimum: best?, contained })
+        Ok(Found { minimum: best?, contained: inside.map(|(model, sum, _)| (model, sum)) })
     }
 
     /// The least of the minima from several starts; two that agree end the search.

@@ -87,7 +87,7 @@ fn recover<const N: usize>(state: &mut [Real<N>], prony: &Prony<Real<N>>, moment
         pressure += moments.decay[i] * *state;
         unit += prony.moduli[i] * moments.moments[i][0];
     }
-    let rise = -pressure / unit;
+    let rise = Real::from(0.0) - pressure / unit;
     for (i, state) in state.iter_mut().enumerate() {
         *state = moments.decay[i] * *state + prony.moduli[i] * rise * moments.moments[i][0];
     }

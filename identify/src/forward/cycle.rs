@@ -14,19 +14,16 @@
 mod shrinking;
 
 use crate::error::Result;
-use crate::forward::Response;
+use crate::forward::Sample;
 use crate::forward::column::Columns;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::moments::Moments;
 use crate::forward::real::Real;
-use crate::forward::roots::Roots;
 use crate::forward::tip::{Elastic, Tip};
 use crate::series::Prony;
 
 /// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
 const HELD: f64 = 1e-12;
-/// Roots end where they move by less than this fraction of a depth, or of an interval.
-const CONVERGED: [f64; 2] = [1e-14, 1e-11];
 
 /// The end of an interval in which the contact grew.
 #[derive(Clone, Copy, Debug)]
@@ -51,13 +48,12 @@ struct Edge<const N: usize> {
 }
 
 /// A contact up to the present.
-pub(super) struct Cycle<'a, const N: usize> {
+pub(crate) struct Cycle<'a, const N: usize> {
     prony: &'a Prony<Real<N>>,
     tip: &'a Tip,
     times: &'a [f64],
     /// 1/k of the spring \[m/N\].
     give: Real<N>,
-    roots: &'a mut Roots,
     /// Intervals of growth up to the edge, with the terms at each node.
     nodes: Vec<Node<N>>,
     past: Vec<Term<N>>,
@@ -78,20 +74,14 @@ pub(super) struct Cycle<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Cycle<'a, N> {
-    pub(super) fn new(
-        prony: &'a Prony<Real<N>>,
-        tip: &'a Tip,
-        give: Real<N>,
-        times: &'a [f64],
-        roots: &'a mut Roots,
-    ) -> Self {
+    /// A tip on a spring of this `give`; the contact is computed at some times.
+    pub(crate) fn new(prony: &'a Prony<Real<N>>, tip: &'a Tip, give: Real<N>, times: &'a [f64]) -> Self {
         let (zero, terms) = (Real::from(0.0), vec![Term::default(); prony.moduli.len()]);
         Cycle {
             prony,
             tip,
             times,
             give,
-            roots,
             nodes: Vec::new(),
             past: Vec::new(),
             edge: Edge { node: 0, share: zero, extent: zero, elastic: tip.first() },
@@ -108,19 +98,28 @@ impl<'a, const N: usize> Cycle<'a, N> {
         }
     }
 
-    /// Computes a response for each time; `record` is given each with the terms of its force.
-    pub(super) fn follow(&mut self, drive: &[Real<N>], mut record: impl FnMut(Response<N>, &[Term<N>])) -> Result<()> {
+    /// Follows a drive beyond the contact point \[m\]; `record` is given the contact at each time.
+    pub(crate) fn follow(mut self, drive: &[Real<N>], mut record: impl FnMut(&Self)) -> Result<()> {
         for (sample, (&time, &z)) in self.times.iter().zip(drive).enumerate() {
             self.advance(sample, Real::from(time), z)?;
-            let (force, depth) = (self.sum(|term| term.force), self.depth);
-            let contact_depth = if self.nodes.is_empty() { Real::from(0.0) } else { self.edge.extent };
-            record(Response { force, depth, contact_depth }, &self.terms);
+            record(&self);
         }
         Ok(())
     }
 
-    fn sum(&self, of: impl Fn(Term<N>) -> Real<N>) -> Real<N> {
-        self.terms.iter().fold(Real::from(0.0), |sum, &term| sum + of(term))
+    pub(crate) fn force(&self) -> Real<N> {
+        self.forces().fold(Real::from(0.0), |sum, force| sum + force)
+    }
+
+    /// The force of each term of the series.
+    pub(crate) fn forces(&self) -> impl Iterator<Item = Real<N>> {
+        self.terms.iter().map(|term| term.force)
+    }
+
+    /// The present without derivatives.
+    pub(crate) fn sample(&self) -> Sample {
+        let contact_depth = if self.nodes.is_empty() { 0.0 } else { self.edge.extent.value() };
+        Sample { force: self.force().value(), depth: self.depth.value(), contact_depth }
     }
 
     /// Σ over the terms after the present interval.
@@ -301,7 +300,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
                 if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
                     return Err(tip.beyond(z.value()));
                 }
-                self.roots.solve([released, end], CONVERGED[0] * deepest.abs(), excess)?
+                Real::root([released, end], excess)?
             } else {
                 z
             };

@@ -5,11 +5,11 @@ use crate::forward::tip::Elastic;
 
 /// One term Eᵢ exp(−t/τᵢ) of the series at one time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Term<const N: usize> {
+pub(super) struct Term<const N: usize> {
     /// ∫ Eᵢ exp(−(t − s)/τᵢ) dδ of the tip \[Pa m\].
     pub(super) tip: Real<N>,
     /// Its part of the force of the columns in contact \[N\].
-    pub(crate) force: Real<N>,
+    pub(super) force: Real<N>,
     /// Its part of the pressure of the column at the edge \[Pa m\]: the parts of all terms cancel there.
     pub(super) edge: Real<N>,
 }

@@ -29,21 +29,22 @@ impl<const N: usize> Moments<N> {
         self.moments.clear();
         for &rate in rates {
             let a = rate * length;
-            let of_a = moments(a.value());
-            self.decay.push((-a).exp());
+            let (decay, of_a) = moments(a.value());
+            self.decay.push(a.mapped(decay, -decay));
             // dMₖ/da = Mₖ₊₁ − Mₖ
             self.moments.push([0, 1, 2].map(|k| a.mapped(of_a[k], of_a[k + 1] - of_a[k])));
         }
     }
 }
 
-/// Moments of ξ⁰ … ξ³ under exp(−a (1 − ξ)).
-fn moments(a: f64) -> [f64; 4] {
+/// exp(−a), and the moments of ξ⁰ … ξ³ under exp(−a (1 − ξ)).
+fn moments(a: f64) -> (f64, [f64; 4]) {
     if a > 1.0 {
-        let zeroth = -(-a).exp_m1() / a;
+        let decay = (-a).exp();
+        let zeroth = (1.0 - decay) / a;
         let first = (1.0 - zeroth) / a;
         let second = (1.0 - 2.0 * first) / a;
-        return [zeroth, first, second, (1.0 - 3.0 * second) / a];
+        return (decay, [zeroth, first, second, (1.0 - 3.0 * second) / a]);
     }
     // M₃ = 6 Σ (−a)^j/(j + 4)!, and downward from there, where the recursion loses no digits
     let (mut third, mut term) = (0.0, 0.25);
@@ -56,7 +57,8 @@ fn moments(a: f64) -> [f64; 4] {
     }
     let second = (1.0 - a * third) / 3.0;
     let first = 0.5 * (1.0 - a * second);
-    [1.0 - a * first, first, second, third]
+    let zeroth = 1.0 - a * first;
+    (1.0 - a * zeroth, [zeroth, first, second, third])
 }
 
 #[cfg(test)]
@@ -67,7 +69,7 @@ mod tests {
     fn moments_agree_with_a_fine_sum() {
         for a in [0.0, 1e-9, 0.3, 0.999_999, 1.000_001, 7.0, 300.0] {
             let nodes = 200_000;
-            for (power, moment) in moments(a).into_iter().enumerate() {
+            for (power, moment) in moments(a).1.into_iter().enumerate() {
                 let sum: f64 = (0..nodes)
                     .map(|k| (f64::from(k) + 0.5) / f64::from(nodes))
                     .map(|x| x.powi(power as i32) * (-a * (1.0 - x)).exp())

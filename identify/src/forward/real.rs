@@ -1,12 +1,20 @@
 //! Numbers that carry derivatives.
 
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
+
+use viscocontact::numeric::root;
+
+use crate::error::{Error, Result};
 
 /// Derivatives that one evaluation carries: by parameters and, last, by the unknown of an equation.
 pub(crate) const LANES: usize = 6;
+/// Derivatives of an evaluation without parameters.
+pub(crate) const PLAIN: usize = 1;
+/// Last step to a root, as a share of its bracket: the next one would be its square.
+const CONVERGED: f64 = 1e-6;
 
-/// A number of the forward model with its derivatives by some parameters and, last, by the unknown of an equation; a plain one has none. Values are
-/// computed alike, bit by bit.
+/// A number of the forward model with its derivatives by some parameters and, last, by the unknown of an equation. Values are computed alike, bit by
+/// bit, whatever the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Real<const N: usize> {
     value: f64,
@@ -42,21 +50,30 @@ impl<const N: usize> Real<N> {
         self.with(value, |k| slope * self.slopes[k])
     }
 
-    pub(super) fn exp(self) -> Self {
-        let value = self.value.exp();
-        self.mapped(value, value)
+    /// exp(−x) of this number x.
+    pub(super) fn decay(self) -> Self {
+        let value = (-self.value).exp();
+        self.mapped(value, -value)
     }
 
-    /// The unknown of an equation, at its root.
-    pub(super) fn unknown(root: f64) -> Self {
-        Real::from(root).with(root, |k| if k + 1 == N { 1.0 } else { 0.0 })
-    }
-
-    /// The root of an equation, from the residual at [`Real::unknown`]: by the theorem of implicit functions.
-    pub(super) fn implicit(root: f64, residual: Self) -> Self {
-        let by_unknown = residual.slopes.last().copied().unwrap_or_default();
-        let slope = |k: usize| if k + 1 == N || by_unknown == 0.0 { 0.0 } else { -residual.slopes[k] / by_unknown };
-        residual.with(root, slope)
+    /// The root of a function that falls between two numbers, with the derivatives of its equation by the theorem of implicit functions; an end is
+    /// what it depends on.
+    pub(super) fn root([low, high]: [Self; 2], mut falling: impl FnMut(Self) -> Result<Self>) -> Result<Self> {
+        let (mut residual, width) = (Ok(low), high - low);
+        let share = root([0.0, 1.0], CONVERGED, |share| {
+            let unknown = low.with(share, |k| if k + 1 == N { 1.0 } else { 0.0 });
+            residual = falling(low + unknown * width);
+            residual.as_ref().map_or([f64::NAN; 2], |rest| [-rest.value, -rest.slopes[N - 1]])
+        });
+        let residual = residual?;
+        if share.is_nan() {
+            let reason = "the spring and the contact do not balance: check the stiffness of the spring and the moduli";
+            return Err(Error::NotConverged { iterations: 0, reason });
+        }
+        let by_unknown = residual.slopes[N - 1];
+        let is_end = share == 0.0 || share == 1.0 || by_unknown == 0.0;
+        let slope = |k: usize| if k + 1 == N || is_end { 0.0 } else { -residual.slopes[k] / by_unknown };
+        Ok(low + low.with(share, slope) * width)
     }
 }
 
@@ -116,23 +133,15 @@ impl<const N: usize> Div for Real<N> {
     }
 }
 
-impl<const N: usize> Neg for Real<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.with(-self.value, |k| -self.slopes[k])
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn derivatives_agree_with_differences() {
-        let of = |x: f64, y: f64| (x * y).exp() / (y - x) + x;
+        let of = |x: f64, y: f64| (-x * y).exp() / (y - x) + x;
         let [x, y] = [Real::new(0.7, [1.0, 0.0]), Real::new(1.9, [0.0, 1.0])];
-        let found = (x * y).exp() / (y - x) + x;
+        let found = (x * y).decay() / (y - x) + x;
         assert_eq!(found.value(), of(0.7, 1.9));
         let step = 1e-6;
         let differences = [of(0.7 + step, 1.9) - of(0.7 - step, 1.9), of(0.7, 1.9 + step) - of(0.7, 1.9 - step)];
@@ -145,8 +154,7 @@ mod tests {
     fn a_root_has_the_derivatives_of_its_equation() {
         // u² = x: du/dx = 1/(2u)
         let x = Real::new(4.0, [1.0, 0.0]);
-        let u = Real::unknown(2.0);
-        let root = Real::implicit(2.0, u * u - x);
-        assert_eq!((root.value(), root.slope(0)), (2.0, 0.25));
+        let root = Real::root([Real::from(0.0), x], |u| Ok(x - u * u)).unwrap();
+        assert!((root.value() - 2.0).abs() < 1e-12 && (root.slope(0) - 0.25).abs() < 1e-7, "{root:?}");
     }
 }

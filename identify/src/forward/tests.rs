@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use viscocontact::load::Load;
-use viscocontact::states::StatesContact;
+use viscocontact::states::{ElasticStates, StatesContact};
 
 use super::*;
 
 fn response(tip: &Arc<ElasticStates>, prony: &Prony, times: &[f64], drive: &[f64], give: f64) -> Vec<Sample> {
-    let (mut samples, mut roots) = (Vec::new(), Roots::default());
-    let push = |response: Response<0>, _: &[Term<0>]| samples.push(response.into());
-    let drive: Vec<Real<0>> = drive.iter().map(|&z| Real::from(z)).collect();
-    Forward::new(0, tip, 0.0).respond(&prony.into(), times, &drive, Real::from(give), &mut roots, push).unwrap();
+    let mut samples = Vec::new();
+    let push = |contact: &Cycle<PLAIN>| samples.push(contact.sample());
+    let drive: Vec<Real<PLAIN>> = drive.iter().map(|&z| Real::from(z)).collect();
+    Cycle::new(&prony.into(), &Tip::new(0, tip, 0.0), Real::from(give), times).follow(&drive, push).unwrap();
     samples
 }
 
@@ -179,18 +179,13 @@ fn derivatives_agree_with_differences() {
                 let drive: Vec<f64> = drive.iter().map(|z| z - contact).collect();
                 response(&tip, &prony, &times, &drive, give)
             };
-            let forward = Forward::new(0, &tip, 0.0);
-            let mut roots = Roots::default();
-            let prony = Prony { moduli: vec![at[0], at[1]], rates: vec![0.0, at[2]] };
-            let shifted: Vec<Real<0>> = drive.iter().map(|z| Real::from(z - at[3])).collect();
-            forward.respond(&(&prony).into(), &times, &shifted, Real::from(give), &mut roots, |_, _| {}).unwrap();
             let [einf, e1, rate, contact] = [0, 1, 2, 3]
                 .map(|lane| Real::<LANES>::new(at[lane], std::array::from_fn(|k| f64::from(u8::from(k == lane)))));
             let prony = Prony { moduli: vec![einf, e1], rates: vec![Real::from(0.0), rate] };
             let moved: Vec<Real<LANES>> = drive.iter().map(|&z| Real::from(z) - contact).collect();
             let mut found = Vec::new();
-            let push = |response: Response<LANES>, _: &[Term<LANES>]| found.push(response.force);
-            forward.respond(&prony, &times, &moved, Real::from(give), &mut roots, push).unwrap();
+            let push = |contact: &Cycle<LANES>| found.push(contact.force());
+            Cycle::new(&prony, &Tip::new(0, &tip, 0.0), Real::from(give), &times).follow(&moved, push).unwrap();
             let values = plain(at);
             assert!(found.iter().zip(&values).all(|(dual, plain)| dual.value() == plain.force));
             for lane in 0..4 {

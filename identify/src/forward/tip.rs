@@ -30,7 +30,7 @@ pub(super) struct Elastic<const N: usize> {
 
 /// The elastic states of a tip by depth, a power of it below the first node.
 #[derive(Clone, Debug)]
-pub(super) struct Tip {
+pub(crate) struct Tip {
     /// Index of its curve, for errors.
     curve: usize,
     last_depth: f64,
@@ -42,8 +42,8 @@ pub(super) struct Tip {
 }
 
 impl Tip {
-    /// The depth is 0 at the approach `surface`.
-    pub(super) fn new(curve: usize, tip: &ElasticStates, surface: f64) -> Tip {
+    /// The depth is 0 at the approach `surface`. `curve` is the index of the curve in errors.
+    pub(crate) fn new(curve: usize, tip: &ElasticStates, surface: f64) -> Tip {
         let (states, depth_of) = (tip.states(), |state: &ElasticState| state.approach - surface);
         let exponent = |state: &ElasticState| state.load_stiffness * depth_of(state) / state.level;
         let last_depth = states.last().map_or(0.0, |last| tip.approach(last.level) - surface);

@@ -1,6 +1,6 @@
 //! Steps in which the contact shrinks: columns leave the tip where their pressure falls to zero.
 
-use super::{CONVERGED, Cycle, Edge, Node};
+use super::{Cycle, Edge, Node};
 use crate::error::Result;
 use crate::forward::column::Column;
 use crate::forward::growth::{Growth, Term};
@@ -15,10 +15,9 @@ impl<const N: usize> Cycle<'_, N> {
         let count = self.terms.len();
         let past = &self.past[node * count..];
         let a = self.nodes[node];
-        if share.value() == 0.0 || share.value() == 1.0 && self.nodes.len() > node + 1 {
-            let next = share.value() as usize;
-            self.then.copy_from_slice(&past[next * count..][..count]);
-            return Ok(self.nodes[node + next]);
+        if share.value() == 0.0 {
+            self.then.copy_from_slice(&past[..count]);
+            return Ok(a);
         }
         let b = self.nodes[node + 1];
         let [length, rise, width] =
@@ -36,19 +35,19 @@ impl<const N: usize> Cycle<'_, N> {
         Ok(Node { time: a.time + length, depth: a.depth + rise, extent, elastic, fresh: false })
     }
 
-    /// The pressure of a column at a sample, times the length that one sample adds to it, if the tip moves so far that the spring is
-    /// balanced with the contact up to this column.
-    fn pressure(&mut self, node: usize, share: Real<N>, time: Real<N>, z: Real<N>) -> Result<[Real<N>; 3]> {
+    /// The contact when a column touched; the pressure of this column at a sample, times the length that one sample adds to it, and the depth of the
+    /// tip, if it moves so far that the spring is balanced with the contact up to this column; and the rise without pressure.
+    fn pressure(&mut self, node: usize, share: Real<N>, time: Real<N>, z: Real<N>) -> Result<(Node<N>, [Real<N>; 3])> {
         let at = self.look(node, share)?;
         let (mut force, mut past) = (Real::from(0.0), Real::from(0.0));
         for (term, &rate) in self.then.iter().zip(&self.prony.rates) {
-            let decay = (-(rate * (time - at.time))).exp();
+            let decay = (rate * (time - at.time)).decay();
             past += decay * (term.tip - term.edge);
             force += decay * (term.force - at.elastic.stiffness * term.edge);
         }
         let depth = if self.springs() { z - self.give * force } else { z };
         let (unit, tip) = (self.stiffness(), self.decayed(|term| term.tip));
-        Ok([unit * (depth - self.depth) + tip - past, depth, (past - tip) / unit])
+        Ok((at, [unit * (depth - self.depth) + tip - past, depth, (past - tip) / unit]))
     }
 
     /// The contact shrinks to the column without pressure.
@@ -58,11 +57,11 @@ impl<const N: usize> Cycle<'_, N> {
         self.columns.push(last, self.terms.iter().map(|term| term.edge));
         let (mut node, mut upper) = (self.edge.node, self.edge.share);
         loop {
-            let [pressure, _, rise] = self.pressure(node, zero, time, z)?;
+            let (at, [pressure, _, rise]) = self.pressure(node, zero, time, z)?;
             if upper.value() > 0.0 && pressure.value() >= 0.0 {
                 break;
             }
-            let (at, last) = (self.nodes[node], self.columns.next_extent().unwrap_or_default());
+            let last = self.columns.next_extent().unwrap_or_default();
             if node == 0 || upper.value() > 0.0 && (last - at.extent).value() > NEAR * self.greatest {
                 self.release(sample, at, time, rise);
             }
@@ -72,15 +71,11 @@ impl<const N: usize> Cycle<'_, N> {
             }
             (node, upper) = (node - 1, one);
         }
-        let mut roots = std::mem::take(self.roots);
-        let share = roots.solve([zero, upper], CONVERGED[1], |share| Ok(self.pressure(node, share, time, z)?[0]));
-        *self.roots = roots;
-        let share = share?;
-        let [_, depth, _] = self.pressure(node, share, time, z)?;
-        let at = self.look(node, share)?;
+        let share = Real::root([zero, upper], |share| Ok(self.pressure(node, share, time, z)?.1[0]))?;
+        let (at, [_, depth, _]) = self.pressure(node, share, time, z)?;
         let rise = depth - self.depth;
         for (i, then) in self.then.iter().enumerate() {
-            let decay = (-(self.prony.rates[i] * (time - at.time))).exp();
+            let decay = (self.prony.rates[i] * (time - at.time)).decay();
             let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
             let tip = self.moments.decay[i] * self.terms[i].tip + moved;
             let force = decay * then.force + at.elastic.stiffness * (tip - decay * then.tip);
@@ -97,7 +92,7 @@ impl<const N: usize> Cycle<'_, N> {
     /// The column of a node leaves the tip, from the last look at it. It is free from the sample on, where it would be without pressure.
     fn release(&mut self, sample: usize, at: Node<N>, time: Real<N>, rise: Real<N>) {
         let state = |i: usize| {
-            let (then, decay) = (self.then[i], (-(self.prony.rates[i] * (time - at.time))).exp());
+            let (then, decay) = (self.then[i], (self.prony.rates[i] * (time - at.time)).decay());
             let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
             self.moments.decay[i] * self.terms[i].tip + moved - decay * (then.tip - then.edge)
         };

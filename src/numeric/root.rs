@@ -1,0 +1,31 @@
+//! Roots of a function of one number.
+
+/// The root between `low` and `high` of a rising function, given with its slope; the end that is nearer where the function is zero in neither,
+/// NaN where it is NaN. Newton's steps start at the upper end. The bracket is halved where a step leaves it, or where the last step did not halve
+/// the function, so that the search ends: where a step is shorter than `tolerance`, relative to the greater of the root and 1.
+///
+/// ```
+/// let found = viscocontact::numeric::root([0.0, 2.0], 1e-8, |x| [x * x - 2.0, 2.0 * x]);
+/// assert!((found - 2f64.sqrt()).abs() < 1e-15);
+/// ```
+pub fn root([mut low, mut high]: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
+    let (mut s, mut last) = (high, f64::INFINITY);
+    loop {
+        let [excess, slope] = at(s);
+        if excess.is_nan() {
+            return f64::NAN;
+        }
+        if excess > 0.0 {
+            high = s
+        } else {
+            low = s
+        }
+        let (newton, middle) = (s - excess / slope, 0.5 * (low + high));
+        let is_near = |next: f64| (next - s).abs() <= tolerance * s.abs().max(1.0);
+        if is_near(newton) || is_near(middle) {
+            return if is_near(newton) { newton.clamp(low, high) } else { middle };
+        }
+        let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;
+        (s, last) = (if converges { newton } else { middle }, excess.abs());
+    }
+}
