@@ -101,6 +101,11 @@ impl GroupHistory {
         }
     }
 
+    /// Whether groups that are met in a step follow the edge that meets them.
+    pub(crate) fn leads(&self) -> bool {
+        self.rule.leads()
+    }
+
     /// W at the end of the step predicted last, if nothing presses on it, of what stood at 0 and moved by these differences before.
     pub(crate) fn continued(&self, differences: [f64; 2]) -> f64 {
         let [_, of_change, of_bend] = self.rule.tried.past;

@@ -8,11 +8,14 @@ use crate::contact::StepReport;
 use crate::error::{Result, StepError};
 use crate::load::{Load, LoadHistory};
 use crate::run::SAME_TIME;
+use crate::run::driven::Course;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
 
 /// First step after a jump or a corner, over the time to the next one.
 const FIRST_STEP: f64 = 1e-4;
+/// Bodies that relax by this factor within a step come to a corner in steps that are halved.
+const RELAXED: f64 = 2.0;
 /// Rounding of times: no step is shorter than this part of the time.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
 /// Limits of the ratio of a step to the one before.
@@ -153,17 +156,15 @@ impl StepControl {
         self.record.next = 0.0;
     }
 
-    /// Takes the longest step that the tolerance allows, to the time `stop` at most. If it fails, the contact stays as it was.
+    /// Takes the longest step that the tolerance allows, towards the next stop of the run. If it fails, the contact stays as it was.
     pub(super) fn step(
         &mut self,
         contact: &mut StatesContact,
-        history: &dyn LoadHistory,
+        &Course { history, stop, corner, .. }: &Course<'_>,
         tolerance: f64,
-        stop: f64,
     ) -> Result<StepReport> {
         let (now, is_first) = (contact.time(), self.record.next == 0.0);
-        let shortest = SHORTEST * stop;
-        if stop - now <= 2.0 * shortest {
+        if stop - now <= 2.0 * SHORTEST * stop {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
         }
         if self.record.loads.is_empty() {
@@ -172,6 +173,15 @@ impl StepControl {
         if is_first {
             self.record.corner = now;
         }
+        // bodies that part after the corner leave the levels that were met last, and relax most, first
+        let is_fine = corner - now <= FIRST_STEP * (corner - self.record.corner);
+        let stop = if is_first || is_fine || contact.levels.relaxed() < RELAXED {
+            stop
+        } else {
+            stop.min(0.5 * (now + corner))
+        };
+        // times near 0 are resolved more finely
+        let shortest = (SHORTEST * now).max(f64::MIN_POSITIVE);
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
         let growth_of = |otherwise: f64| contact.levels.longest_growth(otherwise);
         let (longest, resists_rates_alone) = (growth_of(MAX_GROWTH), growth_of(MAX_GROWTH) < MAX_GROWTH);

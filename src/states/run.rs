@@ -101,7 +101,7 @@ impl Driven for StatesContact {
         before.copy_from(self);
         let report = match course.given {
             Some((time, load)) => self.step_to(time, time - self.time(), load)?,
-            None => steps.step(self, course.history, *tolerance, course.stop)?,
+            None => steps.step(self, course, *tolerance)?,
         };
         *halved = course.given.is_none();
         *load = match course.given {

@@ -11,8 +11,8 @@ use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, StatesContact};
 
-/// Runs longer than this fail, and only one run in fifty may be long: of wide spectra that part and return, at 1e-5.
-const MOST_STEPS: usize = 12_000;
+/// Runs longer than this fail, and only one run in a hundred may be long: of wide spectra that part and return, at 1e-5.
+const MOST_STEPS: usize = 10_000;
 const LONG: usize = 5000;
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
@@ -250,20 +250,6 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
                 };
                 let [ends, inside] = [off(&found[0]), off(&found[1])];
                 let name = format!("{}, {} steps", scene.name, found[0].len());
-                if std::env::var("STATES_SHOW").is_ok() {
-                    for &(time, values) in &found[0] {
-                        let right = fine.at(time);
-                        let level = scene.body.material.contact_compliance(time) * values[0];
-                        println!(
-                            "{:.4e} {:.6e} {:.6e} fine {:.6e} coarse {:.6e} level at {:.6e}/{:.6e} off {:.3} doubt {:.3}",
-                            time / scene.body.until,
-                            values[0], values[1], right[1], coarse.at(time)[1], level, scene.states.level_at(values[1]),
-                            apart(values, right),
-                            doubt(time),
-                        );
-                    }
-                    println!("greatest {greatest:?} until {:e}", scene.body.until);
-                }
                 let kind = usize::from(!scene.body.is_elastic_at_once());
                 ratios[kind][0].push(ends, &name);
                 ratios[kind][1].push(inside, &name);
@@ -282,7 +268,7 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
         }
     }
     let long: u64 = steps.iter().map(|steps| steps.above(LONG as f64) as u64).sum();
-    assert!(long <= count / 50, "{long} runs of more than {LONG} steps");
+    assert!(long <= count / 100, "{long} runs of more than {LONG} steps");
     let [both, resisting] = ratios.map(|[_, _, both]| both);
     assert!(!judges || both.count() as u64 > count / 2, "{} judged", both.count());
     assert!(!judges || count < 9 || resisting.count() > 0, "no body without elastic response judged");

@@ -1,6 +1,7 @@
 //! The levels of a contact: groups with one past each, and the level up to which they are held.
 
 mod distance;
+mod edge;
 mod merging;
 
 use crate::error::{Error, Result, StatesError, StepError};
@@ -10,6 +11,8 @@ use crate::states::curve::{ElasticStates, Motions};
 /// Rounding of a displacement between 0 and 1, and of levels that are one.
 const ROUNDING: f64 = 1e-9;
 const SAME_LEVEL: f64 = 1e-15;
+/// Of a step, at once.
+const AT_ONCE: f64 = 1e-3;
 /// Room for so many groups is made at once.
 const GROUPS: usize = 256;
 
@@ -110,6 +113,11 @@ impl Levels {
         self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
     }
 
+    /// How many times stiffer the body is at once than over the step predicted last.
+    pub(super) fn relaxed(&self) -> f64 {
+        self.history.stiffness_over(AT_ONCE) / self.history.stiffness_over(1.0)
+    }
+
     /// Whether the body has no elastic response.
     pub(super) fn has_dashpot(&self) -> bool {
         self.history.rule().has_dashpot()
@@ -159,7 +167,7 @@ impl Levels {
             let lead = if plain.level > self.level { self.lead() } else { 0.0 };
             let led = if lead > 0.0 { self.level_of(states, demand, lead) } else { plain };
             // levels that would pull: the edge has slowed down by more than a quadratic describes
-            if lead <= self.swept(led.level) {
+            if lead == 0.0 || lead <= self.swept(led.level) {
                 break led;
             }
             if !self.history.reduce_order(&mut self.trial) {
@@ -242,84 +250,6 @@ impl Levels {
         group.checked_sub(1).map_or((0.0, Motions::default()), |k| (self.groups[k].top, self.groups[k].motions))
     }
 
-    /// What Σ W Δl of levels that the edge meets in a step is more at its end, if nothing presses on them: the edge passes them one by one, and W of
-    /// their mean follows the part that it has passed. So this continues what it passed in the steps before.
-    fn lead(&self) -> f64 {
-        self.history.continued(self.passed).max(0.0)
-    }
-
-    /// Σ (1 − W) Δl of the levels between the edge at the start of the step and this one.
-    fn swept(&self, level: f64) -> f64 {
-        let mut bottom = self.level;
-        let displacements = self.history.displacements().iter().chain(std::iter::once(&0.0));
-        let tops = self.groups.iter().map(|group| group.top.min(level)).chain(std::iter::once(level));
-        let part = |(top, displacement): (f64, &f64)| {
-            let width = (top - bottom).max(0.0);
-            bottom = bottom.max(top);
-            (1.0 - displacement) * width
-        };
-        tops.zip(displacements).map(part).sum()
-    }
-
-    /// Lets the groups between two levels of the edge, which it met in the step, have moved with it before.
-    fn lead_between(&mut self, edges: [f64; 2], lead: f64, swept: f64) {
-        let [first, end] = edges.map(|edge| self.groups_to(edge));
-        for k in first..end {
-            let part = (1.0 - self.history.displacements()[k]) / swept;
-            self.history.lead(k, part, self.passed);
-            self.trial[k] += part * lead;
-        }
-    }
-
-    /// The level that meets a demand, if levels that are met have this lead.
-    fn level_of(&self, states: &ElasticStates, demand: Demand, lead: f64) -> Wanted {
-        let compliance = self.history.rule().compliance();
-        match demand {
-            Demand::Force(force) => {
-                Wanted { level: self.level_of_force(force * compliance + lead), give: f64::INFINITY, sum: 0.0 }
-            }
-            Demand::Depth { depth, give } => {
-                let give = give / compliance;
-                self.level_of_depth(states, give, depth + give * lead)
-            }
-        }
-    }
-
-    /// The level c up to which groups are held where Σ (1 − W) Δl below c is `needed`, F c_Δ under a force F.
-    fn level_of_force(&self, needed: f64) -> f64 {
-        let mut carried = 0.0;
-        for (bottom, _, group, free) in self.spans() {
-            let more = (1.0 - free) * (group.top - bottom);
-            if carried + more >= needed {
-                return if needed > carried { bottom + (needed - carried) / (1.0 - free) } else { bottom };
-            }
-            carried += more;
-        }
-        self.bottom(self.groups.len()).0 + (needed - carried)
-    }
-
-    /// The level c up to which groups are held where D(c) + `give` Σ (1 − W) Δl = `depth`, with D(c) = δ(c) + Σ W Δδ
-    /// above c; NaN beyond the sweep.
-    fn level_of_depth(&self, states: &ElasticStates, give: f64, depth: f64) -> Wanted {
-        let mut reached: f64 =
-            self.spans().map(|(_, lower, group, free)| free.min(1.0) * (group.motions.depth - lower.depth)).sum();
-        if depth <= reached {
-            return Wanted { level: 0.0, give, sum: 0.0 };
-        }
-        for (bottom, lower, group, free) in self.spans() {
-            let rise = (1.0 - free).max(0.0) * (group.motions.depth - lower.depth);
-            let more = rise + (1.0 - free) * give * (group.top - bottom);
-            if reached + more >= depth {
-                let sum = lower.depth + give * bottom + (depth - reached) / (1.0 - free);
-                return Wanted { level: states.level_where(give, sum).clamp(bottom, group.top), give, sum };
-            }
-            reached += more;
-        }
-        let (top, motions) = self.bottom(self.groups.len());
-        let sum = motions.depth + give * top + (depth - reached);
-        Wanted { level: states.level_where(give, sum), give, sum }
-    }
-
     /// Splits the group that contains a level there, or adds a group up to it.
     fn cut_at(&mut self, states: &ElasticStates, level: f64) {
         let group = self.groups.partition_point(|group| group.top < level);
@@ -348,7 +278,7 @@ impl Levels {
     /// Holds the groups up to a level, and commits the step.
     fn hold(&mut self, level: f64) {
         let stiffness = 1.0 / self.history.rule().compliance();
-        let passed = self.swept(level);
+        let passed = if self.history.leads() { self.swept(level) } else { 0.0 };
         self.level = level;
         let held = self.held();
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());

@@ -80,11 +80,11 @@ pub fn read(kind: Kind, bytes: &[u8]) -> std::result::Result<Vec<Vec<f64>>, Stri
             .map_err(|error| error.to_string()),
         Kind::Recording => {
             let recording = Recording::from_csv_reader(bytes, format).map_err(|error| error.to_string())?;
-            let columns = [recording.force(), recording.deflection(), recording.drive(), recording.depth()];
+            let columns = [&recording.force, &recording.deflection, &recording.drive, &recording.depth];
             let row = |(k, time): (usize, &f64)| {
-                std::iter::once(*time).chain(columns.iter().flatten().map(|column| column[k])).collect()
+                std::iter::once(*time).chain(columns.into_iter().flatten().map(|column| column[k])).collect()
             };
-            Ok(recording.times().iter().enumerate().map(row).collect())
+            Ok(recording.times.iter().enumerate().map(row).collect())
         }
         Kind::Matrix => HeightMap::from_text(bytes, [3e-3, 2e-3], um, format).map(of_map).map_err(|e| e.to_string()),
         Kind::Stated(height) => {
