@@ -18,6 +18,8 @@ const FIRST_STEP: f64 = 1e-4;
 const RELAXED: f64 = 2.0;
 /// Rounding of times: no step is shorter than this part of the time.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
+/// So many of the shortest steps after a jump, its creep may be faster than times are resolved.
+const LATE: f64 = 64.0;
 /// Limits of the ratio of a step to the one before.
 const MAX_GROWTH: f64 = 4.0;
 const MIN_GROWTH: f64 = 0.1;
@@ -180,8 +182,9 @@ impl StepControl {
         } else {
             stop.min(0.5 * (now + corner))
         };
-        // times near 0 are resolved more finely
+        // times near 0 are resolved more finely; a jump may come so late that the creep after it is faster than times are resolved
         let shortest = (SHORTEST * now).max(f64::MIN_POSITIVE);
+        let is_late = now > 0.0 && now - self.record.corner <= LATE * shortest;
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
         let growth_of = |otherwise: f64| contact.levels.longest_growth(otherwise);
         let (longest, resists_rates_alone) = (growth_of(MAX_GROWTH), growth_of(MAX_GROWTH) < MAX_GROWTH);
@@ -189,7 +192,9 @@ impl StepControl {
         let aim = if resists_rates_alone { AIM_OF_RATES } else { 1.0 } * of_load * tolerance;
         let mut last: Option<(f64, f64)> = None;
         loop {
-            if length < shortest {
+            if is_late {
+                length = length.max(shortest);
+            } else if length < shortest {
                 return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
             }
             let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
@@ -217,7 +222,7 @@ impl StepControl {
             };
             let most = if error > 0.0 { longest } else { MAX_GROWTH };
             let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
-            if error <= ALLOWED * aim {
+            if error <= ALLOWED * aim || is_late && length <= shortest {
                 self.record.next = match event {
                     Some(_) => growth.clamp(0.5, 1.0) * length,
                     None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
