@@ -164,12 +164,6 @@ impl ExponentialRule {
         self.relaxation.viscosity() > 0.0
     }
 
-    /// Whether elements that are met together in the step predicted last follow the edge that meets them: those of a body without elastic response
-    /// share what its slope at the end answers with the elements met before.
-    pub(super) fn leads(&self) -> bool {
-        self.kept > 1 && !self.has_dashpot()
-    }
-
     /// E∞.
     pub(super) fn equilibrium(&self) -> f64 {
         self.relaxation.equilibrium()

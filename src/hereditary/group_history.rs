@@ -81,6 +81,7 @@ impl GroupHistory {
     /// Accepts the step predicted last, which ends at the displacements `now`.
     pub(crate) fn commit(&mut self, now: &[f64]) {
         self.rule.commit();
+        let leads = self.leads();
         let GroupHistory { rule, columns, twists } = self;
         let [displacements, changes, bends, stresses @ ..] = &mut columns[..] else { return };
         let [of_change, of_bend] = rule.committed.ratios;
@@ -95,21 +96,22 @@ impl GroupHistory {
             combine(column, decay, [one, two, three], [changes, bends, twists]);
             rule.forget_relaxed(column);
         }
-        if rule.leads() {
+        if leads {
             let held = now.iter().enumerate().filter(|(_, now)| **now == 1.0);
             held.for_each(|(k, _)| (changes[k], bends[k]) = (0.0, 0.0));
         }
     }
 
-    /// Whether groups that are met in a step follow the edge that meets them.
+    /// Whether groups that are met in a step follow the edge that meets them, as in quadratic steps; those of a body without elastic response share
+    /// what its slope at the end answers with the groups met before.
     pub(crate) fn leads(&self) -> bool {
-        self.rule.leads()
+        self.rule.kept() > 1 && !self.rule.has_dashpot()
     }
 
     /// W at the end of the step predicted last, if nothing presses on it, of what stood at 0 and moved by these differences before.
     pub(crate) fn continued(&self, differences: [f64; 2]) -> f64 {
         let [_, of_change, of_bend] = self.rule.tried.past;
-        if self.rule.leads() { of_change * differences[0] + of_bend * differences[1] } else { 0.0 }
+        if self.leads() { of_change * differences[0] + of_bend * differences[1] } else { 0.0 }
     }
 
     /// Lets a group have moved by such a part of these differences besides its own.

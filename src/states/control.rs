@@ -176,12 +176,8 @@ impl StepControl {
             self.record.corner = now;
         }
         // bodies that part after the corner leave the levels that were met last, and relax most, first
-        let is_fine = corner - now <= FIRST_STEP * (corner - self.record.corner);
-        let stop = if is_first || is_fine || contact.levels.relaxed() < RELAXED {
-            stop
-        } else {
-            stop.min(0.5 * (now + corner))
-        };
+        let is_far = !is_first && corner - now > FIRST_STEP * (corner - self.record.corner);
+        let stop = if is_far && contact.levels.relaxed() > RELAXED { stop.min(0.5 * (now + corner)) } else { stop };
         // times near 0 are resolved more finely; a jump may come so late that the creep after it is faster than times are resolved
         let shortest = (SHORTEST * now).max(f64::MIN_POSITIVE);
         let is_late = now > 0.0 && now - self.record.corner <= LATE * shortest;
