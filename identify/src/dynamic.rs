@@ -74,7 +74,7 @@ impl Curve {
     ///
     /// # Errors
     /// If the frequency is not finite and positive; if the window holds fewer than two periods, or fewer than four points of each; if
-    /// the mean depth is not positive, or the drive does not oscillate; [`Error::BeyondStates`].
+    /// the mean depth is not positive, or the drive does not oscillate; [`Error::BeyondStates`](crate::Error::BeyondStates).
     pub fn complex_modulus(&self, frequency: f64, window: Range<f64>, contact_point: f64) -> Result<ComplexModulus> {
         positive("frequency", frequency)?;
         let times = self.experiment().protocol().times();

@@ -8,8 +8,8 @@
 /// let found = viscocontact::numeric::root([0.0, 2.0], 1e-8, |x| [x * x - 2.0, 2.0 * x]);
 /// assert!((found - 2f64.sqrt()).abs() < 1e-15);
 /// ```
-pub fn root([mut low, mut high]: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
-    let (mut s, mut last) = (high, f64::INFINITY);
+pub fn root([first, end]: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
+    let ([mut low, mut high], mut s, mut last) = ([first, end], end, f64::INFINITY);
     loop {
         let [excess, slope] = at(s);
         if excess.is_nan() {
@@ -23,7 +23,8 @@ pub fn root([mut low, mut high]: [f64; 2], tolerance: f64, mut at: impl FnMut(f6
         let (newton, middle) = (s - excess / slope, 0.5 * (low + high));
         let is_near = |next: f64| (next - s).abs() <= tolerance * s.abs().max(1.0);
         if is_near(newton) || is_near(middle) {
-            return if is_near(newton) { newton.clamp(low, high) } else { middle };
+            let halved = if low == first { first } else { middle };
+            return if is_near(newton) { newton.clamp(low, high) } else { halved };
         }
         let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;
         (s, last) = (if converges { newton } else { middle }, excess.abs());

@@ -88,7 +88,7 @@ impl StatesContact {
         self.with_interpolant(Interpolant::Linear)
     }
 
-    /// With the steps of adaptive runs: quadratic, but of a body without elastic response or if they are to stay linear.
+    /// With the steps of adaptive runs: quadratic, unless the body has no elastic response or steps are to stay linear.
     pub(super) fn with_quadratic_steps(self) -> StatesContact {
         let is_corrected = self.scene.interpolant == Interpolant::CorrectedLinear;
         if is_corrected && !self.levels.has_dashpot() {

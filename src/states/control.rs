@@ -18,7 +18,7 @@ const FIRST_STEP: f64 = 1e-4;
 const RELAXED: f64 = 2.0;
 /// Rounding of times: no step is shorter than this part of the time.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
-/// So many of the shortest steps after a jump, its creep may be faster than times are resolved.
+/// Within so many of the shortest steps after a jump or a corner, the creep may be faster than times are resolved: such a step is accepted.
 const LATE: f64 = 64.0;
 /// Limits of the ratio of a step to the one before.
 const MAX_GROWTH: f64 = 4.0;
@@ -179,7 +179,7 @@ impl StepControl {
         let is_far = !is_first && corner - now > FIRST_STEP * (corner - self.record.corner);
         let stop = if is_far && contact.levels.relaxed() > RELAXED { stop.min(0.5 * (now + corner)) } else { stop };
         // times near 0 are resolved more finely; a jump may come so late that the creep after it is faster than times are resolved
-        let shortest = (SHORTEST * now).max(f64::MIN_POSITIVE);
+        let shortest = (SHORTEST * now).max(SHORTEST * SHORTEST * stop);
         let is_late = now > 0.0 && now - self.record.corner <= LATE * shortest;
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
         let growth_of = |otherwise: f64| contact.levels.longest_growth(otherwise);

@@ -90,7 +90,8 @@ impl Repeated {
 
     /// Halves its steps; false where they are too many already.
     pub(super) fn halve(&mut self) -> bool {
-        if self.schedule.len() > MOST_HALVED {
+        // the ends graded towards a time are about as many as steps of its shortening
+        if self.schedule.len() > MOST_HALVED || self.shortening * (MOST_HALVED as f64) < 1.0 {
             return false;
         }
         let start = self.origin.time();

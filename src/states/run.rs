@@ -2,6 +2,7 @@
 
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use crate::contact::StepReport;
@@ -122,7 +123,7 @@ impl Driven for StatesContact {
         within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
         let mut contact = if time == end { self.clone() } else { control.before.clone() };
         // an adaptive step is taken in two halves
-        let interpolant = contact.scene.interpolant;
+        let scene = Arc::clone(&contact.scene);
         if control.halved {
             contact = contact.with_quadratic_steps();
         }
@@ -135,7 +136,9 @@ impl Driven for StatesContact {
             contact.step_to(time, time - contact.time(), load)?;
         }
         let report = contact.report(time - start, load);
-        Ok((contact.with_interpolant(interpolant), report))
+        // a clone of this contact, for snapshots
+        contact.scene = scene;
+        Ok((contact, report))
     }
 
     // steps on levels are free: fields have a run of their own

@@ -105,7 +105,7 @@ impl Identification {
         let some = rough.as_ref().unwrap_or(problem);
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
-            best = self.least(problem, best.map(|minimum| minimum.coordinates).into_iter(), AGREED);
+            best = best.and_then(|minimum| self.least(problem, std::iter::once(minimum.coordinates), AGREED));
             let sum = |found: &Result<Minimum>| found.as_ref().map_or(f64::INFINITY, |m| square(&m.residuals));
             if inside.as_ref().is_none_or(|(_, least, _)| sum(&best) > *least) {
                 let again = self.least(problem, start, AGREED);

@@ -11,7 +11,7 @@ use crate::states::curve::{ElasticStates, Motions};
 /// Rounding of a displacement between 0 and 1, and of levels that are one.
 const ROUNDING: f64 = 1e-9;
 const SAME_LEVEL: f64 = 1e-15;
-/// Of a step, at once.
+/// The part of a step after which the response of a body counts as that at once.
 const AT_ONCE: f64 = 1e-3;
 /// Room for so many groups is made at once.
 const GROUPS: usize = 256;
@@ -113,8 +113,11 @@ impl Levels {
         self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
     }
 
-    /// How many times stiffer the body is at once than over the step predicted last.
+    /// How many times stiffer the body is at once than over the step predicted last; 1 without elastic response, where no levels lead.
     pub(super) fn relaxed(&self) -> f64 {
+        if self.has_dashpot() {
+            return 1.0;
+        }
         self.history.stiffness_over(AT_ONCE) / self.history.stiffness_over(1.0)
     }
 
@@ -159,9 +162,7 @@ impl Levels {
         if !compliance.is_finite() {
             return Err(Error::Step(StepError::Overflow { time, what: "the compliance" }));
         }
-        if !is_between {
-            self.check_order(time)?;
-        }
+        let mut has_order = is_between;
         let wanted = loop {
             let plain = self.level_of(states, demand, 0.0);
             let lead = if plain.level > self.level { self.lead() } else { 0.0 };
@@ -173,7 +174,11 @@ impl Levels {
             if !self.history.reduce_order(&mut self.trial) {
                 break plain;
             }
+            has_order = false;
         };
+        if !has_order {
+            self.check_order(time)?;
+        }
         let level = wanted.level;
         if level.is_nan() {
             return Err(Error::Step(StepError::Overflow { time, what: "the level" }));

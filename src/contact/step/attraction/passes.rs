@@ -20,7 +20,7 @@ pub(crate) struct Attracted {
     pub(super) exactness: f64,
     /// Whether a state is looked at for a direction along which the energy bends down.
     pub(super) looks: bool,
-    /// Whether there is a pass before, or a direction of an iteration before and its image.
+    /// Whether there is a pass before.
     pub(super) has_last: bool,
     /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows before they do.
     pub(super) error: f64,
