@@ -1,6 +1,6 @@
 //! Roots of a function of one number.
 
-/// The root between `low` and `high` of a rising function, given with its slope; the end that is nearer where the function is zero in neither,
+/// The root within a bracket, from its lower to its upper end, of a rising function, given with its slope; the end that is nearer where the function is zero in neither,
 /// NaN where it is NaN. Newton's steps start at the upper end. The bracket is halved where a step leaves it, or where the last step did not halve
 /// the function, so that the search ends: where a step is shorter than `tolerance`, relative to the greater of the root and 1.
 ///
@@ -8,8 +8,8 @@
 /// let found = viscocontact::numeric::root([0.0, 2.0], 1e-8, |x| [x * x - 2.0, 2.0 * x]);
 /// assert!((found - 2f64.sqrt()).abs() < 1e-15);
 /// ```
-pub fn root([first, end]: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
-    let ([mut low, mut high], mut s, mut last) = ([first, end], end, f64::INFINITY);
+pub fn root(bracket: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
+    let ([mut low, mut high], mut s, mut last) = (bracket, bracket[1], f64::INFINITY);
     loop {
         let [excess, slope] = at(s);
         if excess.is_nan() {
@@ -23,7 +23,7 @@ pub fn root([first, end]: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [
         let (newton, middle) = (s - excess / slope, 0.5 * (low + high));
         let is_near = |next: f64| (next - s).abs() <= tolerance * s.abs().max(1.0);
         if is_near(newton) || is_near(middle) {
-            let halved = if low == first { first } else { middle };
+            let halved = if low == bracket[0] { low } else { middle };
             return if is_near(newton) { newton.clamp(low, high) } else { halved };
         }
         let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;

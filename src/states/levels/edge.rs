@@ -1,11 +1,13 @@
 //! The edge of a contact: the level up to which groups are held, and how levels follow it that it meets within a step.
 
+use std::ops::Range;
+
 use crate::states::curve::ElasticStates;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 impl Levels {
-    /// What Σ W Δl of levels that the edge meets in a step is more at its end, if nothing presses on them: the edge passes them one by one, and W of
-    /// their mean follows the part that it has passed. So this continues what it passed in the steps before.
+    /// By how much Σ W Δl of the levels that the edge meets in a step is greater at its end, if nothing presses on them, because they move with
+    /// the edge: it passes them one by one, and W of their mean is the part that it has passed. Continues what it passed in the steps before.
     pub(super) fn lead(&self) -> f64 {
         self.history.continued(self.passed).max(0.0)
     }
@@ -23,10 +25,9 @@ impl Levels {
         tops.zip(displacements).map(part).sum()
     }
 
-    /// Lets the groups between two levels of the edge, which it met in the step, have moved with it before.
-    pub(super) fn lead_between(&mut self, edges: [f64; 2], lead: f64, swept: f64) {
-        let [first, end] = edges.map(|edge| self.groups_to(edge));
-        for k in first..end {
+    /// Lets groups that the edge met in the step have moved with it before.
+    pub(super) fn lead_groups(&mut self, groups: Range<usize>, lead: f64, swept: f64) {
+        for k in groups {
             let part = (1.0 - self.history.displacements()[k]) / swept;
             self.history.lead(k, part, self.passed);
             self.trial[k] += part * lead;

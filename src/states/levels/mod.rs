@@ -225,7 +225,7 @@ impl Levels {
             let (lead, swept, edge) = (self.lead(), self.swept(level), self.level);
             self.cut_at(states, level);
             if 0.0 < lead && lead <= swept {
-                self.lead_between([edge, level], lead, swept);
+                self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
             self.hold(level);
         } else if level == 0.0 {
