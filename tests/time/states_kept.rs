@@ -50,6 +50,13 @@ fn contacts_on_states_come_back_to_the_last_bit() {
     assert_eq!(format!("{start:?}"), end);
     let mut other = StatesContact::new(&states, &material()).unwrap();
     assert!(matches!(other.restore(&start), Err(Error::OtherContact)));
+    // a contact within a step is one of its clones
+    let (history, mut apart) = (Ramp::new(Load::force(0.0), Load::force(1.0e-3), 1.0).unwrap(), other.clone());
+    let mut run = apart.follow(&history, Stepping::adaptive(1e-2), 1.0);
+    let time = run.next_step().unwrap().unwrap().time;
+    let within = run.within_step(0.7 * time).unwrap();
+    other.restore(&within).unwrap();
+    assert_eq!(other.time(), 0.7 * time);
 
     let folder = Temporary::folder("states-checkpoint");
     let path = folder.join("state");
