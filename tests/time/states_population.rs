@@ -12,7 +12,7 @@ use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, StatesContact};
 
 /// Runs longer than this fail, and only one run in a hundred may be long: of wide spectra that part and return, at 1e-5.
-const MOST_STEPS: usize = 10_000;
+const MOST_STEPS: usize = 12_000;
 const LONG: usize = 5000;
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
