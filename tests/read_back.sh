@@ -17,5 +17,6 @@ fi
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-READ_BACK_FOLDER="$folder" cargo test --quiet --all-features --test suite -- --ignored --exact io::output::a_run_for_other_readers
+# of all targets, as the test command builds them: of some, dependencies would have other features and the crate be compiled again
+READ_BACK_FOLDER="$folder" cargo test --quiet --all-features --lib --bins --tests --examples -- --ignored --exact io::output::a_run_for_other_readers
 "$python" tests/read_back.py "$folder"
