@@ -96,14 +96,15 @@ impl GroupHistory {
             combine(column, decay, [one, two, three], [changes, bends, twists]);
             rule.forget_relaxed(column);
         }
+        // a group that was met is at rest from now on
         if leads {
             let held = now.iter().enumerate().filter(|(_, now)| **now == 1.0);
             held.for_each(|(k, _)| (changes[k], bends[k]) = (0.0, 0.0));
         }
     }
 
-    /// Whether groups that are met in a step follow the edge that meets them, as in quadratic steps; those of a body without elastic response share
-    /// what its slope at the end answers with the groups met before.
+    /// Whether groups that are met in a step follow the edge that meets them, as in quadratic steps. On a body without elastic response the groups of
+    /// the last step share the response to the slope at the end, so that none has to follow.
     pub(crate) fn leads(&self) -> bool {
         self.rule.kept() > 1 && !self.rule.has_dashpot()
     }

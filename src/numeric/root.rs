@@ -1,8 +1,10 @@
 //! Roots of a function of one number.
 
-/// The root within a bracket, from its lower to its upper end, of a rising function, given with its slope; the end that is nearer where the function is zero in neither,
-/// NaN where it is NaN. Newton's steps start at the upper end. The bracket is halved where a step leaves it, or where the last step did not halve
-/// the function, so that the search ends: where a step is shorter than `tolerance`, relative to the greater of the root and 1.
+/// The root of a rising function between the lower and the upper end of a bracket. The function gives its value and its slope. Where it has no
+/// root there, the end at which it is nearer to zero; where its value is NaN, NaN.
+///
+/// Newton's steps start at the upper end. The bracket is halved where a step leaves it, or where the last step did not halve the value. The
+/// search ends with a step shorter than `tolerance`, relative to the greater of the root and 1.
 ///
 /// ```
 /// let found = viscocontact::numeric::root([0.0, 2.0], 1e-8, |x| [x * x - 2.0, 2.0 * x]);

@@ -277,7 +277,7 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
     assert!(both.above(2.0) <= both.count() / 100 && both.above(3.0) == 0, "beyond what was asked: {both:?}");
 }
 
-/// A force that jumps and stays: the approach of a ball is that of the elastic contact of the creep compliance, to the power 2/3. The
+/// A force that jumps and stays: the approach of a ball grows as the creep compliance to the power 2/3. The
 /// fresh response of these bodies is up to 3000 times the relaxed one: levels that the edge meets relax within a step.
 #[test]
 fn held_forces_follow_the_creep_compliance() {
