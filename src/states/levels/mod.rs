@@ -222,12 +222,14 @@ impl Levels {
     /// Accepts the step of [`Levels::wanted`].
     pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, level: f64) {
         if self.history.rule().compliance() > 0.0 {
-            let (lead, swept, edge) = (self.lead(), self.swept(level), self.level);
+            let (lead, edge) = (self.lead(), self.level);
+            let swept = if self.history.leads() { self.swept(level) } else { 0.0 };
             self.cut_at(states, level);
             if 0.0 < lead && lead <= swept {
                 self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
             self.hold(level);
+            self.passed = self.history.differences_after(self.passed, swept);
         } else if level == 0.0 {
             self.release();
         }
@@ -283,7 +285,6 @@ impl Levels {
     /// Holds the groups up to a level, and commits the step.
     fn hold(&mut self, level: f64) {
         let stiffness = 1.0 / self.history.rule().compliance();
-        let passed = if self.history.leads() { self.swept(level) } else { 0.0 };
         self.level = level;
         let held = self.held();
         let (mut force, mut motions, mut bottom, mut lower) = (0.0, Motions::default(), 0.0, Motions::default());
@@ -295,7 +296,6 @@ impl Levels {
             (bottom, lower) = (group.top, group.motions);
         }
         self.history.commit(&self.trial);
-        self.passed = self.history.differences_after(self.passed, passed);
         (self.force, self.motions, self.lift) = (force, motions, 0.0);
     }
 
