@@ -210,38 +210,6 @@ pub fn steps_allocate_nothing() {
         });
     }
 
-    // a line contact takes what its cells do, and the tables of its transforms, which are as long as the line
-    let grid = Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap();
-    let region = Region::new(ALLOCATOR);
-    let builder = builder_of(&Cylinder::new(10.0e-3).unwrap(), grid.clone(), scene.material.clone());
-    let kernel = std::sync::Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap());
-    let contact = builder.kernel(kernel).settings(Settings::default().with_symmetry(false)).build().unwrap();
-    let change = region.change();
-    let line = (change.bytes_allocated - change.bytes_deallocated) as f64 / 16384.0;
-    drop(contact);
-    println!("{line:.1} bytes per cell of a line");
-    assert!(line < 400.0, "{line} bytes per cell");
-
-    // memory of a built contact: a constant per cell, and one field of 8 bytes for each relaxation time
-    let bytes = |terms: &[(f64, f64)], symmetry: bool| {
-        let body = Material::incompressible(GeneralizedMaxwell::new(1.0e6, terms).unwrap());
-        let scene = StepLoadedSphere { material: body, ..scene.clone() };
-        let region = Region::new(ALLOCATOR);
-        let contact = scene.contact(128, Settings::default().with_symmetry(symmetry).with_window(false)).unwrap();
-        let change = region.change();
-        drop(contact);
-        (change.bytes_allocated as isize + change.bytes_reallocated - change.bytes_deallocated as isize) as f64
-            / 16384.0
-    };
-    let times = [(1.0e6, 1.0), (1.0e6, 2.0), (1.0e6, 3.0)];
-    let (one, three) = (bytes(&times[..1], false), bytes(&times, false));
-    println!("{one:.1} bytes per cell with one relaxation time, {three:.1} with three");
-    let folded = bytes(&times[..1], true);
-    println!("{folded:.1} bytes per cell where a quarter is computed");
-    assert!(folded < 80.0, "{folded} bytes per cell");
-    assert!(one < 200.0, "{one} bytes per cell");
-    assert!((three - one - 16.0).abs() < 0.1, "{} bytes per cell for two more relaxation times", three - one);
-
     // the exponential rule keeps one field for each relaxation time, the direct sums one for each step
     let mut contact = scene.contact(32, Settings::default().with_time_rule(TimeRule::Backward)).unwrap();
     let region = Region::new(ALLOCATOR);

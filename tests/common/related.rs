@@ -11,17 +11,9 @@ pub fn tight() -> Settings {
     Settings::default().with_tolerance(TIGHT)
 }
 
-pub fn pressures(contact: &ViscoelasticContact) -> Vec<f64> {
-    contact.pressure().to_vec()
-}
-
 /// The field in other units.
 pub fn field(field: &[f64], factor: f64) -> Vec<f64> {
     field.iter().map(|value| value * factor).collect()
-}
-
-pub fn forces(scene: &Scenario) -> impl Iterator<Item = f64> {
-    scene.steps.iter().map(|(_, load)| if let Load::Force { normal, .. } = load { *normal } else { 0.0 })
 }
 
 /// The greatest difference, of the greatest value.

@@ -18,25 +18,34 @@ use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-/// Every scene, saved after each of several numbers of steps, none included: the steps after it are the same to the last bit.
+/// Every scene, saved after each of several numbers of steps, none included: from the file, and from a snapshot in its own memory or by a
+/// clone, the steps after it are the same to the last bit.
 #[test]
-fn every_scene_continues_from_its_file_bit_by_bit() {
+fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
     for (name, build, step) in scenes() {
-        let path = Temporary::file("continuation");
+        let (path, mut snapshot) = (Temporary::file("continuation"), build().snapshot());
         for steps in [0, 1, 2, 9, 70] {
             let mut contact = build();
             (0..steps).for_each(|k| _ = step(&mut contact, k));
             contact.save(&path).unwrap();
-            let mut resumed = build();
+            contact.snapshot_into(&mut snapshot);
+            let (mut resumed, mut clone) = (build(), contact.clone());
             resumed.resume(&path).unwrap();
             assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
             assert_eq!((contact.pressure(), contact.displacement()), (resumed.pressure(), resumed.displacement()));
             assert_eq!((contact.approach(), contact.tilt()), (resumed.approach(), resumed.tilt()));
-            for k in steps..steps + 8 {
-                let (one, other) = (step(&mut contact, k), step(&mut resumed, k));
-                assert_eq!(one, other, "{name}, saved after {steps}, step {k}");
-                assert_eq!(contact.pressure(), resumed.pressure(), "{name}, saved after {steps}, step {k}");
-                assert_eq!(contact.displacement(), resumed.displacement(), "{name}, saved after {steps}, step {k}");
+            let ahead = |contact: &mut ViscoelasticContact| {
+                let reports: Vec<_> = (steps..steps + 8).map(|k| step(contact, k)).collect();
+                (reports, contact.pressure().to_vec(), contact.displacement().to_vec())
+            };
+            let exact = ahead(&mut contact);
+            assert!(ahead(&mut resumed) == exact, "{name}, saved after {steps}");
+            // a state ahead, and one behind
+            for restored in [&mut contact, &mut clone] {
+                for _ in 0..2 {
+                    restored.restore(&snapshot).unwrap();
+                    assert!(ahead(restored) == exact, "{name}, restored after {steps}");
+                }
             }
         }
     }

@@ -1,42 +1,11 @@
 //! States kept in memory and restored: the same steps again, to the last bit.
 
-use crate::common::runs::{scenes, wandering};
+use crate::common::runs::wandering;
 use crate::common::watched_runs::seen;
 use crate::common::{Temporary, sphere_on, three_times};
 use std::path::Path;
 use viscocontact::ErrorKind;
 use viscocontact::prelude::*;
-
-/// Every scene, back and forth in between: into new memory and into old, from its own contact and from a clone.
-#[test]
-fn restored_states_take_the_same_steps_again() {
-    for (name, build, step) in scenes() {
-        let mut contact = build();
-        let mut snapshot = contact.snapshot();
-        for steps in [0, 1, 2, 9, 30] {
-            let mut fresh = build();
-            (0..steps).for_each(|k| _ = step(&mut fresh, k));
-            contact = fresh;
-            contact.snapshot_into(&mut snapshot);
-            let ahead = |contact: &mut ViscoelasticContact| {
-                let reports: Vec<_> = (steps..steps + 6).map(|k| step(contact, k)).collect();
-                (reports, contact.pressure().to_vec(), contact.displacement().to_vec())
-            };
-            let mut clone = contact.clone();
-            let exact = ahead(&mut contact);
-            for _ in 0..2 {
-                contact.restore(&snapshot).unwrap();
-                assert!(ahead(&mut contact) == exact, "{name}, after {steps}");
-            }
-            // a state ahead, and one behind
-            clone.restore(&snapshot).unwrap();
-            assert!(ahead(&mut clone) == exact, "{name}, after {steps}, a clone");
-            contact.snapshot_into(&mut snapshot);
-            contact.restore(&snapshot).unwrap();
-            assert!(contact.pressure() == exact.1, "{name}, after {steps}");
-        }
-    }
-}
 
 #[test]
 fn snapshots_of_other_contacts_are_refused() {
@@ -70,6 +39,7 @@ fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool
             let moved = Shifted::new(Sphere::new(8.0e-3 + 4.0e-3 * a).unwrap(), [0.0, 2.0e-4 * (c - 0.5)]).unwrap();
             contact.set_geometry(&moved).is_ok()
         }
+        (_, 5) => contact.step(dt, Load::spring(3.0e4, 4.0e-5 * b)).is_ok(),
         _ => contact.step(dt, Load::force(force)).is_ok(),
     }
 }
@@ -108,6 +78,11 @@ fn disturb(contact: &mut ViscoelasticContact, path: &Path, [kind, a, b, c]: [f64
             (0..3).for_each(|k| _ = operate(contact, [(kind * 7.0 + f64::from(k) * 0.37).fract(), b, c, a]));
             contact.resume(path).unwrap();
         }
+        7 if contact.settings().frame() == Frame::Indenter => assert_eq!(
+            contact.step_over([2, 0], dt, Load::force(too_much)).unwrap_err().kind(),
+            ErrorKind::Value,
+            "the indenter is elsewhere"
+        ),
         _ => {
             let snapshot = contact.snapshot();
             (0..3).for_each(|k| _ = operate(contact, [(kind * 7.0 + f64::from(k) * 0.37).fract(), b, c, a]));

@@ -191,28 +191,6 @@ fn noise_is_smoothed_in_few_rows() {
     noisy(Experiment::Dynamic, [3.5, 2.2, 1.6, 1.2, 1.1, 1.0, 0.95]);
 }
 
-/// The tables that came out badly: six decades of logarithmic creep, of a power law with and without glassy compliance.
-#[test]
-fn more_rows_are_no_worse() {
-    type Creep = fn(f64) -> f64;
-    let bodies: [(&str, Creep); 3] = [
-        ("logarithmic", |t| 1.0 + 0.1 * (1.0 + t).ln()),
-        ("Findley", |t| 1.0 + 0.1 * t.powf(0.3)),
-        ("power law", |t| t.powf(0.3)),
-    ];
-    for (name, creep) in bodies {
-        for rows in [15, 19, 31] {
-            let times: Vec<_> = log_spaced(6.0, rows).into_iter().map(|t| (t, creep(t))).collect();
-            let table = Measurements::creep(&times).and_then(|table| table.fit()).unwrap();
-            let check = log_spaced(6.0, 400);
-            let error = |&t: &f64| table.creep_compliance(t.min(times[rows - 1].0)) / creep(t) - 1.0;
-            let fitted = Fitted::new(check.iter().map(error), table.report());
-            println!("{name}, {rows} rows: {:.1e}; {}", fitted.worst, fitted.report);
-            assert!(fitted.worst < 1e-3, "{name}, {rows} rows: {:e}", fitted.worst);
-        }
-    }
-}
-
 /// Doubts of a table reach the steps of a contact.
 #[test]
 fn contacts_warn_of_doubtful_tables() {

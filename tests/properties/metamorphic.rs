@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::contact_of;
-use crate::common::related::{TIGHT, assert_ends_like, assert_same, difference, end, field, forces, pressures, tight};
+use crate::common::related::{assert_ends_like, assert_same, difference, end, field, tight};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::laws::Scenario;
@@ -117,43 +117,6 @@ proptest! {
         let one = end(&scene, tight());
         assert_ends_like(&one, both.pressure(), both.displacement(), both.approach())?;
     }
-
-    /// The approaches that forces lead to lead to the forces.
-    #[test]
-    fn force_and_approach_are_two_sides_of_one(scene in scenarios()) {
-        let mut one = scene.builder().settings(tight()).build().unwrap();
-        let mut other = scene.builder().settings(tight()).build().unwrap();
-        let (most, deepest) = (forces(&scene).fold(0.0, f64::max), end(&scene, tight()).displacement);
-        for &(dt, load) in &scene.steps {
-            let report = one.step(dt, load).unwrap();
-            if report.force == 0.0 {
-                // how far away it is taken does not matter
-                other.step(dt, Load::approach(report.approach - 0.1 * deepest)).unwrap();
-                prop_assert_eq!(other.force(), 0.0);
-                continue;
-            }
-            let replayed = other.step(dt, Load::approach(report.approach)).unwrap();
-            prop_assert!((replayed.force - report.force).abs() <= 1e-5 * most, "{} {}", replayed.force, report.force);
-        }
-    }
-
-    /// After the same past, the deeper the greater the force, and the pressure of an upright body nowhere less than none.
-    #[test]
-    fn force_grows_with_approach(scene in scenarios(), dt in prop_oneof![Just(0.0), 0.01..1.0_f64], depths in [-0.5..2.0_f64, 0.01..0.5_f64]) {
-        let before = scene.run(tight()).unwrap();
-        let scale = before.approach().abs().max(1e-9 * scene.grid.lengths()[0]);
-        let settings = tight().with_edge(Edge::Allow);
-        let deep = |depth: f64| {
-            let mut contact = scene.builder().settings(settings).build().unwrap();
-            for &(dt, load) in &scene.steps {
-                contact.step(dt, load).unwrap();
-            }
-            contact.step(dt * scene.duration(), Load::approach(depth * scale)).unwrap().force
-        };
-        let (less, more) = (deep(depths[0]), deep(depths[0] + depths[1]));
-        prop_assert!(more > less || (more == 0.0 && less == 0.0), "{more} after {less}");
-        prop_assert!(less >= 0.0);
-    }
 }
 
 /// Powers of two change no bit; other factors round otherwise, and iterations take other ways to the same answer.
@@ -181,65 +144,6 @@ fn units_do_not_matter_beyond_rounding() {
         assert!((deep / approach - 1.0).abs() < 1e-12, "{units:?}: {:e}", deep / approach - 1.0);
         let far = difference(&scaled, &pressure);
         assert!(far < 1e-11, "{units:?}: pressure {far:e}");
-    }
-}
-
-/// A face that never lifts off is linear in the force; a body in full contact is in its shape, too.
-mod superposition {
-    use super::*;
-
-    proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2032), max_shrink_iters: 64, ..ProptestConfig::with_cases(250) })]
-
-        #[test]
-        fn of_forces_on_a_face(
-            scene in scenarios(), face in 0.3..0.9_f64,
-            parts in prop::collection::vec((0.02..1.0_f64, 0.1..1.0_f64, 0.1..1.0_f64), 2..6),
-        ) {
-            let side = scene.grid.lengths().into_iter().fold(f64::INFINITY, f64::min);
-            let punch = Arc::new(FlatPunch::circular(0.5 * face * side).unwrap());
-            // forces that only grow, so that the rim stays down
-            let run = |weights: [f64; 2]| {
-                let mut force = 0.0;
-                let steps = parts.iter().map(|&(dt, first, second)| {
-                    force += weights[0] * first + weights[1] * second;
-                    (dt * scene.duration().max(1e-3), Load::force(force))
-                });
-                let steps = steps.collect();
-                pressures(&Scenario { shape: Arc::clone(&punch) as _, steps, ..scene.clone() }.run(tight()).unwrap())
-            };
-            let (first, second, both) = (run([1.0, 0.0]), run([0.0, 1.0]), run([2.0, 0.5]));
-            let sum: Vec<f64> = first.iter().zip(&second).map(|(a, b)| 2.0 * a + 0.5 * b).collect();
-            assert_same("pressure", &sum, &both, 0.0, 1e-6)?;
-        }
-
-        #[test]
-        fn of_shapes_in_full_contact(
-            scene in scenarios(), heights in [0.1..1.0_f64, 0.1..1.0_f64], numbers in [1_usize..3, 1_usize..3],
-            loads in prop::collection::vec((0.02..1.0_f64, 1.0..3.0_f64), 1..6),
-        ) {
-            let (grid, [l1, l2]) = (&scene.grid, scene.grid.lengths());
-            let kernel = Arc::new(InfluenceKernel::periodic(grid).unwrap());
-            let wave = |weights: [f64; 2]| move |x1: f64, x2: f64| {
-                let phase = [numbers[0] as f64 * x1 / l1, numbers[1] as f64 * x2 / l2].map(|p| (std::f64::consts::TAU * p).cos());
-                1e-6 * l1 * (weights[0] * heights[0] * phase[0] + weights[1] * heights[1] * phase[1])
-            };
-            // enough to flatten both waves at the modulus of the first instant: p* = π E* A/λ, each of them
-            let flat = 20.0 * 1e-6 * l1 / (l1.min(l2) * 0.25 * scene.creep.glassy()) * l1 * l2;
-            let run = |weights: [f64; 2], share: f64| {
-                let builder = scene.builder().kernel(Arc::clone(&kernel)).geometry(&FnGeometry::new(wave(weights)));
-                let settings = tight().with_edge(Edge::Allow);
-                let mut contact = builder.settings(settings).build().unwrap();
-                for &(dt, part) in &loads {
-                    contact.step(dt * scene.duration().max(1e-3), Load::force(share * part * flat)).unwrap();
-                    assert_eq!(contact.contact_cells(), grid.len());
-                }
-                pressures(&contact)
-            };
-            let (first, second, both) = (run([1.0, 0.0], 0.5), run([0.0, 1.0], 1.0), run([1.0, 1.0], 1.5));
-            let sum: Vec<f64> = first.iter().zip(&second).map(|(a, b)| a + b).collect();
-            assert_same("pressure", &sum, &both, 0.0, 10.0 * TIGHT)?;
-        }
     }
 }
 

@@ -23,5 +23,4 @@ mod loads;
 mod population;
 mod ranks_together;
 mod region;
-mod several;
 mod work;

@@ -1,5 +1,5 @@
 //! Steady motions over strips and layers, of the same creep and of another, against dense problems whose coefficients are Fourier integrals.
-//! `SLIDING_BODIES` (16) random scenes, `SLIDING_SEED` (1).
+//! `SLIDING_BODIES` (24) random scenes, `SLIDING_SEED` (1).
 
 use std::f64::consts::{PI, TAU};
 
@@ -467,7 +467,7 @@ fn strip(x: f64, side: f64, kappa: f64, datum: f64) -> f64 {
 /// Random scenes against dense problems; under the approach that a force finds, the same state.
 #[test]
 fn strips_and_layers_are_those_of_a_dense_problem() {
-    let (scenes, seed) = (from_environment("SLIDING_BODIES", 16), from_environment("SLIDING_SEED", 1));
+    let (scenes, seed) = (from_environment("SLIDING_BODIES", 24), from_environment("SLIDING_SEED", 1));
     let (mut compared, mut worst, mut kinds, mut drags) = (0, [0.0_f64; 4], [0; 8], Vec::new());
     for number in 0..scenes {
         let scene = Scene::draw(&mut Draws::new(7_000_000 * seed + number), number as usize);

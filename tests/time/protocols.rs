@@ -2,7 +2,7 @@
 //! without elastic response.
 
 use crate::common::protocol::Protocol;
-use crate::common::{builder_of, builder_on};
+use crate::common::builder_of;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -405,26 +405,4 @@ fn lifted_indenters_move_at_once() {
         over.step_over([0, 0], DT, Load::force(0.1)).unwrap();
     }
     assert_abs_diff_eq!(along.approach() / over.approach(), 1.0, epsilon = 1e-5);
-}
-
-/// The protocol of a creep and recovery test: approach to touch, hold a force, let go.
-#[test]
-fn creep_and_recovery_of_a_springpot_and_a_voigt_body() {
-    for (body, rule) in
-        [(1, TimeRule::Exponential), (1, TimeRule::Backward), (2, TimeRule::Exponential), (2, TimeRule::Backward)]
-    {
-        let builder = builder_on(Grid::square(20, LENGTH).unwrap(), material(body, [1.0; 2])).times(TIMES);
-        let mut contact = builder.settings(Settings::default().with_time_rule(rule)).build().unwrap();
-        let [lifted, touching] = [-DEPTH, 0.0].map(Load::approach);
-        let [none, full] = [0.0, FORCE].map(Load::force);
-        let protocol = Protocol::default()
-            .then(0.5, lifted, touching)
-            .then(0.2, none, full)
-            .then(1.0, full, full)
-            .then(1.0, none, none);
-        let reports = follow(&mut contact, &protocol).unwrap();
-        let deepest = reports.iter().map(|report| report.approach).fold(0.0, f64::max);
-        assert!(reports.iter().filter(|report| report.dt == 0.0).count() == 3);
-        assert!(contact.force() == 0.0 && contact.approach() < 0.7 * deepest && contact.approach() > 0.0, "{body}");
-    }
 }

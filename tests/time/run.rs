@@ -125,15 +125,50 @@ behaviours! {
         assert!(matches!(error, Error::Load(LoadError::OutOfRange { .. })), "{error}");
     }
 
-    times_come_as_arrays_vectors_and_slices: kind, C => {
+    times_of_every_kind_are_met: kind, C => {
+        let times = || Times::decades(1e-2, 3).and(Times::every(0.5)).and([0.77, 90.0]);
+        let mut expected: Vec<f64> = (0..9).map(|k| 1e-2 * 10f64.powf(f64::from(k) / 3.0)).collect();
+        expected.extend((1..=20).map(|k| 0.5 * f64::from(k)).chain([0.77]));
+        expected.sort_by(f64::total_cmp);
+        expected.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+        let are_near = |found: f64, expected: f64| (found - expected).abs() <= 1e-12 * expected;
         for stepping in STEPPINGS {
-            let times = vec![0.7, 0.31, 2.0];
-            let stopped = |times: Times| steps(kind.run(hold(0.5), stepping, 1.0).stop_at(times).unwrap());
-            let found = stopped(Times::from(times.clone()));
-            assert!([0.31, 0.7, 1.0].iter().all(|time| found.iter().any(|step| step[0] == *time)), "{found:?}");
-            assert_eq!(found, stopped(Times::from([0.7, 0.31, 2.0])));
-            assert_eq!(found, stopped(Times::from(&times[..])));
+            let stopped = |times: Times| steps(kind.run(hold(0.5), stepping, 10.0).stop_at(times).unwrap());
+            let ends = stopped(times());
+            assert!(expected.iter().all(|time| ends.iter().any(|end| are_near(end[0], *time))), "{ends:?}");
+            let mut run = kind.run(hold(0.5), stepping, 10.0).sample_at(times()).unwrap();
+            let mut asked = Vec::new();
+            assert_eq!(run.samples().count(), 0, "no step yet");
+            while run.next_step().unwrap().is_some() {
+                let samples = run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for());
+                asked.extend(samples.map(|sample| sample.report().time));
+            }
+            assert_eq!(run.samples().count(), 0, "the run is over");
+            assert!(asked.len() == expected.len() && asked.iter().zip(&expected).all(|(a, b)| are_near(*a, *b)), "{asked:?}");
+            let given = [0.7, 0.31, 20.0];
+            let found = stopped(Times::from(given));
+            assert!([0.31, 0.7, 10.0].iter().all(|time| found.iter().any(|step| step[0] == *time)), "{found:?}");
+            assert_eq!([stopped(Times::from(given.to_vec())), stopped(Times::from(&given[..]))], [found.clone(), found]);
         }
+    }
+
+    corners_jumps_and_multiples_are_met_exactly: kind, C => {
+        let table = [(0.0, 0.0), (0.3, 0.3), (0.7, 0.3), (0.7, 0.1), (2.0, 0.1)].map(|(time, force)| (time, Load::force(force)));
+        let found = steps(kind.run(PiecewiseLinear::new(&table).unwrap(), Stepping::fixed(0.5), 1.2));
+        let expected = [(0.3, 0.3), (0.5, 0.3), (0.7, 0.3), (0.7, 0.1), (1.0, 0.1), (1.2, 0.1)];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (found, (time, force)) in found.iter().zip(expected) {
+            assert!(found[0] == time && (found[1] - force).abs() < 1e-9, "{found:?}, {time} {force}");
+        }
+        let ramp = Ramp::new(Load::force(0.0), Load::force(0.4), 0.7).unwrap();
+        let ends: Vec<f64> = steps(kind.run(ramp, Stepping::fixed(0.1), 1.0)).iter().map(|step| step[0]).collect();
+        assert_eq!(ends, [0.1, 0.2, 3.0 * 0.1, 0.4, 0.5, 6.0 * 0.1, 0.7, 0.8, 0.9, 1.0]);
+        // another load than the last step's is a jump, and the end is the end
+        let mut contact = (kind.new)();
+        contact.step(0.35, Load::force(0.2)).unwrap();
+        let mut run = (kind.follow)(contact, Box::new(hold(0.5)), Stepping::fixed(0.25), 0.5);
+        let lengths: Vec<f64> = std::iter::from_fn(|| run.next_step().unwrap()).map(|report| report.dt).collect();
+        assert_eq!((lengths.len(), lengths[0], run.next_step()), (2, 0.0, Ok(None)));
     }
 
     samples_leave_the_steps_and_know_whether_they_were_asked_for: kind, C => {

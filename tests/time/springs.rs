@@ -1,6 +1,6 @@
 //! Bodies that springs drive, against bodies whose approach or force is given.
 
-use crate::common::{Draws, contact_of, from_environment};
+use crate::common::{Draws, from_environment};
 use viscocontact::contact::TimeRule;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -77,7 +77,7 @@ fn springs_carry_what_their_approach_leads_to() {
     for number in 0..from_environment("SPRING_SCENES", 60) {
         let Scene { name, mut contact, tilts, depth, tolerance } = random_scene(number);
         let mut draws = Draws::new(number);
-        let softest = draws.power_of_ten(-4.0, 6.0);
+        let softest = draws.power_of_ten(-9.0, 8.0);
         for step in 0..10 {
             let dt = if step % 5 == 0 { 0.0 } else { draws.power_of_ten(-2.0, 1.0) };
             let loads: Vec<Load> = tilts
@@ -121,79 +121,4 @@ fn springs_carry_what_their_approach_leads_to() {
     }
     println!("{steps} steps, {apart} apart, pressures differ by {worst:.0} tolerances, convolutions {work:?}");
     assert!(steps > 100 && apart > 20);
-}
-
-/// A soft spring whose far end is far away is a force; a stiff one is an approach. Both within the solver's tolerance.
-#[test]
-fn soft_springs_are_forces_and_stiff_ones_approaches() {
-    for number in 0..from_environment("SPRING_LIMITS", 30) {
-        let Scene { name, contact, tilts, depth, tolerance } = random_scene(number);
-        let mut draws = Draws::new(number);
-        let [mut soft, mut pressed, mut stiff, mut lowered] = [(); 4].map(|()| contact.clone());
-        let mut greatest = 1e-6f64;
-        for step in 0..6 {
-            let dt = if step == 0 { 0.0 } else { draws.power_of_ten(-2.0, 1.0) };
-            let force = draws.between(0.1, 1.0) * depth * depth.sqrt();
-            let approach = depth * draws.between(0.2, 1.0);
-            let [low, high] = [1e-9, 1e9];
-            let each = |load: &dyn Fn([Tilt; 2]) -> Load| tilts.iter().map(|&tilt| load(tilt)).collect::<Vec<_>>();
-            let loads = [
-                each(&|tilt| Load::Spring { stiffness: low, drive: force / low, tilt }),
-                each(&|tilt| Load::Force { normal: force, tilt }),
-                each(&|tilt| Load::Spring { stiffness: high, drive: approach, tilt }),
-                each(&|tilt| Load::Approach { approach, tilt }),
-            ];
-            for (contact, loads) in [&mut soft, &mut pressed, &mut stiff, &mut lowered].into_iter().zip(&loads) {
-                contact.step(dt, loads).unwrap_or_else(|error| panic!("{name} step {step}: {error}"));
-            }
-            for (one, other) in [(&soft, &pressed), (&stiff, &lowered)] {
-                greatest = greatest.max(other.force());
-                let forces = (one.force() - other.force()).abs() / greatest;
-                let [here, there] = [one, other].map(|contact| at_pivot(&contact.body(0).unwrap(), tilts[0]));
-                let approaches = (here - there).abs() / depth;
-                // what tolerances leave accumulates in the history, and a stiff contact makes much of it
-                let allowed = 30.0 * tolerance + 1e-6;
-                assert!(forces < allowed && approaches < allowed, "{name} step {step}: {forces:e} {approaches:e}");
-            }
-        }
-    }
-}
-
-/// What adaptive runs, states within a step and snapshots do with forces, they do with springs.
-#[test]
-fn springs_are_loads_like_others() {
-    let build = || {
-        contact_of(
-            &Sphere::new(10.0e-3).unwrap(),
-            Grid::square(24, 4.0e-3).unwrap(),
-            Material::incompressible(Zener::with_time(1.0e6, 0.5e6, 1.0).unwrap()),
-            Settings::default(),
-        )
-    };
-    let (mut contact, stiffness) = (build(), 3.0e4);
-    let driven = Ramp::new(Load::spring(stiffness, -20.0e-6), Load::spring(stiffness, 60.0e-6), 1.0).unwrap();
-    let mut run = contact.follow(&driven, Stepping::adaptive(1e-5), 3.0);
-    let mut last = 0.0;
-    while let Some(report) = run.next_step().unwrap() {
-        last = report.dt;
-    }
-    let middle = run.contact().time() - 0.4 * last;
-    let within = run.within_step(middle).unwrap();
-    let mut fixed = build();
-    let mut given = fixed.follow(&driven, Stepping::fixed(middle / 2000.0), middle);
-    while given.next_step().unwrap().is_some() {}
-    for (within, given) in [(within.force(), fixed.force()), (within.approach(), fixed.approach())] {
-        assert!((within / given - 1.0).abs() < 1e-5, "{within} {given}");
-    }
-    // apart, the spring holds the body where its far end is
-    let mut contact = build();
-    let report = contact.step(0.5, driven.at(0.1)).unwrap();
-    assert_eq!((report.force, report.approach), (0.0, -12.0e-6));
-    let start = contact.snapshot();
-    let first = contact.step(0.5, driven.at(1.0)).unwrap();
-    contact.restore(&start).unwrap();
-    assert_eq!(contact.step(0.5, driven.at(1.0)).unwrap(), first);
-    for (stiffness, drive) in [(0.0, 1.0), (-1.0, 1.0), (f64::INFINITY, 1.0), (f64::NAN, 1.0), (1.0, f64::NAN)] {
-        assert!(matches!(contact.step(0.1, Load::spring(stiffness, drive)), Err(Error::OutOfRange { .. })));
-    }
 }

@@ -101,55 +101,6 @@ fn retracted_and_sprung_paraboloids_match_the_tables() {
     }
 }
 
-/// An ellipsoid, a pyramid and a rough tip, retracted and driven by a spring: the stepper in space and the states
-/// agree, by the default rule.
-#[test]
-fn any_shape_is_retracted_and_sprung_as_its_states() {
-    let grid = Grid::square(32, 1.0).unwrap();
-    let rough = Rough::new(&grid, RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(2e-3))).unwrap();
-    let shapes: [(&str, Box<dyn Geometry>); 3] = [
-        ("ellipsoid", Box::new(Ellipsoid::new(2.0, 1.0).unwrap())),
-        ("pyramid", Box::new(FnGeometry::new(|x1: f64, x2: f64| 0.1 * x1.abs().max(x2.abs())))),
-        ("rough tip", Box::new(Sum::new(Sphere::new(1.5).unwrap(), rough))),
-    ];
-    for (name, shape) in shapes {
-        let settings = Settings::default().with_tolerance(1e-10);
-        let sweep = Sweep::new(grid.clone(), &*shape).accuracy(1e-6).max_states(1000).settings(settings);
-        let depth = 0.03;
-        let touch = builder_of(&*shape, grid.clone(), quarter_body());
-        let touch = touch.build().unwrap().approach();
-        let states = sweep.run(Reach::Approach(touch + 1.01 * depth)).unwrap();
-        let elastic = states.level_at(touch + depth);
-        let stiffness = elastic / depth;
-        for by_spring in [false, true] {
-            let load = |part: f64| match by_spring {
-                false => Load::approach(touch + depth * part),
-                true => Load::spring(stiffness, touch + depth * part),
-            };
-            let builder = builder_of(&*shape, grid.clone(), quarter_body());
-            let mut full = builder.settings(settings).build().unwrap();
-            let mut contact = StatesContact::new(&states, &quarter_body()).unwrap();
-            let mut worst = 0.0f64;
-            for step in 0..=130 {
-                let time = 0.02 * f64::from(step);
-                let part = if time <= 1.0 {
-                    time
-                } else if time <= 2.0 {
-                    1.0
-                } else {
-                    3.0 - time
-                };
-                let dt = if step == 0 { 0.0 } else { 0.02 };
-                let (a, b) = (full.step(dt, load(part)).unwrap(), contact.step(dt, load(part)).unwrap());
-                worst = worst.max((a.force - b.force).abs() / elastic);
-                worst = worst.max((a.approach - b.approach).abs() / depth);
-            }
-            println!("{name}, spring {by_spring}: {worst:.1e}, {} states", states.states().len());
-            assert!(worst < 1e-4, "{name} {by_spring}: {worst:e}");
-        }
-    }
-}
-
 /// A scene of which the elastic contact only grows.
 struct Scene {
     name: String,

@@ -8,47 +8,6 @@ use super::dialects::{creep, points};
 const ROWS: &str = "1;1.0\n2;1.1\n4;1.3\n8;1.4\n";
 const MODULI_ROWS: &str = "0.1;1.0;0.2\n1;1.5;0.4\n10;2.2;0.4\n100;2.5;0.1\n";
 
-#[test]
-fn units_of_headings_are_those_given() {
-    let minutes = Units::new(60.0, 1e-9).unwrap();
-    let refused =
-        |headings: &str, units: Units| match creep(&format!("{headings}\n{ROWS}"), units, points()).unwrap_err() {
-            Error::Table(TableError::Unit { line: 1, column, unit, field, expected, .. }) => {
-                (column, unit.into_string(), field, expected.into_string())
-            }
-            other => panic!("{headings}: {other}"),
-        };
-    let as_text = |column, unit: &str, field, expected: &str| (column, unit.to_owned(), field, expected.to_owned());
-    // all other units stand in the places that the population below draws
-    assert_eq!(refused("J (MPa^-1);t (min)", minutes), as_text(1, "MPa^-1", "value", "1/GPa"));
-    assert_eq!(refused("t;J [GPa]", minutes), as_text(2, "GPa", "value", "1/GPa"));
-    assert_eq!(refused("J;t [h]", Units::SI), as_text(2, "h", "abscissa", "s"));
-    for headings in
-        ["t [min];J [1/GPa]", "t / min;J / GPa^-1", "t;J", "t [MINUTES];J [10^-9 1/Pa]", "t [?];J (at 5 MPa)"]
-    {
-        creep(&format!("{headings}\n{ROWS}"), minutes, points()).unwrap_or_else(|error| panic!("{headings}: {error}"));
-    }
-    let dynamic = |headings: &str, units| {
-        let text = format!("{headings}\n{MODULI_ROWS}");
-        Measurements::from_csv_reader(Experiment::Dynamic, text.as_bytes(), units, points())
-            .and_then(|table| table.fit())
-            .map(|_| ())
-    };
-    let kilohertz = Units::new(6283.19, 1e6).unwrap();
-    assert_eq!(dynamic("f [kHz];G' [MPa];G'' [MPa]", kilohertz), Ok(()));
-    let error = dynamic("f [Hz];G' [MPa];G'' [MPa]", kilohertz).unwrap_err();
-    assert!(
-        matches!(&error, Error::Table(TableError::Unit { column: 1, .. })) && error.to_string().contains("kHz"),
-        "{error}"
-    );
-    let error = dynamic("omega [rad/s];G' [MPa];G'' [Pa]", Units::new(1.0, 1e6).unwrap()).unwrap_err();
-    assert!(matches!(error, Error::Table(TableError::Unit { column: 3, .. })), "{error}");
-    let message = creep(&format!("time [min];J\n{ROWS}"), Units::SI, points()).unwrap_err().to_string();
-    let expected =
-        "line 1, column 1: the heading \"time [min]\" says min, but Units::abscissa = 1 means s; of min it is 60";
-    assert_eq!(message, expected);
-}
-
 /// Every unit after a symbol, with and without brackets: read where it is given, else refused by its own name.
 #[test]
 fn units_are_read_however_they_follow_the_symbol() {
@@ -117,6 +76,11 @@ fn units_are_read_however_they_follow_the_symbol() {
                 }
             }
         }
+    }
+    // no unit, one that is none, and one of something else
+    for headings in ["t;J", "t [?];J (at 5 MPa)"] {
+        let read = creep(&format!("{headings}\n{ROWS}"), Units::new(60.0, 1e-9).unwrap(), points());
+        assert!(read.is_ok(), "{headings}");
     }
     println!("{read} headings read, {refused} refused");
     assert!(read > 1000 && refused > 2000);

@@ -94,63 +94,11 @@ fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
 }
 
 impl Scene {
-    /// One or two bodies under forces whose points jump by up to 2 mm.
-    pub fn eccentric(seed: u64, steps: usize) -> Scene {
+    /// Few cells, or on a finer mesh more, one to three bodies, and loads of every kind.
+    pub fn any(seed: u64, steps: usize, fine: bool) -> Scene {
         let draws = &mut draws(seed);
-        let cells = [9 + draws.below(40), 9 + draws.below(40)];
-        let grid = Grid::new(cells, [SIDE, SIDE * draws.scale(0.7, 1.4)]).unwrap();
-        let (first, one) = shape(draws);
-        let two = draws.chance(0.2);
-        let mut name = format!("seed {seed}: {}x{} {first}", cells[0], cells[1]);
-        let shapes: Vec<Box<dyn Geometry>> = if two {
-            // beside each other, half as large
-            let (second, other) = shape(draws);
-            name += &format!(" and {second}");
-            let half = |shape: Box<dyn Geometry>, x: f64| -> Box<dyn Geometry> {
-                Box::new(FnGeometry::new(move |x1, x2| {
-                    let own = (x1 - x).abs() < 0.24 * SIDE;
-                    if own { 0.5 * shape.initial_gap(2.0 * (x1 - x), x2) } else { f64::INFINITY }
-                }))
-            };
-            vec![half(one, -0.25 * SIDE), half(other, 0.25 * SIDE)]
-        } else {
-            vec![one]
-        };
-        let centres: &[f64] = if two { &[-0.25 * SIDE, 0.25 * SIDE] } else { &[0.0] };
-        let body = Body::random(draws);
-        let reach = if two { 0.4e-3 } else { 1.0e-3 };
-        let both = draws.chance(0.7);
-        // an upright beginning is computed on a small window, by symmetry on a quarter of it
-        let upright_first = draws.chance(0.5);
-        let steps = (0..steps)
-            .map(|k| {
-                let dt = if body.is_elastic_at_first() && (k == 0 || draws.chance(0.3)) {
-                    0.0
-                } else {
-                    draws.scale(1.0e-3, 10.0)
-                };
-                let loads = centres.iter().map(|x| {
-                    let force = draws.between(0.005, 0.055);
-                    if upright_first && k == 0 {
-                        return Load::force(force);
-                    }
-                    let at = [x + draws.between(-reach, reach), draws.between(-1.0e-3, 1.0e-3)];
-                    if both {
-                        Load::eccentric_force(force, at)
-                    } else {
-                        Load::Force { normal: force, tilt: [Tilt::Free { at: at[0] }, Tilt::Fixed(0.0)] }
-                    }
-                });
-                (dt, loads.collect())
-            })
-            .collect();
-        Scene { name, grid, shapes, rheology: body, steps }
-    }
-
-    /// Few cells, one to three bodies, and loads of every kind.
-    pub fn any(seed: u64, steps: usize) -> Scene {
-        let draws = &mut draws(seed);
-        let cells = [5 + draws.below(8), 5 + draws.below(8)];
+        let (least, range) = if fine { (9, 40) } else { (5, 8) };
+        let cells = [least + draws.below(range), least + draws.below(range)];
         let grid = Grid::new(cells, [SIDE, SIDE * draws.scale(0.5, 2.0)]).unwrap();
         let bodies = [1, 1, 1, 2, 3][draws.below(5)];
         let mut name = format!("seed {seed}: {}x{}", cells[0], cells[1]);
@@ -173,6 +121,8 @@ impl Scene {
             })
             .collect();
         let body = Body::random(draws);
+        // an upright beginning is computed on a small window, by symmetry on a quarter of it
+        let upright_first = fine && draws.chance(0.5);
         let steps = (0..steps)
             .map(|k| {
                 let jumps = body.is_elastic_at_first() && (k == 0 || draws.chance(0.3));
@@ -184,6 +134,9 @@ impl Scene {
                         1 => Tilt::Fixed(draws.between(-2.0e-3, 2.0e-3)),
                         _ => Tilt::Free { at },
                     };
+                    if upright_first && k == 0 {
+                        return Load::force(draws.scale(0.001, 1.0));
+                    }
                     let at = [centre + draws.between(-reach, reach), draws.between(-1.0e-3, 1.0e-3)];
                     let tilt = at.map(|at| tilt(draws, at));
                     match draws.below(8) {
