@@ -11,7 +11,7 @@ use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
 use crate::rheology::{Elastic, Material, TemperatureHistory};
 use crate::run::Stepping;
-use crate::states::{Course, Pressed};
+use crate::states::{Loading, Pressed};
 use crate::{Grid, InfluenceKernel};
 
 /// A pressure that falls by this share of the accuracy while the load grows counts for nothing.
@@ -125,9 +125,9 @@ impl Run {
 }
 
 impl TrialScene<'_> {
-    pub(super) fn course(&self) -> Course<'_> {
+    pub(super) fn course(&self) -> Loading<'_> {
         let TrialScene { material, temperature, history, until, .. } = *self;
-        Course { material, temperature, history, until }
+        Loading { material, temperature, history, until }
     }
 
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {

@@ -41,7 +41,7 @@ use crate::rheology::TimeTemperature;
 #[derive(Clone)]
 pub struct TemperatureHistory {
     law: TimeTemperature,
-    course: Course,
+    course: Temperatures,
     ageing: Option<Ageing>,
     rule: GaussLegendre,
     /// Room for the pieces of a quadrature, kept so that steps allocate none.
@@ -63,7 +63,7 @@ struct Ageing {
 }
 
 #[derive(Clone)]
-enum Course {
+enum Temperatures {
     /// Linear between the times.
     Table(TimeTable<f64>),
     Function {
@@ -109,7 +109,7 @@ impl TemperatureHistory {
     pub fn table(law: TimeTemperature, table: &[(f64, f64)]) -> Result<TemperatureHistory> {
         let checked = TimeTable::new(["temperature table", "temperature table times"], table, 1)?;
         table.iter().try_for_each(|&(_, temperature)| law.shift_factor(temperature).map(drop))?;
-        Ok(TemperatureHistory::new(law, Course::Table(checked)))
+        Ok(TemperatureHistory::new(law, Temperatures::Table(checked)))
     }
 
     /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive
@@ -124,10 +124,10 @@ impl TemperatureHistory {
     ) -> Result<TemperatureHistory> {
         let mut sorted = Ascending::default();
         sorted.add("corner of the temperature", corners)?;
-        Ok(TemperatureHistory::new(law, Course::Function { temperature: Arc::new(temperature), corners: sorted }))
+        Ok(TemperatureHistory::new(law, Temperatures::Function { temperature: Arc::new(temperature), corners: sorted }))
     }
 
-    fn new(law: TimeTemperature, course: Course) -> TemperatureHistory {
+    fn new(law: TimeTemperature, course: Temperatures) -> TemperatureHistory {
         let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(ROOM))));
         TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS), pieces }
     }
@@ -170,8 +170,8 @@ impl TemperatureHistory {
     /// The temperature at `time` \[K\]; where it jumps, the one after.
     pub fn at(&self, time: f64) -> f64 {
         match &self.course {
-            Course::Table(table) => table.at(time, |from, to, share| from + share * (to - from)),
-            Course::Function { temperature, .. } => temperature(time),
+            Temperatures::Table(table) => table.at(time, |from, to, share| from + share * (to - from)),
+            Temperatures::Function { temperature, .. } => temperature(time),
         }
     }
 
@@ -198,8 +198,8 @@ impl TemperatureHistory {
     /// The first corner or jump of the temperature after a time.
     pub(crate) fn next_corner(&self, after: f64) -> Option<f64> {
         match &self.course {
-            Course::Table(table) => table.after(after),
-            Course::Function { corners, .. } => corners.after(after),
+            Temperatures::Table(table) => table.after(after),
+            Temperatures::Function { corners, .. } => corners.after(after),
         }
     }
 
@@ -236,7 +236,7 @@ impl TemperatureHistory {
 
     /// ξ over a piece without corners inside.
     fn piece(&self, from: f64, to: f64) -> Result<f64> {
-        if let Course::Table(table) = &self.course
+        if let Temperatures::Table(table) = &self.course
             && table.is_constant_after(from)
         {
             let length = match self.ageing {
@@ -308,8 +308,8 @@ impl TemperatureHistory {
     /// The times and temperatures of a table, or the corners of a function.
     pub(crate) fn course(&self) -> std::result::Result<&[(f64, f64)], &[f64]> {
         match &self.course {
-            Course::Table(table) => Ok(table.as_slice()),
-            Course::Function { corners, .. } => Err(corners.as_slice()),
+            Temperatures::Table(table) => Ok(table.as_slice()),
+            Temperatures::Function { corners, .. } => Err(corners.as_slice()),
         }
     }
 }
@@ -322,8 +322,10 @@ impl fmt::Debug for TemperatureHistory {
             debug.field("ageing", ageing);
         }
         match &self.course {
-            Course::Table(table) => debug.field("table", table).finish(),
-            Course::Function { corners, .. } => debug.field("corners", &corners.as_slice()).finish_non_exhaustive(),
+            Temperatures::Table(table) => debug.field("table", table).finish(),
+            Temperatures::Function { corners, .. } => {
+                debug.field("corners", &corners.as_slice()).finish_non_exhaustive()
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::states::contact::StatesContact;
 use crate::states::curve::{ElasticStates, Rest};
 use crate::states::elastic::ElasticContact;
 use crate::states::pressed::Pressed;
-use crate::states::reach::{Course, MARGIN, greatest};
+use crate::states::reach::{Loading, MARGIN, greatest};
 use crate::states::repeated::{Found, NEAREST, Repeated, undisturbed};
 use crate::states::twin::Profile;
 
@@ -84,7 +84,7 @@ impl Beside {
     /// under a given approach, the material has no series, or nothing presses.
     pub(crate) fn new(
         contact: &ViscoelasticContact,
-        course: &Course<'_>,
+        course: &Loading<'_>,
         accuracy: f64,
         (interpolant, start): (Interpolant, f64),
     ) -> Result<Option<Beside>> {

@@ -56,7 +56,7 @@ const MERGING: f64 = 0.01;
 
 /// Chooses the adaptive steps.
 #[derive(Debug, Clone)]
-pub(super) struct StepControl {
+pub(super) struct HalvedSteps {
     pub(super) record: Record,
     /// The step taken whole, in halves, and after the first half.
     whole: StatesContact,
@@ -147,10 +147,10 @@ impl Record {
     }
 }
 
-impl StepControl {
-    pub(super) fn new(contact: &StatesContact, record: Record) -> StepControl {
+impl HalvedSteps {
+    pub(super) fn new(contact: &StatesContact, record: Record) -> HalvedSteps {
         let quadratic = contact.clone().with_quadratic_steps();
-        StepControl { record, whole: quadratic.clone(), halves: quadratic.clone(), middle: quadratic }
+        HalvedSteps { record, whole: quadratic.clone(), halves: quadratic.clone(), middle: quadratic }
     }
 
     /// The next step starts at a jump or a corner of the load.
@@ -302,7 +302,7 @@ impl StepControl {
         history: &dyn LoadHistory,
         Span { now, end }: Span,
     ) -> Result<(StepReport, f64)> {
-        let StepControl { whole, halves, middle, .. } = self;
+        let HalvedSteps { whole, halves, middle, .. } = self;
         let to = |contact: &mut StatesContact, time: f64| {
             contact.advance(time, time - contact.time(), load_at(history, time)?)
         };
@@ -330,7 +330,7 @@ impl StepControl {
         let expected = halves.levels.expected(&halves.states, demand, greatest_load, until / half, pressed / half);
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
-        let StepControl { whole, halves, middle, .. } = self;
+        let HalvedSteps { whole, halves, middle, .. } = self;
         let results = |contact: &StatesContact| [contact.depth(), contact.force()];
         let ended = [&*whole, &*halves].map(results);
         let scales = [0, 1].map(|k| f64::abs(ended[1][k]).max(0.1 * greatest[k]));

@@ -65,7 +65,7 @@ pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
-pub(crate) use reach::{Course, as_elastic, greatest};
+pub(crate) use reach::{Loading, as_elastic, greatest};
 pub(crate) use repeated::Repeated;
 pub use run::StatesRun;
 pub use sweep::Sweep;

@@ -60,7 +60,7 @@ impl Reach {
     /// If `until` is not finite and positive, a load of the history is invalid, the material has no exponential series
     /// ([`Material::fitted`]) or is not known until then, or the load jumps on a body without elastic response.
     pub fn of(material: &Material, history: &dyn LoadHistory, until: f64) -> Result<Reach> {
-        Course { material, temperature: None, history, until }.reach()
+        Loading { material, temperature: None, history, until }.reach()
     }
 
     /// As [`Reach::of`], at a temperature that changes.
@@ -73,20 +73,20 @@ impl Reach {
         history: &dyn LoadHistory,
         until: f64,
     ) -> Result<Reach> {
-        Course { material, temperature: Some(temperature), history, until }.reach()
+        Loading { material, temperature: Some(temperature), history, until }.reach()
     }
 }
 
 /// A material along a load history.
 #[derive(Clone, Copy)]
-pub(crate) struct Course<'a> {
+pub(crate) struct Loading<'a> {
     pub(crate) material: &'a Material,
     pub(crate) temperature: Option<&'a TemperatureHistory>,
     pub(crate) history: &'a dyn LoadHistory,
     pub(crate) until: f64,
 }
 
-impl Course<'_> {
+impl Loading<'_> {
     fn reach(&self) -> Result<Reach> {
         positive("end of the run", self.until)?;
         let all = self.sampled(PARTS)?;
@@ -100,7 +100,7 @@ impl Course<'_> {
 
     /// Loads at the ends of so many even parts of the run, and at the corners and jumps of its history.
     pub(crate) fn sampled(&self, parts: u32) -> Result<Vec<Load>> {
-        let Course { history, until, .. } = *self;
+        let Loading { history, until, .. } = *self;
         let mut all = Vec::new();
         for k in 0..=parts {
             let time = until * f64::from(k) / f64::from(parts);

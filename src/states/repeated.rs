@@ -9,7 +9,7 @@ use crate::run::Stepping;
 use crate::states::contact::StatesContact;
 use crate::states::control::is_force;
 use crate::states::curve::ElasticStates;
-use crate::states::reach::Course;
+use crate::states::reach::Loading;
 use crate::states::twin::Profile;
 
 /// Tolerance of the steps that show how long steps of a run may be.
@@ -196,7 +196,7 @@ impl Found {
 
 /// An undisturbed contact on these states at the start of a run.
 pub(super) fn undisturbed(
-    course: &Course<'_>,
+    course: &Loading<'_>,
     states: &Arc<ElasticStates>,
     interpolant: Interpolant,
     start: f64,

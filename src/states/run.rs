@@ -13,7 +13,7 @@ use crate::run::driven::{Course, Driven};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
-use crate::states::control::{Record, StepControl, load_at};
+use crate::states::control::{HalvedSteps, Record, load_at};
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
 
@@ -60,7 +60,7 @@ pub struct StatesControl {
     load: Option<Load>,
     tolerance: f64,
     before: StatesContact,
-    steps: StepControl,
+    steps: HalvedSteps,
     /// Whether the last step was taken in two halves.
     halved: bool,
 }
@@ -70,14 +70,14 @@ impl Driven for StatesContact {
 
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StatesControl) {
         let (_, tolerance) = stepping.lengths();
-        let (before, steps) = (self.clone(), StepControl::new(self, Record::new(until)));
+        let (before, steps) = (self.clone(), HalvedSteps::new(self, Record::new(until)));
         let control = StatesControl { load: None, tolerance, before, steps, halved: false };
         #[cfg(feature = "checkpoint")]
         if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedRun>())
             && saved.progress.continues(self.time, stepping, until)
         {
             let SavedRun { progress, load, control: record } = (*saved).clone();
-            return (progress, StatesControl { load, steps: StepControl::new(self, record), ..control });
+            return (progress, StatesControl { load, steps: HalvedSteps::new(self, record), ..control });
         }
         (Progress::begin(self.time, stepping), control)
     }

@@ -11,7 +11,7 @@ use crate::run::field::MOST_FIELDS;
 use crate::states::beside::Beside;
 use crate::states::coarser::Coarser;
 use crate::states::contact::StatesContact;
-use crate::states::reach::Course;
+use crate::states::reach::Loading;
 use crate::states::repeated::Repeated;
 use crate::states::unless_refused;
 
@@ -99,7 +99,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
     fn prepare(&mut self, contact: &ViscoelasticContact, request: &FieldRequest<'_>) -> Result<Prepared> {
         let FieldRequest { history, accuracy, start, until, times, is_adaptive } = *request;
         let Scene { material, temperature, settings, attraction, .. } = &*contact.scene;
-        let course = Course { material, temperature: temperature.as_ref(), history, until };
+        let course = Loading { material, temperature: temperature.as_ref(), history, until };
         let state = &contact.computation.state;
         let is_alone = contact.bodies() == 1 && attraction.is_none() && !state.region.is_shared();
         let is_new = start == 0.0 || state.is_undisturbed();

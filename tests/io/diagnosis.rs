@@ -34,28 +34,6 @@ fn contact_near_the_edge_is_warned_of_before_it_touches() {
 }
 
 #[test]
-fn material_beyond_its_data_is_warned_of() {
-    let times = [0.1, 0.3, 1.0, 3.0, 10.0];
-    let table = Measurements::creep(&times.map(|t: f64| (t, 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))))
-        .and_then(|table| table.fit())
-        .unwrap();
-    assert_eq!(table.measured(), [0.1, 10.0]);
-    let mut honest = contact(48, Material::incompressible(table.clone()), Settings::default());
-    honest.step(0.0, Load::force(0.1)).unwrap();
-    let warnings = |contact: &mut ViscoelasticContact, dt: f64| contact.step(dt, Load::force(0.1)).unwrap().warnings;
-    assert!(warnings(&mut honest, 0.01).contains(Warnings::FASTER_THAN_MATERIAL));
-    assert!(!warnings(&mut honest, 1.0).contains(Warnings::NEAR_END_OF_MATERIAL));
-    assert!(warnings(&mut honest, 5.0).contains(Warnings::NEAR_END_OF_MATERIAL));
-    assert!(matches!(honest.step(5.0, Load::force(0.1)), Err(Error::Step(StepError::BeyondMaterial { .. }))));
-
-    let mut bold = contact(48, Material::incompressible(table.extrapolated()), Settings::default());
-    bold.step(0.0, Load::force(0.1)).unwrap();
-    assert!(!warnings(&mut bold, 9.0).contains(Warnings::EXTRAPOLATED));
-    let later = warnings(&mut bold, 5.0);
-    assert!(later.contains(Warnings::EXTRAPOLATED) && !later.contains(Warnings::NEAR_END_OF_MATERIAL));
-}
-
-#[test]
 fn a_failed_solve_says_what_to_do() {
     let failure = |settings: Settings| {
         let error = contact(48, maxwell(), settings).step(0.0, Load::force(0.5)).unwrap_err();

@@ -99,6 +99,10 @@ fn steps_refuse_bad_arguments() {
         let error = assert_untouched(&mut contact, 0.1, Load::force(force));
         assert!(matches!(error, Error::OutOfRange { field: "normal force", .. }), "{error}");
     }
+    for (stiffness, drive) in [(0.0, 1.0), (-1.0, 1.0), (f64::INFINITY, 1.0), (f64::NAN, 1.0), (1.0, f64::NAN)] {
+        let error = assert_untouched(&mut contact, 0.1, Load::spring(stiffness, drive));
+        assert!(matches!(error, Error::OutOfRange { .. }), "{error}");
+    }
 }
 
 #[test]
@@ -159,6 +163,8 @@ fn load_tables_are_checked() {
 fn everything_travels_between_threads() {
     fn assert_send_sync<T: Send + Sync + std::fmt::Debug>() {}
     fn assert_clone<T: Clone>() {}
+    fn assert_send<T: Send>() {}
+    assert_send::<Run<'static>>();
     assert_send_sync::<ViscoelasticContact>();
     assert_clone::<ViscoelasticContact>();
     assert_send_sync::<InfluenceKernel>();

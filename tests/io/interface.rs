@@ -96,24 +96,6 @@ fn steps_over_the_bodies_have_no_estimate() {
     assert!(report.to_string().contains("error in time not estimated"), "{report}");
 }
 
-/// A run that owns its contact takes the same steps as one that borrows it, and can be sent to another thread.
-#[test]
-fn a_run_can_own_its_contact() {
-    let load = || Ramp::new(Load::force(0.0), Load::force(0.5), 1.0).unwrap();
-    for stepping in [Stepping::fixed(0.25), Stepping::adaptive(1e-2)] {
-        let mut borrowed = contact();
-        let history = load();
-        let mut run = borrowed.follow(&history, stepping, 1.0);
-        while run.next_step().unwrap().is_some() {}
-        let owned = std::thread::spawn(move || {
-            let mut run: Run<'static> = contact().into_follow(load(), stepping, 1.0);
-            while run.next_step().unwrap().is_some() {}
-            run.into_contact()
-        });
-        assert_eq!(owned.join().unwrap().pressure(), borrowed.pressure());
-    }
-}
-
 /// References stand for what they refer to, overridden methods included.
 #[expect(clippy::needless_borrows_for_generic_args, reason = "it is about references")]
 #[test]
@@ -131,14 +113,6 @@ fn references_implement_the_traits() {
     assert_eq!(compliance(&body), (body.creep_compliance(1.0), true));
     assert_eq!(gap(&shape), shape.initial_gap(1.0e-3, 0.0));
     assert_eq!(corner(&Ramp::new(Load::force(0.0), Load::force(0.5), 1.0).unwrap()), Some(1.0));
-}
-
-#[test]
-fn complex_numbers_come_from_the_crate() {
-    let body = Maxwell::with_time(1.0e6, 1.0).unwrap();
-    let spectrum = body.creep_spectrum().unwrap();
-    let modulus: viscocontact::num_complex::Complex64 = 1.0 / spectrum.complex_compliance(1.0);
-    assert!(modulus.re > 0.0 && modulus.im > 0.0);
 }
 
 #[cfg(feature = "npy")]

@@ -1,7 +1,6 @@
 //! Kernels of layers: limits, sums over cells, waves, and invalid layers.
 
 use crate::common::builder_of;
-use std::f64::consts::{FRAC_2_PI, TAU};
 use std::sync::Arc;
 
 use super::{assert_answers_waves, convolve};

@@ -1,8 +1,8 @@
 //! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series, direct sums.
 
 use super::tension::carson;
-use crate::common::refused::field;
 use crate::common::RADIUS;
+use crate::common::refused::field;
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;

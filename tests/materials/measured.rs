@@ -7,6 +7,7 @@ mod units;
 
 use crate::common::{noise, pairs, sphere_on, triples};
 use approx::assert_abs_diff_eq;
+use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSeries, CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
 use viscocontact::{Error, Result};
@@ -87,7 +88,10 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
     assert!(bulk.contact_compliance(1e2).is_finite() && bulk.contact_compliance(101.0).is_nan());
     let mut contact = sphere(Material::incompressible(body.clone()));
     contact.step(0.0, Load::force(0.1)).unwrap();
-    contact.step(100.0, Load::force(0.1)).unwrap();
+    let report = contact.step(30.0, Load::force(0.1)).unwrap();
+    assert!(!report.warnings.contains(Warnings::NEAR_END_OF_MATERIAL), "{report}");
+    let report = contact.step(70.0, Load::force(0.1)).unwrap();
+    assert!(report.warnings.contains(Warnings::NEAR_END_OF_MATERIAL), "{report}");
     let error = contact.step(1.0, Load::force(0.1)).unwrap_err();
     assert_eq!(error, Error::Step(StepError::BeyondMaterial { time: 101.0, age: 101.0, known_until: 100.0 }));
     assert_eq!(contact.time(), 100.0);
@@ -108,7 +112,9 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
     assert!(trusted.creep_compliance(150.0).is_finite());
     let mut contact = sphere(Material::incompressible(trusted));
     contact.step(0.0, Load::force(0.1)).unwrap();
-    contact.step(150.0, Load::force(0.1)).unwrap();
+    let [before, after] = [90.0, 60.0].map(|dt| contact.step(dt, Load::force(0.1)).unwrap().warnings);
+    assert!(!before.contains(Warnings::EXTRAPOLATED) && after.contains(Warnings::EXTRAPOLATED), "{before} {after}");
+    assert!(!after.contains(Warnings::NEAR_END_OF_MATERIAL), "{after}");
 }
 
 fn sphere(material: Material) -> ViscoelasticContact {

@@ -86,24 +86,6 @@ fn part(n: usize, rank: usize, size: usize) -> usize {
     n * (rank + 1) / size - n * rank / size
 }
 
-/// A grid of one band: all ranks but one have no rows, and return the same reports.
-#[test]
-fn ranks_without_rows_get_the_same_reports() {
-    let seen = Threads::run(3, |ranks| {
-        let mut contact = sphere(32, ranks).unwrap();
-        let report = contact.step(0.0, Load::force(1.0)).unwrap();
-        let whole = contact.gathered(contact.pressure(), 2).unwrap();
-        (contact.rows().len(), contact.pressure().len(), report, contact.max_pressure(), whole.map(|p| p.len()))
-    })
-    .unwrap();
-    assert_eq!(seen.iter().map(|rank| rank.0).sum::<usize>(), 32);
-    assert_eq!(seen.iter().filter(|rank| rank.0 == 0).count(), 2);
-    for rank in &seen {
-        assert_eq!((rank.1, rank.2, rank.3), (32 * rank.0, seen[0].2, seen[0].3));
-    }
-    assert_eq!(seen.iter().map(|rank| rank.4).collect::<Vec<_>>(), [None, None, Some(32 * 32)]);
-}
-
 /// All ranks get the profile that one process sees, across own rows and along a row of another, folded or not.
 #[test]
 fn profiles_are_those_of_one_process() {
@@ -190,23 +172,6 @@ fn a_contact_that_one_rank_cannot_build_is_built_by_none() {
     for error in &errors {
         assert!(matches!(error, Error::Ranks(RanksError::Failed { rank: 2, .. })), "{error}");
         assert_eq!(error, &errors[0]);
-    }
-}
-
-/// Attraction is not shared out: all ranks refuse it.
-#[test]
-fn attraction_is_refused() {
-    let errors = within_a_minute(|| {
-        Threads::run(2, |ranks| {
-            let law = ExponentialAttraction::new(0.05, 1.0e-5).unwrap();
-            let builder = ViscoelasticContact::builder(Grid::square(32, 1.0e-3).unwrap()).ranks(ranks);
-            builder.geometry(&Sphere::new(1.0e-2).unwrap()).material(elastic()).attraction(law).build().unwrap_err()
-        })
-        .unwrap()
-    });
-    for error in &errors {
-        assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
-        assert!(error.to_string().contains("compute it in one process"), "{error}");
     }
 }
 
@@ -388,6 +353,14 @@ fn what_is_not_shared_is_refused_by_name() {
         for error in refused(settings) {
             assert!(matches!(error, Some(Error::NotCovered { special: Special::Ranks, .. })), "{error:?}");
         }
+    }
+    let attracted = Threads::run(2, |ranks| {
+        let law = ExponentialAttraction::new(0.05, 1.0e-5).unwrap();
+        builder_on(Grid::square(32, 4.0e-3).unwrap(), elastic()).ranks(ranks).attraction(law).build().unwrap_err()
+    });
+    for error in attracted.unwrap() {
+        assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
+        assert!(error.to_string().contains("compute it in one process"), "{error}");
     }
     Threads::run(2, |ranks| {
         let not_shared =

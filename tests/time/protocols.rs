@@ -1,8 +1,8 @@
 //! Jumps that press nothing: runs that begin with any load, change its kind, part and touch again, on bodies with and
 //! without elastic response.
 
-use crate::common::protocol::Protocol;
 use crate::common::builder_of;
+use crate::common::protocol::Protocol;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

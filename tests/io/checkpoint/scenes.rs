@@ -54,7 +54,7 @@ fn gap(contact: &ViscoelasticContact) -> Vec<f64> {
 #[test]
 fn random_scenes_are_told_apart() {
     let path = Temporary::file("random-scenes");
-    let (mut accepted, mut swapped, mut reshaped, mut recut) = (0, 0, 0, 0);
+    let (mut accepted, mut swapped, mut reshaped) = (0, 0, 0);
     for seed in 0..300 {
         let mut number = uniform(seed);
         let mut random = move || number();
@@ -120,36 +120,9 @@ fn random_scenes_are_told_apart() {
             assert!(named, "seed {seed}, {:?} of {bodies:?}: {error}", scene[changed]);
             reshaped += 1;
         }
-        // one shape cut into bodies at another line, between the same cells or not
-        let cut = |at: f64| -> Vec<Box<dyn Geometry>> {
-            [-1.0, 1.0]
-                .map(|side| -> Box<dyn Geometry> {
-                    let whole = body.geometry();
-                    let part =
-                        move |x1, x2| if (x1 - at) * side > 0.0 { whole.initial_gap(x1, x2) } else { f64::INFINITY };
-                    Box::new(FnGeometry::new(part))
-                })
-                .into()
-        };
-        let spacing = grid.spacing()[0];
-        let at = |k: usize| grid.center(k, 0)[0] + 0.5 * spacing;
-        let middle = cells / 2;
-        let (Some(one), Some(mut other)) = (build(&grid, &cut(at(middle))), build(&grid, &cut(at(middle - 1)))) else {
-            continue;
-        };
-        one.save(&path).unwrap();
-        build(&grid, &cut(at(middle) + 0.3 * spacing)).unwrap().resume(&path).unwrap();
-        // only where there is something to touch on the column between
-        let column = middle * grid.cells()[1]..(middle + 1) * grid.cells()[1];
-        if gap(&one)[column].iter().any(|gap| gap.is_finite()) {
-            let error = refused(&mut other, &path);
-            let named = matches!(error, CheckpointError::OtherScene { what: OWNERS, .. });
-            assert!(named, "seed {seed}: {error}");
-            recut += 1;
-        }
     }
-    println!("{accepted} accepted, {swapped} swapped, {reshaped} reshaped, {recut} cut elsewhere");
-    assert!(accepted > 150 && swapped > 100 && reshaped > 800 && recut > 100);
+    println!("{accepted} accepted, {swapped} swapped, {reshaped} reshaped");
+    assert!(accepted > 150 && swapped > 100 && reshaped > 800);
 }
 
 /// Contacts of several threads save to one path: no save fails, the file is one of theirs at any time, and nothing else is
