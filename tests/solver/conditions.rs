@@ -236,7 +236,10 @@ proptest! {
             }
             assert_contact_conditions(&ours, load, TOLERANCE);
             reference.step(dt, load).unwrap();
-            assert_contact_conditions(&reference, load, TOLERANCE);
+            // a body held at a pivot may turn away from the surface altogether: how far is not determined
+            if scene.control != Control::ApproachOnPivot {
+                assert_contact_conditions(&reference, load, TOLERANCE);
+            }
             // the greatest pressure so far: after a release, rounding of it remains
             peak = ours.pressure().iter().copied().fold(peak, f64::max);
             for (a, b) in ours.pressure().iter().zip(reference.pressure()) {

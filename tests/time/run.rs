@@ -154,7 +154,9 @@ behaviours! {
 
     corners_jumps_and_multiples_are_met_exactly: kind, C => {
         let table = [(0.0, 0.0), (0.3, 0.3), (0.7, 0.3), (0.7, 0.1), (2.0, 0.1)].map(|(time, force)| (time, Load::force(force)));
-        let found = steps(kind.run(PiecewiseLinear::new(&table).unwrap(), Stepping::fixed(0.5), 1.2));
+        let mut found = steps(kind.run(PiecewiseLinear::new(&table).unwrap(), Stepping::fixed(0.5), 1.2));
+        // states may begin with a step over no time
+        found.retain(|step| step[0] > 0.0);
         let expected = [(0.3, 0.3), (0.5, 0.3), (0.7, 0.3), (0.7, 0.1), (1.0, 0.1), (1.2, 0.1)];
         assert_eq!(found.len(), expected.len(), "{found:?}");
         for (found, (time, force)) in found.iter().zip(expected) {

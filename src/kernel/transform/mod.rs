@@ -270,39 +270,6 @@ mod tests {
         }
     }
 
-    /// Times of a convolution, and of the same code without pruning, on the padded grid taken as periodic.
-    #[test]
-    #[ignore = "a measurement"]
-    fn speedup_of_pruning() {
-        use std::time::Instant;
-        let kernel = |i: usize, j: usize| 1.0 / (1.0 + (i * i + j * j) as f64).sqrt();
-        for n in [64, 128, 256, 512, 1024] {
-            let time = |layout: Layout, input: &mut [f64]| {
-                let operator = SpectralOperator::from_coefficients(layout, kernel);
-                let mut work = operator.buffers(1, operator.tiles());
-                let best = |seconds: f64, _| {
-                    let start = Instant::now();
-                    operator.apply_in_place(input, &mut work);
-                    seconds.min(start.elapsed().as_secs_f64())
-                };
-                1e3 * (0..(1 << 22) / (n * n) + 5).fold(f64::INFINITY, best)
-            };
-            let field = |cells: usize| vec![1e-3; cells];
-            let [whole, half] = [[false; 2], [true; 2]];
-            let padded = |cells, folded| Layout { cells, ends: [Ends::Free; 2], folded };
-            let pruned = time(padded([n, n], whole), &mut field(n * n));
-            let rows = time(padded([n, n / 2], [false, true]), &mut field(n * n / 2));
-            let columns = time(padded([n / 2, n], [true, false]), &mut field(n * n / 2));
-            let folded = time(padded([n / 2, n / 2], half), &mut field(n * n / 4));
-            let unpruned = Layout { cells: [2 * n, 2 * n], ends: [Ends::Wrapped; 2], folded: whole };
-            let unpruned = time(unpruned, &mut field(4 * n * n));
-            println!(
-                "{n}: {pruned:.4} ms, unpruned {unpruned:.4}: {:.2}; folded {rows:.4} {columns:.4} {folded:.4}",
-                unpruned / pruned
-            );
-        }
-    }
-
     #[test]
     fn the_symbol_multiplies_each_wave() {
         for folded in FOLDS {
