@@ -222,7 +222,8 @@ proptest! {
     fn both_solvers_satisfy_the_conditions_and_agree(scene in scenes()) {
         let Some(mut ours) = scene.contact(Solver::ActiveSet) else { return Ok(()) };
         let mut reference = scene.contact(Solver::PolonskyKeer).unwrap();
-        let mut peak: f64 = 0.0;
+        // where a body swings clear, rounding may remain
+        let mut peak: f64 = if scene.control == Control::ApproachOnPivot { 1e-9 } else { 0.0 };
         for (step, &(dt, _)) in scene.history.iter().enumerate() {
             let load = scene.load(step);
             match ours.step(dt, load) {

@@ -153,9 +153,9 @@ behaviours! {
     }
 
     corners_jumps_and_multiples_are_met_exactly: kind, C => {
+        // one of the contacts begins with a step over no time
         let table = [(0.0, 0.0), (0.3, 0.3), (0.7, 0.3), (0.7, 0.1), (2.0, 0.1)].map(|(time, force)| (time, Load::force(force)));
         let mut found = steps(kind.run(PiecewiseLinear::new(&table).unwrap(), Stepping::fixed(0.5), 1.2));
-        // states may begin with a step over no time
         found.retain(|step| step[0] > 0.0);
         let expected = [(0.3, 0.3), (0.5, 0.3), (0.7, 0.3), (0.7, 0.1), (1.0, 0.1), (1.2, 0.1)];
         assert_eq!(found.len(), expected.len(), "{found:?}");
@@ -163,7 +163,7 @@ behaviours! {
             assert!(found[0] == time && (found[1] - force).abs() < 1e-9, "{found:?}, {time} {force}");
         }
         let ramp = Ramp::new(Load::force(0.0), Load::force(0.4), 0.7).unwrap();
-        let ends: Vec<f64> = steps(kind.run(ramp, Stepping::fixed(0.1), 1.0)).iter().map(|step| step[0]).collect();
+        let ends: Vec<f64> = steps(kind.run(ramp, Stepping::fixed(0.1), 1.0)).iter().map(|step| step[0]).filter(|end| *end > 0.0).collect();
         assert_eq!(ends, [0.1, 0.2, 3.0 * 0.1, 0.4, 0.5, 6.0 * 0.1, 0.7, 0.8, 0.9, 1.0]);
         // another load than the last step's is a jump, and the end is the end
         let mut contact = (kind.new)();
