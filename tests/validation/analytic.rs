@@ -198,3 +198,85 @@ fn punch_carries_force_and_moment() {
         Err(Error::OutOfRange { field: "eccentricity", .. })
     ));
 }
+
+/// Radii, moduli and forces at the ends of the range: numbers, or refused.
+#[test]
+fn references_at_the_ends_are_numbers_or_refused() {
+    let ends = [5e-324, 1e-310, 1e-200, 1e-100, 1e-3, 1.0, 1e6, 1e100, 1e200, 1e300, 1.7e308];
+    let all = |numbers: &[f64], what: &dyn std::fmt::Debug| {
+        assert!(numbers.iter().all(|value| value.is_finite()), "{numbers:?} of {what:?}");
+    };
+    let (mut made, mut refused) = ([0; 4], [0; 4]);
+    let mut count = |which: usize, ok: bool| if ok { made[which] += 1 } else { refused[which] += 1 };
+    for radius in ends {
+        for modulus in ends {
+            for force in ends {
+                let hertz = Hertz::new(radius, modulus, force);
+                count(0, hertz.is_ok());
+                if let Ok(hertz) = hertz {
+                    all(&[hertz.contact_radius, hertz.max_pressure, hertz.approach, hertz.pressure(0.0)], &hertz);
+                }
+                let ellipse = HertzEllipse::new([radius, 3.0 * radius.min(5e307)], modulus, force);
+                count(1, ellipse.is_ok());
+                if let Ok(ellipse) = ellipse {
+                    let [a, b] = ellipse.semi_axes;
+                    all(&[a, b, ellipse.max_pressure, ellipse.approach, ellipse.pressure(0.0, 0.0)], &ellipse);
+                }
+                let punch = RigidPunch::new(radius, modulus, force, 0.3 * radius);
+                count(2, punch.is_ok());
+                if let Ok(punch) = punch {
+                    all(&[punch.approach, punch.tilt, punch.pressure(0.0, 0.0)], &punch);
+                }
+            }
+        }
+        // states of a stiff and of a soft body
+        for modulus in [1e-95, 1e6, 1e95] {
+            let body = Material::incompressible(Maxwell::new(modulus, modulus).unwrap());
+            let Ok(states) = ElasticStates::sphere(radius) else { continue };
+            let mut contact = StatesContact::new(&states, &body).unwrap();
+            for (dt, force) in [(0.0, 1e300), (1.0, 1e-300), (1e300, 1.0), (1e-300, 1e200), (0.0, 1.0)] {
+                count(3, contact.step(dt, Load::force(force)).is_ok());
+                count(3, contact.step(dt, Load::approach(1e-3 * force)).is_ok());
+                all(&[contact.force(), contact.approach(), contact.contact_area()], &contact);
+            }
+        }
+    }
+    for which in 0..4 {
+        assert!(made[which] > 5 && refused[which] > 5, "{made:?} made, {refused:?} refused");
+    }
+}
+
+/// A growing contact between the ends of the range, at times to the last: its radius is a number or infinite, and where it is a
+/// number, so is the pressure.
+#[test]
+fn growing_spheres_stay_numbers() {
+    let bodies = [
+        Material::incompressible(Maxwell::new(1e95, 1e-95).unwrap()),
+        Material::incompressible(Maxwell::new(1e-95, 1e95).unwrap()),
+        Material::incompressible(GeneralizedKelvin::new(1e-95, 1e95, &[(1e95, 1e-95), (1e-95, 1e95)]).unwrap()),
+    ];
+    let mut endless = 0;
+    for body in &bodies {
+        for radius in [1e-100, 1e-3, 1e100] {
+            for force in [5e-324, 1e-100, 1.0, 1e100] {
+                let sphere = GrowingSphere::step(radius, body, force).unwrap();
+                for t in [0.0, 1e-300, 1.0, 1e100, 1e308] {
+                    let a = sphere.contact_radius(t);
+                    assert!(a >= 0.0 && sphere.approach(t) >= 0.0, "{a} {sphere:?}");
+                    if a == f64::INFINITY {
+                        endless += 1;
+                        continue;
+                    }
+                    for r in [0.0, 1e-300, 0.5 * a, 1e300] {
+                        let pressure = sphere.pressure(r, t);
+                        assert!(!pressure.is_nan(), "{r:e} m, {t:e} s: {pressure} of {sphere:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(endless > 0);
+    let refused = |radius: f64, force: f64| GrowingSphere::step(radius, &bodies[0], force).unwrap_err();
+    assert!(matches!(refused(1e101, 1.0), Error::OutOfRange { field: "sphere radius", .. }));
+    assert!(matches!(refused(1.0, 1e200), Error::OutOfRange { field: "force", .. }));
+}
