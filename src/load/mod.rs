@@ -373,28 +373,18 @@ impl dyn LoadHistory + '_ {
 
 /// Implements [`LoadHistory`] for a wrapper by the history inside.
 macro_rules! forward_load {
-    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
-        impl $(<$generic: $crate::load::LoadHistory + ?Sized>)? $crate::load::LoadHistory for $outer {
-            fn at(&$self, t: f64) -> $crate::load::Load {
-                $inner.at(t)
-            }
-
-            fn before(&$self, t: f64) -> $crate::load::Load {
-                $inner.before(t)
-            }
-
-            fn next_breakpoint(&$self, after: f64) -> Option<f64> {
-                $inner.next_breakpoint(after)
-            }
-
-            fn failure(&$self) -> Option<$crate::UserError> {
-                $inner.failure()
-            }
+    ($($wrapper:tt)*) => {
+        forward! {
+            $crate::load::LoadHistory, ($($wrapper)*),
+            at(t: f64) -> $crate::load::Load;
+            before(t: f64) -> $crate::load::Load;
+            next_breakpoint(after: f64) -> Option<f64>;
+            failure() -> Option<$crate::UserError>;
         }
     };
 }
 use forward_load;
 
-forward_load!(<T> self: &T => (**self));
-forward_load!(<T> self: Box<T> => (**self));
-forward_load!(<T> self: std::sync::Arc<T> => (**self));
+forward_load!(<T> self: &T => **self);
+forward_load!(<T> self: Box<T> => **self);
+forward_load!(<T> self: std::sync::Arc<T> => **self);
