@@ -245,7 +245,7 @@ impl Builder {
                 (other, "a base of another ratio than the layer's", cure),
                 (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
             ])?;
-            Ok::<_, Error>(LayerOnBase { layer, base: series(&base)? })
+            Ok::<_, Error>(LayerOnBase { layer, own: creep.clone(), base: series(&base)?, kernel: kernel.clone() })
         };
         let layer = base.map(on_base).transpose()?;
         let bodies = Arc::new(Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() });
