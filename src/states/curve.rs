@@ -1,7 +1,6 @@
 //! The elastic states of a contact, and what lies between them.
 
 use std::f64::consts::PI;
-use std::fmt;
 
 use crate::Grid;
 use crate::contact::{Builder, Figures, Warnings};
@@ -385,12 +384,4 @@ pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64
     approach + tilt[0] * point[0] + tilt[1] * point[1]
 }
 
-impl fmt::Debug for ElasticStates {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ElasticStates")
-            .field("states", &self.states.len())
-            .field("last_level", &self.last_level())
-            .field("error", &self.error)
-            .finish_non_exhaustive()
-    }
-}
+debug_by!(self: ElasticStates => states: self.states.len(), last_level: self.last_level(), error: self.error);
