@@ -89,13 +89,12 @@ impl Record {
     /// For a run to the time `until`.
     pub(super) fn new(until: f64) -> Record {
         let loads = Vec::with_capacity(PARTS_OF_RUN as usize + 1);
-        let (by_force, greatest) = (true, [0.0; 2]);
         Record {
             until,
             next: 0.0,
             corner: 0.0,
-            by_force,
-            greatest,
+            by_force: true,
+            greatest: [0.0; 2],
             loads,
             greatest_load: 0.0,
             pressed: 0.0,
@@ -111,20 +110,21 @@ impl Record {
         sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
 
-    /// Looks at the load at equal parts of the run. A load that is refused fails the step to it.
-    fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) {
+    /// Looks at the load at equal parts of the run. A load that the states have no demand for fails the step to it.
+    fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) -> Result<()> {
         let (start, length) = (contact.time(), self.until - contact.time());
         for k in 0..=PARTS_OF_RUN {
             let time = start + length * f64::from(k) / f64::from(PARTS_OF_RUN);
-            let load = history.at(time);
+            let load = history.checked_at(time, false)?;
             self.by_force &= is_force(load);
-            self.loads.extend(value(contact, load).ok().filter(|load| load.is_finite()).map(|load| (time, load)));
+            self.loads.extend(value(contact, load).ok().map(|load| (time, load)));
         }
         self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
         // a body without elastic response has no depth as soon as the load acts
         let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
         let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
         self.pressed = lengths.fold(length / f64::from(PARTS_OF_RUN), f64::max);
+        Ok(())
     }
 
     /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
@@ -170,7 +170,7 @@ impl StepControl {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
         }
         if self.record.loads.is_empty() {
-            self.record.sample(contact, history);
+            self.record.sample(contact, history)?;
         }
         if is_first {
             self.record.corner = now;
