@@ -347,7 +347,7 @@ impl SteadySliding {
 
     /// The bodies under a pressure with this velocity, where a load has a steady state.
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
-        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
+        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, load.is_force());
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
         Special::SteadyMotion.refuses([(
             drifts,

@@ -91,8 +91,8 @@ impl Beside {
     ) -> Result<Option<Beside>> {
         let all = course.sampled(PARTS)?;
         let tilt = all[0].tilt();
-        let is_force = |load: &Load| matches!(load, Load::Force { .. });
-        let (by_force, is_free) = (all.iter().all(is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
+        let (by_force, is_free) =
+            (all.iter().all(Load::is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
         let is_other = |load: &Load| load.tilt() != tilt;
         if course.material.contact_spectrum()?.is_none() || all.iter().any(is_other) || !by_force && is_free {
             return Ok(None);

@@ -116,7 +116,7 @@ impl Record {
         for k in 0..=PARTS_OF_RUN {
             let time = start + length * f64::from(k) / f64::from(PARTS_OF_RUN);
             let load = history.checked_at(time, false)?;
-            self.by_force &= is_force(load);
+            self.by_force &= load.is_force();
             self.loads.extend(value(contact, load).ok().map(|load| (time, load)));
         }
         self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
@@ -206,7 +206,7 @@ impl StepControl {
             let event = self.event(contact, history, step, &loads, tolerance)?;
             end = event.unwrap_or(end);
             let (report, difference) = self.compare(contact, history, Span { now, end })?;
-            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(load_at(history, end)?);
+            let force_ends = report.force == 0.0 && contact.level() > 0.0 && load_at(history, end)?.is_force();
             let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
             let order = match last {
                 _ if is_first => 1.0,
@@ -245,7 +245,7 @@ impl StepControl {
         tolerance: f64,
     ) -> Result<Option<f64>> {
         let Span { now, end } = step;
-        let by_force = is_force(load_at(history, end)?);
+        let by_force = load_at(history, end)?.is_force();
         if !by_force && contact.level() > 0.0 {
             return Ok(None);
         }
@@ -346,7 +346,7 @@ impl StepControl {
         }
         let levels = [contact.level(), cuts[0], cuts[1]];
         let deepest = levels.into_iter().fold(0.0, f64::max);
-        let presses = is_force(load_at(history, end)?) && value(contact, load_at(history, now + half)?)? > 0.0;
+        let presses = load_at(history, end)?.is_force() && value(contact, load_at(history, now + half)?)? > 0.0;
         if levels.iter().any(|level| *level < SHALLOW * deepest) || deepest == 0.0 && presses {
             for start in [contact, middle] {
                 let mut quarter = |ends: &[f64]| -> Result<[f64; 2]> {
@@ -373,10 +373,6 @@ impl StepControl {
 /// The load at a time, or just before it where it jumps.
 pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
     history.checked_before(time, false)
-}
-
-pub(super) fn is_force(load: Load) -> bool {
-    matches!(load, Load::Force { .. })
 }
 
 /// Force, or depth of the load point or of the far end of its spring.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::Grid;
 use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
-use crate::load::Tilt;
+use crate::load::{Tilt, load_point};
 use crate::numeric::{hermite, hermite_slope, root};
 use crate::states::pressed::Pressed;
 
@@ -185,7 +185,7 @@ impl ElasticStates {
 
     /// The coordinates at which the load acts: those of free tilts, the origin along the other axes.
     pub(super) fn load_point(&self) -> [f64; 2] {
-        load_point(&self.tilt)
+        load_point(self.tilt)
     }
 
     /// Distance from the load point to the edge of the greatest contact \[m\], at most; 0 where no tilt is free.
@@ -372,11 +372,6 @@ impl ElasticStates {
     pub fn conductance(&self, level: f64, resistivities: [f64; 2]) -> f64 {
         2.0 * self.stiffness(level) / resistivities.iter().sum::<f64>()
     }
-}
-
-/// The coordinates at which a load of these tilts acts.
-pub(super) fn load_point(tilt: &[Tilt; 2]) -> [f64; 2] {
-    tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 })
 }
 
 /// Approach of a point of the body.
