@@ -94,6 +94,11 @@ pub enum Tilt {
     },
 }
 
+/// The coordinates at which a load of these tilts acts: those of free tilts, the origin along the other axes.
+pub(crate) fn load_point(tilt: [Tilt; 2]) -> [f64; 2] {
+    tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 })
+}
+
 /// "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad": prescribed values, without tilts of zero.
 impl fmt::Display for Load {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -170,13 +175,23 @@ impl Load {
         tilt
     }
 
+    pub(crate) fn is_force(&self) -> bool {
+        matches!(self, Load::Force { .. })
+    }
+
+    /// Force, approach or drive.
+    pub(crate) fn main(&self) -> f64 {
+        let (Load::Force { normal: main, .. }
+        | Load::Approach { approach: main, .. }
+        | Load::Spring { drive: main, .. }) = *self;
+        main
+    }
+
     /// Force, approach or drive, then the tilts or load points along x1 and x2, and the stiffness of a spring.
     fn values(&self) -> [f64; VALUES] {
         let [first, second] = self.tilt().map(|(Tilt::Fixed(value) | Tilt::Free { at: value })| value);
-        match *self {
-            Load::Force { normal: main, .. } | Load::Approach { approach: main, .. } => [main, first, second, 0.0],
-            Load::Spring { stiffness, drive, .. } => [drive, first, second, stiffness],
-        }
+        let stiffness = if let Load::Spring { stiffness, .. } = *self { stiffness } else { 0.0 };
+        [self.main(), first, second, stiffness]
     }
 
     /// With another force, approach or drive, by `change`.
@@ -373,28 +388,18 @@ impl dyn LoadHistory + '_ {
 
 /// Implements [`LoadHistory`] for a wrapper by the history inside.
 macro_rules! forward_load {
-    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
-        impl $(<$generic: $crate::load::LoadHistory + ?Sized>)? $crate::load::LoadHistory for $outer {
-            fn at(&$self, t: f64) -> $crate::load::Load {
-                $inner.at(t)
-            }
-
-            fn before(&$self, t: f64) -> $crate::load::Load {
-                $inner.before(t)
-            }
-
-            fn next_breakpoint(&$self, after: f64) -> Option<f64> {
-                $inner.next_breakpoint(after)
-            }
-
-            fn failure(&$self) -> Option<$crate::UserError> {
-                $inner.failure()
-            }
+    ($($wrapper:tt)*) => {
+        forward! {
+            $crate::load::LoadHistory, ($($wrapper)*),
+            at(t: f64) -> $crate::load::Load;
+            before(t: f64) -> $crate::load::Load;
+            next_breakpoint(after: f64) -> Option<f64>;
+            failure() -> Option<$crate::UserError>;
         }
     };
 }
 use forward_load;
 
-forward_load!(<T> self: &T => (**self));
-forward_load!(<T> self: Box<T> => (**self));
-forward_load!(<T> self: std::sync::Arc<T> => (**self));
+forward_load!(<T> self: &T => **self);
+forward_load!(<T> self: Box<T> => **self);
+forward_load!(<T> self: std::sync::Arc<T> => **self);

@@ -10,9 +10,9 @@ use crate::contact::{Builder, Settings, ViscoelasticContact};
 use crate::error::{Error, Result, StatesError, count_within, finite, positive, within};
 use crate::geometry::Geometry;
 use crate::kernel::{InfluenceKernel, Layer};
-use crate::load::{Load, Tilt};
+use crate::load::{Load, Tilt, load_point};
 use crate::rheology::{Elastic, Material};
-use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at, load_point};
+use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at};
 use crate::states::elastic::{ElasticContact, Solved};
 use crate::states::pressed::Pressed;
 use crate::states::reach::{MARGIN, Reach};
@@ -140,7 +140,7 @@ impl Sweep {
         let scene = self.builder.material(unit).settings(self.settings);
         let elastic = ElasticContact::new(&scene)?;
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
-        let at = load_point(&self.tilt);
+        let at = load_point(self.tilt);
         let grid = elastic.grid().clone();
         let mut solver = Solver {
             elastic,
