@@ -63,7 +63,7 @@ fn at_rest(material: &Material) -> Result<(f64, f64)> {
         }
         .into());
     };
-    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a layer on a base"))?;
+    let creep = material.spectrum_for("a layer on a base")?;
     let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
     within("fluidity of a layer or its base", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
     Ok((nu, relaxed))

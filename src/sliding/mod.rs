@@ -225,9 +225,7 @@ impl Builder {
             (jumps, "a shape that jumps at the period of its body", "take one that repeats, or taper its ends"),
             (by_modulus, measured, "fit a series to it"),
         ])?;
-        let series = |material: &Material| {
-            Ok::<_, Error>(Creep::Series(material.contact_spectrum()?.ok_or_else(|| material.no_series("a motion"))?))
-        };
+        let series = |material: &Material| material.spectrum_for("a motion").map(Creep::Series);
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
         let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";

@@ -58,7 +58,7 @@ impl StatesContact {
         if let Some(poisson) = states.poisson {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
-        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
+        let creep = material.spectrum_for("a contact on elastic states")?;
         let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
         let (swept, merge_error) = (Arc::clone(&states), MERGE_ERROR);
         let scene = Scene { swept, elastic: None, temperature: None, limits, interpolant, merge_error };

@@ -115,7 +115,7 @@ impl Record {
         let (start, length) = (contact.time(), self.until - contact.time());
         for k in 0..=PARTS_OF_RUN {
             let time = start + length * f64::from(k) / f64::from(PARTS_OF_RUN);
-            let load = history.checked_at(time, false)?;
+            let load = history.checked_at(time, false).inspect_err(|_| self.loads.clear())?;
             self.by_force &= load.is_force();
             self.loads.extend(value(contact, load).ok().map(|load| (time, load)));
         }
