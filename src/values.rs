@@ -49,3 +49,17 @@ macro_rules! debug_by {
         }
     };
 }
+
+/// Implements a trait for a wrapper: each method by that of the value inside.
+macro_rules! forward {
+    (
+        $trait:path, ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr),
+        $($method:ident($($name:ident: $value:ty),*) $(-> $result:ty)?;)*
+    ) => {
+        impl $(<$generic: $trait + ?Sized>)? $trait for $outer {
+            $(fn $method(&$self $(, $name: $value)*) $(-> $result)? {
+                <_ as $trait>::$method(&$inner $(, $name)*)
+            })*
+        }
+    };
+}

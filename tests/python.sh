@@ -2,8 +2,8 @@
 # The Python package: its tests, the examples of its docstrings, its stubs against the compiled module, and scenes of random numbers
 # in both languages. Built in the profile of the tests; tools come from an environment in the user's cache that is made for it.
 set -euo pipefail
-cd "$(dirname "$0")/../python"
-repository=$(cd .. && pwd)
+cd "$(dirname "$0")/.."
+repository=$PWD
 
 own="${XDG_CACHE_HOME:-$HOME/.cache}/viscocontact/package"
 python="$own/bin/python"
@@ -14,8 +14,11 @@ if ! "$python" -c "$wanted" 2>/dev/null; then
         exit 0
     fi
 fi
-export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$(cd .. && pwd)/target}"
-cargo build --quiet --features pyo3/extension-module --lib --example scenes
+export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$repository/target}"
+# with the tests, so that it shares their build of the crate
+cargo build --quiet --all-features --package viscocontact --package viscocontact-identify --package viscocontact-tests --package viscocontact-python \
+    --lib --example quickstart --example scenes
+cd python
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cp -r viscocontact "$folder"

@@ -1,4 +1,4 @@
-#!/bin/sh
+#!/usr/bin/env bash
 # Writes a run and has numpy and VTK read it back, bit by bit, and runs the programs of docs/guide/results.md on it. Takes the python3
 # at hand if it has all packages, else one in the user's cache that is made for it: 1 GB, the same for every clone.
 set -eu
@@ -17,6 +17,8 @@ fi
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-# of all targets, as the test command builds them: of some, dependencies would have other features and the crate be compiled again
-READ_BACK_FOLDER="$folder" cargo test --quiet --all-features --lib --bins --tests --examples -- --ignored --exact io::output::a_run_for_other_readers
+# the suite as the test command builds it: alone, dependencies would have other features and the crate be compiled again
+suite=$(cargo test --all-features --no-run 2>&1 | sed -n 's/.*Executable suite\.rs (\(.*\))$/\1/p')
+suite=$(realpath "${suite:?no suite was built}")
+(cd tests && READ_BACK_FOLDER="$folder" "$suite" --ignored --exact io::output::a_run_for_other_readers)
 "$python" tests/read_back.py "$folder"

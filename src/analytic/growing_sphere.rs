@@ -70,13 +70,10 @@ impl GrowingSphere {
     /// response, or the load is no force.
     pub fn new(radius: f64, material: &Material, load: impl LoadHistory + 'static) -> Result<GrowingSphere> {
         within("sphere radius", radius, (1.0 / MOST..=MOST).contains(&radius), "in [1e-100, 1e100] m")?;
-        let creep =
-            material.contact_spectrum()?.ok_or_else(|| material.no_series("the solution for a growing contact"))?;
+        let what = "the solution for a growing contact";
+        let creep = material.spectrum_for(what)?;
         if creep.glassy() == 0.0 {
-            return Err(Error::Step(StepError::NoElasticResponse {
-                time: 0.0,
-                what: "the solution for a growing contact",
-            }));
+            return Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what }));
         }
         let [given, _] = load.at(0.0).kind();
         let (field, needed) = ("the growing sphere", "a force");

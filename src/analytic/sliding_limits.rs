@@ -87,7 +87,7 @@ struct Creep {
 
 impl Creep {
     fn of(material: &Material) -> Result<Creep> {
-        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a limit of steady motion"))?;
+        let creep = material.spectrum_for("a limit of steady motion")?;
         within("fluidity of the contact", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
         positive("compliance at once", creep.glassy())?;
         let sum = |of: fn(f64, f64) -> f64| creep.terms().iter().map(|&(c, time)| of(c, time)).sum::<f64>();

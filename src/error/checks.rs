@@ -20,6 +20,11 @@ pub(crate) fn length(field: &'static str, value: f64) -> Result<f64> {
 /// Greatest length of a shape, and greatest height of a map \[m\].
 pub(crate) const LONGEST: f64 = 1e300;
 
+/// Accepts Poisson's ratios of stable bodies.
+pub(crate) fn poisson_ratio(field: &'static str, nu: f64) -> Result<f64> {
+    within(field, nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")
+}
+
 /// Accepts any finite value.
 pub(crate) fn finite(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, true, "finite")

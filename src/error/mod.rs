@@ -28,7 +28,8 @@ pub use adhesion::AdhesionError;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
 pub(crate) use checks::{
-    LONGEST, count_within, exact_length, finite, in_order, least_length, length, non_negative, positive, within,
+    LONGEST, count_within, exact_length, finite, in_order, least_length, length, non_negative, poisson_ratio, positive,
+    within,
 };
 pub use convergence::{Convergence, Trend};
 pub use file::FileError;

@@ -133,26 +133,13 @@ fn fill_by_points<G: Geometry + ?Sized>(shape: &G, grid: &Grid, by: [f64; 2], ga
 /// Implements [`Geometry`] for references and pointers, so that shapes can be borrowed, owned, shared or chosen at run time.
 macro_rules! forward_geometry {
     ($($pointer:ty),*) => {$(
-        impl<T: Geometry + ?Sized> Geometry for $pointer {
-            fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
-                (**self).initial_gap(x1, x2)
-            }
-
-            fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-                (**self).fill_gap(grid, gap);
-            }
-
-            fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
-                (**self).fill_gap_at(grid, by, gap);
-            }
-
-            fn failure(&self) -> Option<UserError> {
-                (**self).failure()
-            }
-
-            fn waves(&self) -> Vec<Waves> {
-                (**self).waves()
-            }
+        forward! {
+            Geometry, (<T> self: $pointer => **self),
+            initial_gap(x1: f64, x2: f64) -> f64;
+            fill_gap(grid: &Grid, gap: &mut [f64]);
+            fill_gap_at(grid: &Grid, by: [f64; 2], gap: &mut [f64]);
+            failure() -> Option<UserError>;
+            waves() -> Vec<Waves>;
         }
     )*};
 }

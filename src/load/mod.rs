@@ -13,6 +13,7 @@
 //! | [`FnHistory`] | any closure of time |
 
 mod function;
+mod history;
 pub mod laws;
 mod loads;
 mod periodic;
@@ -94,6 +95,11 @@ pub enum Tilt {
     },
 }
 
+/// The coordinates at which a load of these tilts acts: those of free tilts, the origin along the other axes.
+pub(crate) fn load_point(tilt: [Tilt; 2]) -> [f64; 2] {
+    tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 })
+}
+
 /// "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad": prescribed values, without tilts of zero.
 impl fmt::Display for Load {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -170,13 +176,23 @@ impl Load {
         tilt
     }
 
+    pub(crate) fn is_force(&self) -> bool {
+        matches!(self, Load::Force { .. })
+    }
+
+    /// Force, approach or drive.
+    pub(crate) fn main(&self) -> f64 {
+        let (Load::Force { normal: main, .. }
+        | Load::Approach { approach: main, .. }
+        | Load::Spring { drive: main, .. }) = *self;
+        main
+    }
+
     /// Force, approach or drive, then the tilts or load points along x1 and x2, and the stiffness of a spring.
     fn values(&self) -> [f64; VALUES] {
         let [first, second] = self.tilt().map(|(Tilt::Fixed(value) | Tilt::Free { at: value })| value);
-        match *self {
-            Load::Force { normal: main, .. } | Load::Approach { approach: main, .. } => [main, first, second, 0.0],
-            Load::Spring { stiffness, drive, .. } => [drive, first, second, stiffness],
-        }
+        let stiffness = if let Load::Spring { stiffness, .. } = *self { stiffness } else { 0.0 };
+        [self.main(), first, second, stiffness]
     }
 
     /// With another force, approach or drive, by `change`.
@@ -350,51 +366,20 @@ pub trait LoadHistory: Debug + Send + Sync {
     }
 }
 
-impl dyn LoadHistory + '_ {
-    /// The breakpoints after a time, as long as they ascend.
-    pub(crate) fn breakpoints(&self, after: f64) -> impl Iterator<Item = f64> {
-        std::iter::successors(Some(after), |&time| self.next_breakpoint(time).filter(|&next| next > time)).skip(1)
-    }
-
-    /// [`LoadHistory::at`], if it is a load that may act, or pull where surfaces attract each other.
-    pub(crate) fn checked_at(&self, t: f64, attracts: bool) -> Result<Load> {
-        self.checked(self.at(t), t, attracts)
-    }
-
-    /// [`LoadHistory::before`], if it is a load that may act.
-    pub(crate) fn checked_before(&self, t: f64, attracts: bool) -> Result<Load> {
-        self.checked(self.before(t), t, attracts)
-    }
-
-    fn checked(&self, load: Load, t: f64, attracts: bool) -> Result<Load> {
-        load.validated_at(t, attracts).map_err(|error| self.failure().map_or(error, Error::User))
-    }
-}
-
 /// Implements [`LoadHistory`] for a wrapper by the history inside.
 macro_rules! forward_load {
-    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
-        impl $(<$generic: $crate::load::LoadHistory + ?Sized>)? $crate::load::LoadHistory for $outer {
-            fn at(&$self, t: f64) -> $crate::load::Load {
-                $inner.at(t)
-            }
-
-            fn before(&$self, t: f64) -> $crate::load::Load {
-                $inner.before(t)
-            }
-
-            fn next_breakpoint(&$self, after: f64) -> Option<f64> {
-                $inner.next_breakpoint(after)
-            }
-
-            fn failure(&$self) -> Option<$crate::UserError> {
-                $inner.failure()
-            }
+    ($($wrapper:tt)*) => {
+        forward! {
+            $crate::load::LoadHistory, ($($wrapper)*),
+            at(t: f64) -> $crate::load::Load;
+            before(t: f64) -> $crate::load::Load;
+            next_breakpoint(after: f64) -> Option<f64>;
+            failure() -> Option<$crate::UserError>;
         }
     };
 }
 use forward_load;
 
-forward_load!(<T> self: &T => (**self));
-forward_load!(<T> self: Box<T> => (**self));
-forward_load!(<T> self: std::sync::Arc<T> => (**self));
+forward_load!(<T> self: &T => **self);
+forward_load!(<T> self: Box<T> => **self);
+forward_load!(<T> self: std::sync::Arc<T> => **self);

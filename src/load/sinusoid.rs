@@ -31,7 +31,7 @@ impl Sinusoid {
     pub fn new(low: Load, high: Load, frequency: f64) -> Result<Sinusoid> {
         Load::validate_all("sinusoid", [low, high])?;
         let (field, rule) = ("sinusoid from low to high", "not fall; `Sinusoid::about` takes mean and amplitude");
-        in_order(field, [low, high].map(|load| load.values()[0]), rule, |low, high| low <= high)?;
+        in_order(field, [low, high].map(|load| load.main()), rule, |low, high| low <= high)?;
         Ok(Sinusoid { low, high, frequency: positive("frequency", frequency)? })
     }
 

@@ -9,50 +9,28 @@ use crate::error::{Result, exact_length};
 use crate::file::{Appending, check_regular, failed};
 use crate::output::{Earlier, Kept, Metadata};
 
-/// The names of the columns of every history.
-const COLUMNS: [&str; 17] = [
-    "time [s]",
-    "step length [s]",
-    "force [N]",
-    "approach [m]",
-    "tilt 1 [rad]",
-    "tilt 2 [rad]",
-    "moment 1 [N m]",
-    "moment 2 [N m]",
-    "contact area [m2]",
-    "contact cells",
-    "mean pressure [Pa]",
-    "max pressure [Pa]",
-    "iterations",
-    "convolutions",
-    "preconditioner applications",
-    "residual",
-    "time error",
-];
+/// A column of every history: its name, and its cell in the row of a step.
+type Column<C> = (&'static str, fn(&C, &StepReport) -> String);
 
-/// Their cells in the row of a step.
-fn cells(contact: &impl Contact, report: &StepReport) -> [String; COLUMNS.len()] {
-    let known = |value: Option<f64>| value.map(number).unwrap_or_default();
-    let [tilt1, tilt2] = contact.tilt().map(number);
-    let moment = contact.in_space().map(|contact| contact.moment());
+fn columns<C: Contact>(_: &C) -> [Column<C>; 17] {
     [
-        number(contact.time()),
-        number(report.dt),
-        number(contact.force()),
-        number(contact.approach()),
-        tilt1,
-        tilt2,
-        known(moment.map(|moment| moment[0])),
-        known(moment.map(|moment| moment[1])),
-        number(contact.contact_area()),
-        report.contact_cells.to_string(),
-        number(contact.mean_pressure()),
-        known(contact.in_space().map(|contact| contact.max_pressure())),
-        report.iterations.to_string(),
-        report.convolutions.to_string(),
-        report.preconditioner_applications.to_string(),
-        number(report.residual),
-        known(report.time_error),
+        ("time [s]", |contact, _| number(contact.time())),
+        ("step length [s]", |_, report| number(report.dt)),
+        ("force [N]", |contact, _| number(contact.force())),
+        ("approach [m]", |contact, _| number(contact.approach())),
+        ("tilt 1 [rad]", |contact, _| number(contact.tilt()[0])),
+        ("tilt 2 [rad]", |contact, _| number(contact.tilt()[1])),
+        ("moment 1 [N m]", |contact, _| known(contact.in_space().map(|contact| contact.moment()[0]))),
+        ("moment 2 [N m]", |contact, _| known(contact.in_space().map(|contact| contact.moment()[1]))),
+        ("contact area [m2]", |contact, _| number(contact.contact_area())),
+        ("contact cells", |_, report| report.contact_cells.to_string()),
+        ("mean pressure [Pa]", |contact, _| number(contact.mean_pressure())),
+        ("max pressure [Pa]", |contact, _| known(contact.in_space().map(|contact| contact.max_pressure()))),
+        ("iterations", |_, report| report.iterations.to_string()),
+        ("convolutions", |_, report| report.convolutions.to_string()),
+        ("preconditioner applications", |_, report| report.preconditioner_applications.to_string()),
+        ("residual", |_, report| number(report.residual)),
+        ("time error", |_, report| known(report.time_error)),
     ]
 }
 
@@ -67,6 +45,11 @@ fn agreed<T>(contact: &impl Contact, own: Result<T>) -> Result<T> {
 /// A number with enough digits to be read back bitwise.
 fn number(value: f64) -> String {
     format!("{value:?}")
+}
+
+/// A number, or nothing where it is not known.
+fn known(value: Option<f64>) -> String {
+    value.map(number).unwrap_or_default()
 }
 
 /// A run as a CSV file with one row per step, each passed to the operating system when its `record` returns.
@@ -121,8 +104,9 @@ impl CsvHistory {
     ) -> Result<CsvHistory> {
         let path = path.as_ref();
         let unusable = |error| failed(path, error);
-        agreed(contact, check_names(additional).map_err(unusable))?;
-        let names: Vec<String> = COLUMNS.iter().chain(additional).map(|name| quoted(name)).collect();
+        let names = columns(contact).map(|(name, _)| name);
+        agreed(contact, check_names(&names, additional).map_err(unusable))?;
+        let names: Vec<String> = names.iter().chain(additional).map(|name| quoted(name)).collect();
         let names = names.join(",");
         let head = format!("# {}\n{names}\n", metadata.json(contact));
         let create = || {
@@ -154,8 +138,8 @@ impl CsvHistory {
     /// in the file, and writing can be repeated once there is space again.
     pub fn record(&mut self, contact: &impl Contact, report: &StepReport, additional: &[f64]) -> Result<()> {
         agreed(contact, exact_length("additional columns", additional.len(), self.additional))?;
-        let cells: Vec<String> =
-            cells(contact, report).into_iter().chain(additional.iter().copied().map(number)).collect();
+        let own = columns(contact).map(|(_, cell)| cell(contact, report));
+        let cells: Vec<String> = own.into_iter().chain(additional.iter().copied().map(number)).collect();
         let row = cells.join(",") + "\n";
         let CsvHistory { path, file, .. } = self;
         let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
@@ -196,10 +180,10 @@ fn or_replace(error: io::Error) -> io::Error {
 }
 
 /// Rejects names that readers would misinterpret.
-fn check_names(additional: &[&str]) -> io::Result<()> {
+fn check_names(names: &[&str], additional: &[&str]) -> io::Result<()> {
     for (k, name) in additional.iter().enumerate() {
         let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
-        if invalid || COLUMNS.contains(name) || additional[..k].contains(name) {
+        if invalid || names.contains(name) || additional[..k].contains(name) {
             let rule = "unique, not empty, and without '#', quotes and control characters";
             let reason = format!("invalid column name {name:?}: names must be {rule}");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));

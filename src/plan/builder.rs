@@ -12,7 +12,7 @@ use crate::observe::mesh_error::MeshError;
 use crate::plan::convergence::converge;
 use crate::plan::domain::{Body, Side};
 use crate::plan::meshes::{Laws, MOST_PLANNED_CELLS};
-use crate::plan::scene::TrialScene;
+use crate::plan::scene::{Asked, TrialScene};
 use crate::plan::{Accuracy, Plan};
 use crate::rheology::{Material, TemperatureHistory};
 use crate::run::Stepping;
@@ -46,15 +46,8 @@ const AS_ELASTIC: f64 = 1.01;
 #[derive(Debug, Clone, Copy)]
 #[must_use = "nothing is planned until it is built"]
 pub struct PlanBuilder<'a> {
-    geometry: &'a dyn Geometry,
-    material: &'a Material,
-    history: &'a dyn LoadHistory,
-    until: f64,
-    accuracy: Accuracy,
-    temperature: Option<&'a TemperatureHistory>,
+    asked: Asked<'a>,
     area: bool,
-    fields: &'a [f64],
-    body: Body<'a>,
 }
 
 /// How far planning has come: the state of a coarse mesh.
@@ -81,21 +74,22 @@ impl Plan {
         history: &'a dyn LoadHistory,
         until: f64,
     ) -> PlanBuilder<'a> {
-        let (accuracy, temperature, area, body) = (Accuracy::default(), None, false, Body::default());
-        PlanBuilder { geometry, material, history, until, accuracy, temperature, area, fields: &[], body }
+        let (accuracy, body) = (Accuracy::default(), Body::default());
+        let asked = Asked { geometry, material, temperature: None, history, until, accuracy, body, fields: &[] };
+        PlanBuilder { asked, area: false }
     }
 }
 
 impl<'a> PlanBuilder<'a> {
     /// The accuracy (default: [`Accuracy::STANDARD`]).
     pub fn accuracy(self, accuracy: Accuracy) -> PlanBuilder<'a> {
-        PlanBuilder { accuracy, ..self }
+        PlanBuilder { asked: Asked { accuracy, ..self.asked }, ..self }
     }
 
     /// A temperature that changes ([`Builder::temperature`](crate::contact::Builder::temperature)): the times of the
     /// plan and of the load are times, the body creeps in reduced time.
     pub fn temperature(self, temperature: &'a TemperatureHistory) -> PlanBuilder<'a> {
-        PlanBuilder { temperature: Some(temperature), ..self }
+        PlanBuilder { asked: Asked { temperature: Some(temperature), ..self.asked }, ..self }
     }
 
     /// Whether the mesh gives the contact radius, √(area/π), this accuracy too, at all times at which the contact is at least
@@ -126,7 +120,7 @@ impl<'a> PlanBuilder<'a> {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn fields_at(self, times: &'a [f64]) -> PlanBuilder<'a> {
-        PlanBuilder { fields: times, ..self }
+        PlanBuilder { asked: Asked { fields: times, ..self.asked }, ..self }
     }
 
     /// Another body than a half-space, by its kernel on a grid: the plan chooses the grid.
@@ -143,19 +137,20 @@ impl<'a> PlanBuilder<'a> {
     /// println!("{plan}");
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
-    pub fn kernel(self, kernel: &'a dyn Fn(&Grid) -> Result<InfluenceKernel>) -> PlanBuilder<'a> {
-        PlanBuilder { body: Body { kernel: Some(kernel), ..self.body }, ..self }
+    pub fn kernel(mut self, kernel: &'a dyn Fn(&Grid) -> Result<InfluenceKernel>) -> PlanBuilder<'a> {
+        self.asked.body.kernel = Some(kernel);
+        self
     }
 
     /// A side of the domain that is a period of the body, of this length \[m\]. Other sides are as long as the contact needs.
     pub fn period(mut self, axis: Axis, length: f64) -> PlanBuilder<'a> {
-        self.body.sides[usize::from(axis == Axis::X2)] = Side::Period(length);
+        self.asked.body.sides[usize::from(axis == Axis::X2)] = Side::Period(length);
         self
     }
 
     /// A line contact: one cell along x2, of this length \[m\], on which the force acts.
     pub fn line(mut self, length: f64) -> PlanBuilder<'a> {
-        self.body.sides[1] = Side::Uniform(length);
+        self.asked.body.sides[1] = Side::Uniform(length);
         self
     }
 
@@ -175,7 +170,8 @@ impl<'a> PlanBuilder<'a> {
     /// # Errors
     /// As [`PlanBuilder::build`]; [`Error::Cancelled`] if `progress` ends it.
     pub fn build_with(self, progress: impl FnMut(PlanProgress) -> ControlFlow<()>) -> Result<Plan> {
-        let PlanBuilder { geometry, material, history, until, accuracy, temperature, area, fields, body } = self;
+        let PlanBuilder { asked, area } = self;
+        let Asked { material, temperature, history, until, accuracy, body, fields, .. } = asked;
         positive("end of the run", until)?;
         for &time in fields {
             within(
@@ -201,18 +197,7 @@ impl<'a> PlanBuilder<'a> {
             temperature.reduced_time(0.0, until)?;
         }
         let fitted = &Builder::material_of_run(material, history, until, temperature, &accuracy.settings())?;
-        let scene = TrialScene {
-            geometry,
-            material: fitted,
-            temperature,
-            history,
-            until,
-            accuracy,
-            progress,
-            body,
-            fields,
-            kernels,
-        };
+        let scene = TrialScene { asked: Asked { material: fitted, ..asked }, progress, kernels };
         let converged = converge(&scene, area)?;
         let size = &converged.size;
         let needed = |laws: &Laws| {

@@ -94,9 +94,9 @@ fn converge_on(scene: &TrialScene<'_>, loads: &Loads, size: &ContactSize, area: 
     if steps.run.size.width != [0.0; 2] && [0, 1].into_iter().any(is_narrow) && steps.run.size != *size {
         return converge_on(scene, loads, &steps.run.size, area);
     }
-    let (punch, target) = (scene.has_edge(&grid), scene.accuracy);
-    let (is_asked, end) = (!scene.fields.is_empty(), [scene.until]);
-    let (times, fields) = if is_asked { (scene.fields, target.field_space()) } else { (&end[..], f64::INFINITY) };
+    let (punch, target) = (scene.has_edge(&grid), scene.asked.accuracy);
+    let (is_asked, end) = (!scene.asked.fields.is_empty(), [scene.asked.until]);
+    let (times, fields) = if is_asked { (scene.asked.fields, target.field_space()) } else { (&end[..], f64::INFINITY) };
     let wanted = Wanted { main: steps.left_for_mesh(target), others: target.space(), area, fields };
     let Some((curve, trace)) = curve.zip(steps.trace) else {
         // a finer run beside a coarser one
@@ -179,14 +179,15 @@ fn curve(scene: &TrialScene<'_>, largest: &[Load], grid: crate::Grid) -> Result<
         })
     }));
     let base = scene.growing(grid, &loads)?;
-    let line = scene.body.sides.iter().any(|side| matches!(side, Side::Uniform(_)));
+    let line = scene.asked.body.sides.iter().any(|side| matches!(side, Side::Uniform(_)));
     Ok(Curve::through(&base, loads[0].tilt(), line).ok())
 }
 
 /// Convergence of the greatest pressure of an elastic contact on a separate domain.
 fn small_contact(scene: &TrialScene<'_>, load: Load, whole: &ContactSize) -> Result<Option<ErrorLaw>> {
     let (loads, size) = ([load], ContactSize::of(scene, &[load])?);
-    let wanted = Wanted { main: f64::INFINITY, others: scene.accuracy.space(), area: false, fields: f64::INFINITY };
+    let wanted =
+        Wanted { main: f64::INFINITY, others: scene.asked.accuracy.space(), area: false, fields: f64::INFINITY };
     size.on_growing_domain(|size| {
         let base = scene.elastic(size.grid(LEAST_ACROSS)?, &loads)?;
         // a tip

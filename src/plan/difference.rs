@@ -45,10 +45,10 @@ pub(super) fn unseen(scene: &TrialScene<'_>, run: &Run, values: &[[f64; 2]]) -> 
     while end <= at {
         (start, end) = (end, scene.next_corner(end));
     }
-    if at <= start || at >= scene.until {
+    if at <= start || at >= scene.asked.until {
         return 0.0;
     }
-    let end = end.min(scene.until);
+    let end = end.min(scene.asked.until);
     let step = run.states.partition_point(|state| state.time < at);
     let around = run.steps.iter().skip(step.saturating_sub(1)).take(3);
     let length = around.map(|(dt, _)| *dt).fold(0.0, f64::max);

@@ -35,9 +35,9 @@ impl FieldOnLevels {
         greatest: f64,
         times: &[f64],
     ) -> Result<Vec<FieldOnLevels>> {
-        let run = Repeated::new(curve.contact(scene)?, scene.history, scene.until, LEVELS)?.0;
+        let run = Repeated::new(curve.contact(scene)?, scene.asked.history, scene.asked.until, LEVELS)?.0;
         let field = |&time: &f64| {
-            let contact = run.at(scene.history, time, true)?.contact;
+            let contact = run.at(scene.asked.history, time, true)?.contact;
             let (level, profile) = (contact.level(), Profile::new(contact.tractions()));
             let width = curve.radius(level) / curve.radius(greatest);
             Ok(FieldOnLevels { level, profile, width, line: curve.line })

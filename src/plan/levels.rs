@@ -97,7 +97,7 @@ impl Curve {
 
     /// The contact of a scene on this curve, by the rule of adaptive steps.
     pub(super) fn contact(&self, scene: &TrialScene<'_>) -> Result<StatesContact> {
-        scene.course().contact(&self.states, scene.accuracy.settings().adaptive_interpolant())
+        scene.course().contact(&self.states, scene.asked.accuracy.settings().adaptive_interpolant())
     }
 
     /// Approach of the load point at a level [m].
@@ -125,14 +125,13 @@ impl Curve {
             let parts = if dt > 0.0 { parts } else { 1 };
             for part in 1..=parts {
                 let end = if part == parts { last } else { start + dt * f64::from(part) / f64::from(parts) };
-                let load = if part == parts { load } else { scene.history.checked_before(end, false)? };
+                let load = if part == parts { load } else { scene.asked.history.checked_before(end, false)? };
                 match contact.step_to(end, end - contact.time(), load) {
                     // the run stays as it was
                     Err(Error::Step(StepError::NoElasticResponse { .. })) if dt == 0.0 => {}
                     other => drop(other?),
                 }
-                let is_by_force = matches!(load, Load::Force { .. });
-                states.push(LevelState { is_end: part == parts, is_by_force, ..self.state(&contact) });
+                states.push(LevelState { is_end: part == parts, is_by_force: load.is_force(), ..self.state(&contact) });
             }
             if scene.next_corner(start) <= last {
                 contact.reset_differences();
@@ -201,7 +200,7 @@ impl Curve {
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
             force_amplification: others.map(|state| relative(state.traction * state.level, force)).fold(1.0, f64::max),
             rim: relative(rim, most(|state| state.radius)),
-            cells: cells(&exact, highest, 2.0 * edge, CELLS_SHARE * scene.accuracy.target()),
+            cells: cells(&exact, highest, 2.0 * edge, CELLS_SHARE * scene.asked.accuracy.target()),
         })
     }
 
@@ -210,7 +209,7 @@ impl Curve {
     pub(super) fn stops(&self, scene: &TrialScene<'_>, run: &Run, trace: &Trace) -> Result<(Vec<f64>, f64)> {
         let (mut legs, mut stops, [mut time, mut peak]) = (run.legs(), Vec::new(), trace.highest);
         let (allowed, most) =
-            (STEPS_SHARE * scene.accuracy.target(), (1 + MOST_ADDED) * run.steps.len() + ALWAYS_ADDED);
+            (STEPS_SHARE * scene.asked.accuracy.target(), (1 + MOST_ADDED) * run.steps.len() + ALWAYS_ADDED);
         let (mut error, mut references) = (trace.error.pressure, 0);
         for round in 0..MOST_ROUNDS {
             if error <= allowed || legs.len() > most {
@@ -285,8 +284,11 @@ impl Leg {
     fn split(legs: &mut Vec<Leg>, scene: &TrialScene<'_>, stop: f64) -> Result<()> {
         let at = legs.partition_point(|leg| leg.end <= stop);
         if let Some(leg) = legs.get_mut(at).filter(|leg| leg.end - leg.dt < stop) {
-            let first =
-                Leg { end: stop, dt: stop - (leg.end - leg.dt), load: scene.history.checked_before(stop, false)? };
+            let first = Leg {
+                end: stop,
+                dt: stop - (leg.end - leg.dt),
+                load: scene.asked.history.checked_before(stop, false)?,
+            };
             leg.dt = leg.end - stop;
             legs.insert(at, first);
         }

@@ -35,8 +35,8 @@ impl Loads {
         let all = course.sampled(PARTS)?;
         let tilt = all[0].tilt();
         let on_states = all.iter().all(|load| load.tilt() == tilt);
-        let interpolant = scene.accuracy.settings().adaptive_interpolant();
-        if on_states && all.iter().all(|load| matches!(load, Load::Force { .. })) {
+        let interpolant = scene.asked.accuracy.settings().adaptive_interpolant();
+        if on_states && all.iter().all(Load::is_force) {
             let level = course.greatest_level(tilt, interpolant, PARTS);
             if let Some(normal) = unless_refused(level.map(Some))? {
                 return Ok(Loads { largest: vec![Load::Force { normal, tilt }], on_states });
@@ -53,7 +53,7 @@ impl ContactSize {
     /// Finds the elastic contacts under these loads on domains of several sizes until they fill one well; returns their
     /// size.
     pub(super) fn around(scene: &TrialScene<'_>, loads: &[Load]) -> Result<ContactSize> {
-        let sides = scene.body.sides;
+        let sides = scene.asked.body.sides;
         let (is_found, first) = (sides.map(|side| side == Side::Found), first_length(scene, loads)?);
         let mut lengths = sides.map(|side| match side {
             Side::Found => first,
@@ -97,15 +97,15 @@ fn first_length(scene: &TrialScene<'_>, loads: &[Load]) -> Result<f64> {
             }
         }
     }
-    let sides = scene.body.sides;
+    let sides = scene.asked.body.sides;
     if let Some(Side::Uniform(length)) = sides.iter().find(|side| matches!(side, Side::Uniform(_))) {
         level /= length;
     }
-    let lowest = scene.geometry.initial_gap(0.0, 0.0);
+    let lowest = scene.asked.geometry.initial_gap(0.0, 0.0);
     let rise = |length: f64| {
         let around = [(0, [1.0, 0.0]), (1, [0.0, 1.0]), (0, [-1.0, 0.0]), (1, [0.0, -1.0])];
         let found = around.into_iter().filter(|(axis, _)| sides[*axis] == Side::Found);
-        let gaps = found.map(|(_, [x1, x2])| scene.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
+        let gaps = found.map(|(_, [x1, x2])| scene.asked.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
         gaps.fold(f64::INFINITY, f64::min) - lowest
     };
     let depth = |length: f64| {

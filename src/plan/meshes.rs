@@ -97,21 +97,18 @@ pub(super) struct Meshes {
 impl Meshes {
     /// The coarsest mesh.
     pub(super) fn coarsest(finest: Run, punch: bool) -> Meshes {
-        let (across, differences, highest) = (LEAST_ACROSS, Vec::new(), None);
-        let (force_amplification, pressure_amplification, rim, work_order) = (1.0, Some(1.0), 0.0, 0.0);
-        let (fields, field_errors) = (Vec::new(), Vec::new());
         Meshes {
             punch,
-            across,
-            differences,
-            fields,
-            field_errors,
+            across: LEAST_ACROSS,
+            differences: Vec::new(),
+            fields: Vec::new(),
+            field_errors: Vec::new(),
             finest,
-            highest,
-            rim,
-            force_amplification,
-            pressure_amplification,
-            work_order,
+            highest: None,
+            rim: 0.0,
+            force_amplification: 1.0,
+            pressure_amplification: Some(1.0),
+            work_order: 0.0,
         }
     }
 

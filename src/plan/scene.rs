@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::contact::{Builder, StepReport, ViscoelasticContact, Warnings};
 use crate::error::Result;
 use crate::geometry::Geometry;
-use crate::load::{Load, LoadHistory, Tilt};
+use crate::load::{Load, LoadHistory, load_point};
 use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
 use crate::rheology::{Elastic, Material, TemperatureHistory};
@@ -17,22 +17,28 @@ use crate::{Grid, InfluenceKernel};
 /// A pressure that falls by this share of the accuracy while the load grows counts for nothing.
 const FALL_SHARE: f64 = 0.1;
 
-/// A scene to plan.
-#[derive(Clone, Copy)]
-pub(super) struct TrialScene<'a> {
+/// What is asked of a plan.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked<'a> {
     pub(super) geometry: &'a dyn Geometry,
-    /// With a series over the times of the run.
+    /// In a scene with a series over the times of the run.
     pub(super) material: &'a Material,
     pub(super) temperature: Option<&'a TemperatureHistory>,
     pub(super) history: &'a dyn LoadHistory,
     pub(super) until: f64,
     pub(super) accuracy: Accuracy,
-    /// Called with the cells, the convolution equivalents and the time of each step, and of each elastic state at the
-    /// time 0; its error ends the planning.
-    pub(super) progress: &'a dyn Fn([usize; 2], f64, f64) -> Result<()>,
     pub(super) body: Body<'a>,
     /// Times at which the pressure is asked for.
     pub(super) fields: &'a [f64],
+}
+
+/// A scene to plan.
+#[derive(Clone, Copy)]
+pub(super) struct TrialScene<'a> {
+    pub(super) asked: Asked<'a>,
+    /// Called with the cells, the convolution equivalents and the time of each step, and of each elastic state at the
+    /// time 0; its error ends the planning.
+    pub(super) progress: &'a dyn Fn([usize; 2], f64, f64) -> Result<()>,
     /// Kernels made so far.
     pub(super) kernels: &'a RefCell<Vec<Arc<InfluenceKernel>>>,
 }
@@ -82,7 +88,7 @@ impl Run {
         let field = mesh.map(|error| [error.pressure_field, error.rim_pressure]);
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
-        let at = contact.load().tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+        let at = load_point(contact.load().tilt());
         self.states.push(StepState {
             time: report.time,
             approach: report.approach,
@@ -126,13 +132,13 @@ impl Run {
 
 impl TrialScene<'_> {
     pub(super) fn course(&self) -> Loading<'_> {
-        let TrialScene { material, temperature, history, until, .. } = *self;
+        let Asked { material, temperature, history, until, .. } = self.asked;
         Loading { material, temperature, history, until }
     }
 
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
-        let builder = self.builder_of(grid, self.material.clone())?;
-        Ok(match self.temperature {
+        let builder = self.builder_of(grid, self.asked.material.clone())?;
+        Ok(match self.asked.temperature {
             Some(temperature) => builder.temperature(temperature.clone()),
             None => builder,
         })
@@ -140,17 +146,17 @@ impl TrialScene<'_> {
 
     fn builder_of(&self, grid: Grid, material: Material) -> Result<Builder> {
         let kernel = self.kernel(&grid)?;
-        let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(material);
-        Ok(builder.kernel(kernel).settings(self.accuracy.settings()))
+        let builder = ViscoelasticContact::builder(grid).geometry(self.asked.geometry).material(material);
+        Ok(builder.kernel(kernel).settings(self.asked.accuracy.settings()))
     }
 
     /// The elastic contacts of unit compliance under these loads, on a mesh.
     pub(super) fn elastic(&self, grid: Grid, loads: &[Load]) -> Result<Run> {
-        let nu = self.material.poisson_ratios().flatten().next().unwrap_or(0.5);
+        let nu = self.asked.material.poisson_ratios().flatten().next().unwrap_or(0.5);
         // C = (1 − ν) J/2 = 1 Pa⁻¹
         let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
         let mut contact = self.builder_of(grid, unit)?.build()?;
-        let mut run = Run::of(&contact, self.body.sides);
+        let mut run = Run::of(&contact, self.asked.body.sides);
         for &load in loads {
             let report = contact.step(0.0, load)?;
             run.add(&contact, &report);
@@ -163,14 +169,14 @@ impl TrialScene<'_> {
     /// The elastic contacts under loads that differ in size only, of which a run is made if they only grow with the load.
     pub(super) fn growing(&self, grid: Grid, loads: &[Load]) -> Result<Run> {
         let run = self.elastic(grid, loads)?;
-        run.check_growth(FALL_SHARE * self.accuracy.target())?;
+        run.check_growth(FALL_SHARE * self.asked.accuracy.target())?;
         Ok(run)
     }
 
     /// The first corner of the load or the temperature after a time, at which every run ends a step; infinite where there is none.
     pub(super) fn next_corner(&self, after: f64) -> f64 {
-        let heated = self.temperature.and_then(|temperature| temperature.next_corner(after));
-        let corners = [self.history.next_breakpoint(after), heated];
+        let heated = self.asked.temperature.and_then(|temperature| temperature.next_corner(after));
+        let corners = [self.asked.history.next_breakpoint(after), heated];
         corners.into_iter().flatten().fold(f64::INFINITY, f64::min)
     }
 
@@ -179,7 +185,7 @@ impl TrialScene<'_> {
         if let Some(made) = self.kernels.borrow().iter().find(|kernel| kernel.grid() == grid) {
             return Ok(Arc::clone(made));
         }
-        let kernel = Arc::new(match self.body.kernel {
+        let kernel = Arc::new(match self.asked.body.kernel {
             Some(kernel) => kernel(grid)?,
             None => InfluenceKernel::half_space(grid)?,
         });
@@ -190,8 +196,9 @@ impl TrialScene<'_> {
     /// The run in steps as long as the tolerance allows; steps also end at the times `stops`.
     pub(super) fn follow(&self, grid: Grid, tolerance: f64, stops: &[f64]) -> Result<Run> {
         let mut contact = self.builder(grid)?.build()?;
-        let mut follow = contact.follow(self.history, Stepping::adaptive(tolerance), self.until).stop_at(stops)?;
-        let mut run = Run::of(follow.contact(), self.body.sides);
+        let mut follow =
+            contact.follow(self.asked.history, Stepping::adaptive(tolerance), self.asked.until).stop_at(stops)?;
+        let mut run = Run::of(follow.contact(), self.asked.body.sides);
         while let Some(report) = follow.next_step()? {
             run.add(follow.contact(), &report);
             (self.progress)(follow.contact().grid().cells(), report.convolution_equivalents(), report.time)?;
@@ -203,6 +210,6 @@ impl TrialScene<'_> {
     pub(super) fn has_edge(&self, grid: &Grid) -> bool {
         let [n1, n2] = grid.cells();
         let mut cells = (0..n1 * n2).map(|k| grid.center(k / n2, k % n2));
-        cells.any(|[x1, x2]| self.geometry.initial_gap(x1, x2) == f64::INFINITY)
+        cells.any(|[x1, x2]| self.asked.geometry.initial_gap(x1, x2) == f64::INFINITY)
     }
 }

@@ -60,8 +60,8 @@ impl Steps {
     /// Shortens the steps while the error of approach or force, or of the greatest pressure on cells, exceeds its share and falls with the
     /// steps. On levels more steps before the greatest pressure are enough for that.
     pub(super) fn find(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
-        let target = scene.accuracy.target();
-        let mut steps = Steps::with_tolerance(scene, grid, curve, scene.accuracy.step_tolerance())?;
+        let target = scene.asked.accuracy.target();
+        let mut steps = Steps::with_tolerance(scene, grid, curve, scene.asked.accuracy.step_tolerance())?;
         for _ in 0..MAX_STEP_TRIES {
             let worst = steps.worst();
             if worst <= MAX_TIME_SHARE * target {

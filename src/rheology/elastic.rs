@@ -1,5 +1,4 @@
-use crate::error::{Result, positive};
-use crate::rheology::material::poisson_ratio;
+use crate::error::{Result, poisson_ratio, positive};
 use crate::rheology::{CreepSpectrum, forward_rheology};
 
 /// An elastic body: J = 1/G.
@@ -31,7 +30,7 @@ impl Elastic {
     /// If the modulus is not finite and positive, or `nu` is outside (−1, ½].
     pub fn young(e: f64, nu: f64) -> Result<Elastic> {
         positive("Young's modulus", e)?;
-        Elastic::new(e / (2.0 * (1.0 + poisson_ratio(nu)?)))
+        Elastic::new(e / (2.0 * (1.0 + poisson_ratio("Poisson's ratio", nu)?)))
     }
 }
 

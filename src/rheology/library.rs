@@ -15,8 +15,8 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
+use crate::error::poisson_ratio;
 use crate::error::{MaterialError, Result};
-use crate::rheology::material::poisson_ratio;
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
 /// The modulus of a published series.
@@ -77,7 +77,7 @@ impl PublishedMaterial {
     /// # Errors
     /// If `nu` is outside (−1, ½].
     pub fn rheology(&self, nu: f64) -> Result<GeneralizedMaxwell> {
-        poisson_ratio(nu)?;
+        poisson_ratio("Poisson's ratio", nu)?;
         let to_shear = if self.measured == Measured::Tension { 0.5 / (1.0 + nu) } else { 1.0 };
         let terms: Vec<_> = self.terms().into_iter().map(|(modulus, time)| (to_shear * modulus, time)).collect();
         GeneralizedMaxwell::new(to_shear * self.equilibrium(), &terms)

@@ -1,7 +1,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::error::{Error, MaterialError, Result, positive, within};
+use crate::error::{Error, MaterialError, Result, poisson_ratio, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Tension, is_known, may_follow};
 
 /// A rheology in shear and the bulk response: together they give the contact creep compliance C(t),
@@ -65,7 +65,7 @@ impl Material {
     /// # Errors
     /// If `nu` is outside (−1, ½].
     pub fn constant_poisson(rheology: impl Rheology + 'static, nu: f64) -> Result<Material> {
-        let poisson = poisson_ratio(nu)?;
+        let poisson = poisson_ratio("Poisson's ratio", nu)?;
         Ok(Material::with_volume(rheology, Volume::Proportional { factor: 0.5 * (1.0 - nu), poisson }))
     }
 
@@ -98,7 +98,7 @@ impl Material {
     /// # Errors
     /// If `nu` is outside (−1, ½].
     pub fn from_tension(tensile: Tension<impl Rheology + 'static>, nu: f64) -> Result<Material> {
-        let poisson = poisson_ratio(nu)?;
+        let poisson = poisson_ratio("Poisson's ratio", nu)?;
         let volume = Volume::Proportional { factor: (1.0 - nu) * (1.0 + nu), poisson };
         Ok(Material::with_volume(tensile.0, volume))
     }
@@ -327,18 +327,15 @@ impl Material {
         Err(failure.map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
     }
 
-    /// The error of `what`, which needs an exponential series that a rheology does not have.
-    pub(crate) fn no_series(&self, what: &'static str) -> Error {
-        match self.bodies.iter().find(|body| body.rheology.creep_spectrum().is_none()) {
-            Some(lacking) => no_series(what, &lacking.rheology),
-            None => no_series(what, &self.bodies),
-        }
+    /// [`Material::contact_spectrum`], which `what` needs.
+    pub(crate) fn spectrum_for(&self, what: &'static str) -> Result<CreepSpectrum> {
+        self.contact_spectrum()?.ok_or_else(|| {
+            match self.bodies.iter().find(|body| body.rheology.creep_spectrum().is_none()) {
+                Some(lacking) => no_series(what, &lacking.rheology),
+                None => no_series(what, &self.bodies),
+            }
+        })
     }
-}
-
-/// Accepts Poisson's ratios of stable bodies.
-pub(crate) fn poisson_ratio(nu: f64) -> Result<f64> {
-    within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")
 }
 
 fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {

@@ -201,39 +201,16 @@ fn may_follow(value: f64, earlier: f64) -> bool {
 
 /// Implements [`Rheology`] for a wrapper by the rheology inside.
 macro_rules! forward_rheology {
-    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
-        impl $(<$generic: $crate::rheology::Rheology + ?Sized>)? $crate::rheology::Rheology for $outer {
-            fn creep_compliance(&$self, t: f64) -> f64 {
-                $crate::rheology::Rheology::creep_compliance(&$inner, t)
-            }
-
-            fn failure(&$self) -> Option<$crate::UserError> {
-                $crate::rheology::Rheology::failure(&$inner)
-            }
-
-            fn creep_spectrum(&$self) -> Option<$crate::rheology::CreepSpectrum> {
-                $crate::rheology::Rheology::creep_spectrum(&$inner)
-            }
-
-            fn known_until(&$self) -> f64 {
-                $crate::rheology::Rheology::known_until(&$inner)
-            }
-
-            fn measured(&$self) -> [f64; 2] {
-                $crate::rheology::Rheology::measured(&$inner)
-            }
-
-            fn fit_report(&$self) -> Option<&$crate::rheology::FitReport> {
-                $crate::rheology::Rheology::fit_report(&$inner)
-            }
-
-            fn series(
-                &$self,
-                times: std::ops::RangeInclusive<f64>,
-                tolerance: f64,
-            ) -> $crate::error::Result<$crate::rheology::CreepSeries> {
-                $crate::rheology::Rheology::series(&$inner, times, tolerance)
-            }
+    ($($wrapper:tt)*) => {
+        forward! {
+            $crate::rheology::Rheology, ($($wrapper)*),
+            creep_compliance(t: f64) -> f64;
+            failure() -> Option<$crate::UserError>;
+            creep_spectrum() -> Option<$crate::rheology::CreepSpectrum>;
+            known_until() -> f64;
+            measured() -> [f64; 2];
+            fit_report() -> Option<&$crate::rheology::FitReport>;
+            series(times: std::ops::RangeInclusive<f64>, tolerance: f64) -> $crate::error::Result<$crate::rheology::CreepSeries>;
         }
     };
 }

@@ -6,7 +6,6 @@ use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::hereditary::{StepContext, TimeError};
-use crate::load::Load;
 use crate::run::driven::Course;
 use crate::run::halves::{Divided, Halves, add_work};
 use crate::run::load_within::stays_away;
@@ -112,7 +111,7 @@ pub(super) fn adaptive_step(
             report.dt = time - now;
         }
         // bodies apart do not respond to a given approach before they touch
-        let apart = !matches!(loads[0], Load::Force { .. }) && report.contact_cells == 0 && time < touch;
+        let apart = !loads[0].is_force() && report.contact_cells == 0 && time < touch;
         if jumps || outlook.is_last && !apart {
             contact.computation.state.history.reset_differences();
         }

@@ -76,7 +76,7 @@ pub struct Moment<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct FieldReport {
-    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force of the run, if that is more. `None` if there
+    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force so far, if that is more. `None` if there
     /// is no estimate.
     pub error: Option<f64>,
     /// Number of elastic contacts that were solved for it, with those for the whole run before its first field.

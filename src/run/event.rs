@@ -1,7 +1,5 @@
 //! A quantity of the contact that crosses a value.
 
-use std::fmt;
-
 use crate::error::{Result, finite};
 
 /// Differences to the value below this part of the greatest one so far count as none, just after an event.
@@ -132,8 +130,4 @@ impl<C> Event<C> {
     }
 }
 
-impl<C> fmt::Debug for Event<C> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Event").field("crossing", &self.crossing).field("times", &self.times).finish_non_exhaustive()
-    }
-}
+debug_by!(self: Event<C> => crossing: self.crossing, times: self.times);

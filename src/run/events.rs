@@ -2,7 +2,7 @@
 
 use crate::contact::StepReport;
 use crate::error::Result;
-use crate::load::{Load, LoadHistory};
+use crate::load::LoadHistory;
 use crate::run::RunContact;
 use crate::run::event::{Crossing, Event};
 use crate::run::follow::{Run, history_of};
@@ -161,13 +161,8 @@ fn hides_crossings([start, middle, end]: [f64; 3]) -> bool {
 /// Times within a step at which its load turns, as equal parts of the step show.
 fn turns(history: &dyn LoadHistory, from: f64, to: f64) -> Vec<f64> {
     let time = |k: u32| from + (to - from) * f64::from(k) / f64::from(PARTS);
-    let loads: Vec<f64> = (0..=PARTS)
-        .map(|k| match if k < PARTS { history.at(time(k)) } else { history.before(to) } {
-            Load::Force { normal: size, .. }
-            | Load::Approach { approach: size, .. }
-            | Load::Spring { drive: size, .. } => size,
-        })
-        .collect();
+    let load = |k: u32| if k < PARTS { history.at(time(k)) } else { history.before(to) };
+    let loads: Vec<f64> = (0..=PARTS).map(|k| load(k).main()).collect();
     let least = ROUNDING * loads.iter().fold(0.0, |most: f64, load| most.max(load.abs()));
     let (mut turns, mut before) = (Vec::new(), 0.0);
     for k in 1..=PARTS as usize {

@@ -82,15 +82,14 @@ impl RunScale {
             for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
                 let load = load(history, time, scene.attraction.is_some())?;
                 scale.include(&load);
-                let is_force = |load: &Load| matches!(load, Load::Force { .. });
-                if !is_force(&load) && loads.last().is_some_and(|(_, before)| is_force(before)) {
+                if !load.is_force() && loads.last().is_some_and(|(_, before)| before.is_force()) {
                     scale.switches.push(time);
                 }
                 loads.push((time, load));
             }
         }
         scale.include_spring(scene, state, compliance, &loads);
-        for (time, load) in loads.iter().filter(|(time, load)| !matches!(load, Load::Force { .. }) && *time > now) {
+        for (time, load) in loads.iter().filter(|(time, load)| !load.is_force() && *time > now) {
             let compliance = compliance_at(*time)? + SECANT * scale.give(load);
             scale.stress = scale.stress.max(scale.magnitude(load) / compliance);
         }

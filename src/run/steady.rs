@@ -123,8 +123,7 @@ impl<'a> SteadyRun<'a> {
         within("velocity", velocity, velocity != 0.0, "finite and not 0")?;
         let tolerance = motion.tolerance;
         within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
-        let creep =
-            contact.scene.material.contact_spectrum()?.ok_or_else(|| contact.scene.material.no_series("a motion"))?;
+        let creep = contact.scene.material.spectrum_for("a motion")?;
         let flows = creep.fluidity();
         within(
             "fluidity of the contact",

@@ -68,7 +68,7 @@ impl Bodies {
             for q in both {
                 let omega = q[0] * velocity[0] + q[1] * velocity[1];
                 let own = match &self.layer {
-                    Some(layer) if k != [0, 0] => layer.compliance(&self.creep, q[0].hypot(q[1]), omega),
+                    Some(layer) if k != [0, 0] => layer.compliance(q[0].hypot(q[1]), omega),
                     _ => self.kernel.of_wave(k) * self.creep.at(omega),
                 } / (signs[0].len() * signs[1].len()) as f64;
                 if !(own.re > 0.0 && own.im.is_finite() || own == Complex64::ZERO) {
@@ -100,7 +100,7 @@ impl Bodies {
         let mut coefficients = Coefficients::zero(rows.len(), 2 * n - 1);
         rows.iter().enumerate().for_each(|(j, row)| coefficients.add(j, row, &reaches, &rules));
         if let Some(layer) = &self.layer {
-            layer.add_along(&self.kernel, (axis, speed), &self.creep, &mut coefficients, &rules);
+            layer.add_along((axis, speed), &mut coefficients, &rules);
         }
         if self.kernel.periodic_axes()[1 - axis] { coefficients.of_waves_aside(aside) } else { coefficients }
     }
@@ -116,7 +116,7 @@ impl Bodies {
             self.kernel.of_wave(at) * self.creep.at(waves[k] * speed)
         };
         let table = match &self.layer {
-            Some(layer) => layer.of_waves(&self.kernel, (axis, speed), &self.creep, &waves),
+            Some(layer) => layer.of_waves((axis, speed), &waves),
             None => (0..aside).map(|i| (0..waves.len()).map(|k| of(i, k)).collect()).collect(),
         };
         // the shortest wave is its own mirror image

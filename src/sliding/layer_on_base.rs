@@ -9,6 +9,7 @@
 //! q = 0, vanishes as e^(−2qh), and is integrated on panels that double from zero on.
 
 use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 use faer::Mat;
 use num_complex::Complex64;
@@ -34,7 +35,10 @@ pub(super) const THINNEST: f64 = 64.0;
 
 pub(super) struct LayerOnBase {
     pub(super) layer: Layer,
+    /// How the layer and its base creep.
+    pub(super) own: Creep,
     pub(super) base: Creep,
+    pub(super) kernel: Arc<InfluenceKernel>,
 }
 
 impl Layer {
@@ -59,7 +63,7 @@ fn at_rest(material: &Material) -> Result<(f64, f64)> {
         }
         .into());
     };
-    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a layer on a base"))?;
+    let creep = material.spectrum_for("a layer on a base")?;
     let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
     within("fluidity of a layer or its base", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
     Ok((nu, relaxed))
@@ -81,35 +85,29 @@ fn to_cells(waves: &[(f64, f64)], n: usize, side: f64) -> Mat<f64> {
 
 impl LayerOnBase {
     /// C₁ and C₂ at a frequency, and L of a wave qh.
-    fn at(&self, creep: &Creep, omega: f64) -> (Complex64, Complex64, impl Fn(f64) -> Complex64) {
-        let [own, base] = [creep.at(omega), self.base.at(omega)];
+    fn at(&self, omega: f64) -> (Complex64, Complex64, impl Fn(f64) -> Complex64) {
+        let [own, base] = [&self.own, &self.base].map(|creep| creep.at(omega));
         let base_poisson = self.layer.base_poisson().unwrap_or(0.5);
         let layer = self.layer.oscillating(base / (1.0 - base_poisson) * ((1.0 - self.layer.poisson_ratio()) / own));
         (own, base, move |t| layer.at(t))
     }
 
     /// The displacement under a unit wave \[m/Pa\].
-    pub(super) fn compliance(&self, creep: &Creep, q: f64, omega: f64) -> Complex64 {
-        let (own, _, response) = self.at(creep, omega);
+    pub(super) fn compliance(&self, q: f64, omega: f64) -> Complex64 {
+        let (own, _, response) = self.at(omega);
         2.0 / q * own * response(q * self.layer.thickness())
     }
 
     /// The rest of waves `aside`, at each wave number of the nodes `along`: of all waves, or of the mean alone, the second part is taken out. `moves`:
     /// the nodes, or the waves, pass at a `speed`.
-    fn rest(
-        &self,
-        creep: &Creep,
-        along: &[(f64, f64)],
-        aside: &[f64],
-        (lines, moves, speed): (bool, bool, f64),
-    ) -> [Mat<f64>; 2] {
+    fn rest(&self, along: &[(f64, f64)], aside: &[f64], (lines, moves, speed): (bool, bool, f64)) -> [Mat<f64>; 2] {
         let h = self.layer.thickness();
         let mut parts = [Mat::zeros(along.len(), aside.len()), Mat::zeros(along.len(), aside.len())];
         for (k, &(q1, _)) in along.iter().enumerate() {
-            let mut known = self.at(creep, q1 * speed);
+            let mut known = self.at(q1 * speed);
             for (j, &q2) in aside.iter().enumerate() {
                 if !moves {
-                    known = self.at(creep, q2 * speed);
+                    known = self.at(q2 * speed);
                 }
                 let (own, base, response) = &known;
                 let q = q1.hypot(q2);
@@ -122,10 +120,10 @@ impl LayerOnBase {
     }
 
     /// Wave numbers and weights of an integral over q > 0, along an axis of the grid.
-    fn nodes(&self, kernel: &InfluenceKernel, axis: usize, creep: &Creep, speed: f64) -> Vec<(f64, f64)> {
-        let (h, lengths) = (self.layer.thickness(), kernel.grid().lengths());
+    fn nodes(&self, axis: usize, speed: f64) -> Vec<(f64, f64)> {
+        let (h, lengths) = (self.layer.thickness(), self.kernel.grid().lengths());
         let softest = self.layer.longest_over_half_space().max(1.0);
-        let reaches = [creep.reaches(speed), self.base.reaches(speed)].concat();
+        let reaches = [&self.own, &self.base].map(|creep| creep.reaches(speed)).concat();
         let longest = reaches.iter().map(|(_, reach)| *reach).fold(h * softest, f64::max);
         let (rule, mut begin, mut nodes) = (GaussLegendre::new(POINTS), 0.0, Vec::new());
         let mut length = FIRST / longest.max(lengths[0]).max(lengths[1]);
@@ -138,41 +136,34 @@ impl LayerOnBase {
     }
 
     /// Rows of the influence at depth 2h, of cells or of the mean wave.
-    fn below(&self, kernel: &InfluenceKernel, axis: usize) -> Vec<crate::kernel::Row> {
-        let mut rows = kernel.rows_along(axis, Some(2.0 * self.layer.thickness())).unwrap_or_default();
-        rows.truncate(if kernel.periodic_axes()[1 - axis] { 1 } else { rows.len() });
+    fn below(&self, axis: usize) -> Vec<crate::kernel::Row> {
+        let mut rows = self.kernel.rows_along(axis, Some(2.0 * self.layer.thickness())).unwrap_or_default();
+        rows.truncate(if self.kernel.periodic_axes()[1 - axis] { 1 } else { rows.len() });
         rows
     }
 
     /// What of the mean is taken out so that a line load displaces nothing at its datum.
-    fn at_datum(&self, kernel: &InfluenceKernel, axis: usize, creep: &Creep) -> f64 {
-        let per_width = kernel.datum().map_or(0.0, |datum| self.layer.at_datum(datum));
-        per_width * kernel.grid().spacing()[axis] * creep.at(0.0).re
+    fn at_datum(&self, axis: usize) -> f64 {
+        let per_width = self.kernel.datum().map_or(0.0, |datum| self.layer.at_datum(datum));
+        per_width * self.kernel.grid().spacing()[axis] * self.own.at(0.0).re
     }
 
     /// Adds the second part and the rest to the coefficients of a motion along an axis on which the bodies end.
-    pub(super) fn add_along(
-        &self,
-        kernel: &InfluenceKernel,
-        (axis, speed): (usize, f64),
-        creep: &Creep,
-        out: &mut Coefficients,
-        rules: &Rules,
-    ) {
-        let (grid, lines) = (kernel.grid(), kernel.periodic_axes()[1 - axis]);
+    pub(super) fn add_along(&self, (axis, speed): (usize, f64), out: &mut Coefficients, rules: &Rules) {
+        let (grid, lines) = (self.kernel.grid(), self.kernel.periodic_axes()[1 - axis]);
         let [(n, d), (m, side)] = [axis, 1 - axis].map(|axis| (grid.cells()[axis], grid.spacing()[axis]));
-        let less = creep.reaches(speed).into_iter().map(|(compliance, reach)| (-compliance, reach));
+        let less = self.own.reaches(speed).into_iter().map(|(compliance, reach)| (-compliance, reach));
         let reaches: Vec<_> = self.base.reaches(speed).into_iter().chain(less).collect();
-        for (j, row) in self.below(kernel, axis).into_iter().enumerate() {
+        for (j, row) in self.below(axis).into_iter().enumerate() {
             out.add(j, &Row::new(row, n, d, rules), &reaches, rules);
         }
-        let along = self.nodes(kernel, axis, creep, speed);
-        let aside = self.nodes(kernel, 1 - axis, creep, speed);
+        let along = self.nodes(axis, speed);
+        let aside = self.nodes(1 - axis, speed);
         let waves: Vec<f64> = match lines {
             true => (0..out.response.len()).map(|k| crate::kernel::wave_number(k, m, side)).collect(),
             false => aside.iter().map(|(q, _)| *q).collect(),
         };
-        let mut rest = self.rest(creep, &along, &waves, (lines, true, speed));
+        let mut rest = self.rest(&along, &waves, (lines, true, speed));
         if !lines {
             let to_rows = to_cells(&aside, m, side);
             rest = rest.map(|part| &part * to_rows.transpose());
@@ -187,7 +178,7 @@ impl LayerOnBase {
         let [re, im] = &rest;
         let response = sum(f64::cos, |_| 1.0, re) - sum(f64::sin, |_| 1.0, im);
         let loss = sum(f64::cos, |q| q, im) + sum(f64::sin, |q| q, re);
-        let at_datum = self.at_datum(kernel, axis, creep);
+        let at_datum = self.at_datum(axis);
         for j in 0..out.response.len() {
             let at_datum = if lines && j == 0 { at_datum } else { 0.0 };
             for i in 0..2 * n - 1 {
@@ -198,21 +189,15 @@ impl LayerOnBase {
     }
 
     /// The displacements aside of a cell under each of the waves of a motion along a periodic axis.
-    pub(super) fn of_waves(
-        &self,
-        kernel: &InfluenceKernel,
-        (axis, speed): (usize, f64),
-        creep: &Creep,
-        waves: &[f64],
-    ) -> Vec<Vec<Complex64>> {
-        let (n, d) = (kernel.grid().cells()[1 - axis], kernel.grid().spacing()[1 - axis]);
-        let along = self.nodes(kernel, 1 - axis, creep, 0.0);
+    pub(super) fn of_waves(&self, (axis, speed): (usize, f64), waves: &[f64]) -> Vec<Vec<Complex64>> {
+        let (n, d) = (self.kernel.grid().cells()[1 - axis], self.kernel.grid().spacing()[1 - axis]);
+        let along = self.nodes(1 - axis, 0.0);
         let to_cells = to_cells(&along, n, d);
-        let [re, im] = self.rest(creep, &along, waves, (true, false, speed)).map(|part| &to_cells * &part);
-        let own = kernel.rows_along(1 - axis, Some(0.0)).unwrap_or_default();
-        let (below, at_datum) = (self.below(kernel, 1 - axis), self.at_datum(kernel, 1 - axis, creep));
+        let [re, im] = self.rest(&along, waves, (true, false, speed)).map(|part| &to_cells * &part);
+        let own = self.kernel.rows_along(1 - axis, Some(0.0)).unwrap_or_default();
+        let (below, at_datum) = (self.below(1 - axis), self.at_datum(1 - axis));
         let of = |i: usize, k: usize| {
-            let (x, (layer, base, _)) = (i as f64 * d, self.at(creep, waves[k] * speed));
+            let (x, (layer, base, _)) = (i as f64 * d, self.at(waves[k] * speed));
             let mean = if k == 0 { (base - layer) * (below[0].influence)(x) - at_datum } else { Complex64::ZERO };
             layer * (own[k].influence)(x) + mean + Complex64::new(re[(i, k)], im[(i, k)])
         };

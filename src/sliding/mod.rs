@@ -225,9 +225,7 @@ impl Builder {
             (jumps, "a shape that jumps at the period of its body", "take one that repeats, or taper its ends"),
             (by_modulus, measured, "fit a series to it"),
         ])?;
-        let series = |material: &Material| {
-            Ok::<_, Error>(Creep::Series(material.contact_spectrum()?.ok_or_else(|| material.no_series("a motion"))?))
-        };
+        let series = |material: &Material| material.spectrum_for("a motion").map(Creep::Series);
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
         let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
@@ -245,7 +243,7 @@ impl Builder {
                 (other, "a base of another ratio than the layer's", cure),
                 (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
             ])?;
-            Ok::<_, Error>(LayerOnBase { layer, base: series(&base)? })
+            Ok::<_, Error>(LayerOnBase { layer, own: creep.clone(), base: series(&base)?, kernel: kernel.clone() })
         };
         let layer = base.map(on_base).transpose()?;
         let bodies = Arc::new(Bodies { kernel: kernel.clone(), creep, layer, rows: Default::default() });
@@ -347,7 +345,7 @@ impl SteadySliding {
 
     /// The bodies under a pressure with this velocity, where a load has a steady state.
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
-        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, matches!(load, Load::Force { .. }));
+        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, load.is_force());
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
         Special::SteadyMotion.refuses([(
             drifts,

@@ -20,9 +20,10 @@ impl Problem<'_> {
         let coarse = self.on_coarser(bodies, before);
         let first = coarse.as_deref().unwrap_or(before);
         let found = first.iter().any(|&p| p > 0.0).then(|| self.solve(bodies, first));
-        if let Some(found) = found.filter(|found| found.converged) {
-            return found;
-        }
+        let mut sets = match found {
+            Some(found) if found.converged => return found,
+            found => found.map_or(0, |found| found.sets),
+        };
         let mut solve = |skew: f64, from: &[f64]| {
             if skew == 1.0 {
                 return self.solve(bodies, from);
@@ -33,7 +34,7 @@ impl Problem<'_> {
             found
         };
         let (mut last, mut reached, mut step) = (solve(0.0, before), 0.0, 1.0);
-        let mut sets = last.sets;
+        sets += last.sets;
         loop {
             let skew = f64::min(reached + step, 1.0);
             let found = solve(skew, &last.pressure);

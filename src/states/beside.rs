@@ -74,6 +74,7 @@ pub(super) struct Beside {
 /// A pressure on the grid.
 pub(crate) struct FoundPressure {
     pub(crate) pressure: Vec<f64>,
+    /// Infinite where nothing tells it.
     pub(crate) error: f64,
     /// Elastic contacts solved, and convolutions.
     pub(crate) spent: [usize; 2],
@@ -90,8 +91,8 @@ impl Beside {
     ) -> Result<Option<Beside>> {
         let all = course.sampled(PARTS)?;
         let tilt = all[0].tilt();
-        let is_force = |load: &Load| matches!(load, Load::Force { .. });
-        let (by_force, is_free) = (all.iter().all(is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
+        let (by_force, is_free) =
+            (all.iter().all(Load::is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
         let is_other = |load: &Load| load.tilt() != tilt;
         if course.material.contact_spectrum()?.is_none() || all.iter().any(is_other) || !by_force && is_free {
             return Ok(None);
@@ -236,7 +237,7 @@ impl Beside {
             let touched = found.contact.states().level_where(0.0, nearer);
             (off, density) = (off.max(OF_SECOND * touched), density.max(self.glass));
         }
-        let amplified = |off: f64| OF_LEVEL * density * off.abs() / found.size();
+        let amplified = |off: f64| if off == 0.0 { 0.0 } else { OF_LEVEL * density * off.abs() / found.size() };
         let [of_curve, change] = [amplified(off) / OF_SECOND, amplified(level - before.contact.level())];
         Ok(([of_curve, change], found))
     }
@@ -261,6 +262,13 @@ impl Beside {
         let (mut error, mut of_level, mut refined) = (0.0, 0.0, 0);
         // the bodies have not touched yet
         let most_attempts = if found.size() > 0.0 { MOST_ATTEMPTS } else { 0 };
+        if most_attempts == 0 && !self.by_force {
+            // unless they are apart by less than what the curve may err by
+            of_level = match self.error_of_level(&found, history, (time, after)) {
+                Err(Error::States(_) | Error::Step(_)) => f64::INFINITY,
+                other => other?.0[0],
+            };
+        }
         for attempt in 1..=most_attempts {
             let profile = Profile::new(found.contact.tractions());
             let top = found.contact.level();

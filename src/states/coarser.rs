@@ -55,11 +55,11 @@ impl Coarser {
         }
     }
 
-    /// The error of the pressure of the run, where both have ended a step.
+    /// The error of the pressure of the run, where both have ended a step and something has pressed.
     pub(super) fn error_of(&self, run: &ViscoelasticContact) -> Option<f64> {
         let contact = self.contact.as_ref().filter(|contact| contact.time() == run.time())?;
         let [off, sum] = run.pressure_beside(contact).map(|sum| sum * run.grid().cell_area());
         let size = sum.max(LEAST_FORCE * self.force);
-        Some(if size > 0.0 { off / size / (2f64.powf(ORDER) - 1.0) } else { 0.0 })
+        (size > 0.0).then(|| off / size / (2f64.powf(ORDER) - 1.0))
     }
 }

@@ -1,6 +1,5 @@
 //! A creeping contact on elastic states.
 
-use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings, impl_contact};
@@ -59,7 +58,7 @@ impl StatesContact {
         if let Some(poisson) = states.poisson {
             Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
         }
-        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
+        let creep = material.spectrum_for("a contact on elastic states")?;
         let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
         let (swept, merge_error) = (Arc::clone(&states), MERGE_ERROR);
         let scene = Scene { swept, elastic: None, temperature: None, limits, interpolant, merge_error };
@@ -195,7 +194,7 @@ impl StatesContact {
     /// [`StatesContact::step_to`] without merging.
     pub(super) fn advance(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
-        self.levels.accept(&self.states, demand, wanted.level);
+        self.levels.accept(&self.states, demand, wanted);
         (self.time, self.reduced_time) = (time, reduced);
         Ok(self.report(dt, load))
     }
@@ -229,7 +228,7 @@ impl StatesContact {
     }
 
     /// Adds the elastic state at a level to the states of this contact.
-    fn solve(&mut self, Wanted { level, give, sum }: Wanted) -> Result<()> {
+    fn solve(&mut self, Wanted { level, give, sum, .. }: Wanted) -> Result<()> {
         let Some(elastic) = &self.scene.elastic else { return Ok(()) };
         let (tilt, drive) = (self.states.tilt, sum + self.states.rest.approach);
         let load = if give == f64::INFINITY {
@@ -386,15 +385,5 @@ impl StatesContact {
 
 impl_contact!(StatesContact, |_| None);
 
-impl fmt::Debug for StatesContact {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("StatesContact")
-            .field("time", &self.time)
-            .field("force", &self.force())
-            .field("approach", &self.approach())
-            .field("tilt", &self.tilt())
-            .field("level", &self.level())
-            .field("groups", &self.groups())
-            .finish_non_exhaustive()
-    }
-}
+debug_by!(self: StatesContact =>
+    time: self.time, force: self.force(), approach: self.approach(), tilt: self.tilt(), level: self.level(), groups: self.groups());

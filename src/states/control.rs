@@ -89,13 +89,12 @@ impl Record {
     /// For a run to the time `until`.
     pub(super) fn new(until: f64) -> Record {
         let loads = Vec::with_capacity(PARTS_OF_RUN as usize + 1);
-        let (by_force, greatest) = (true, [0.0; 2]);
         Record {
             until,
             next: 0.0,
             corner: 0.0,
-            by_force,
-            greatest,
+            by_force: true,
+            greatest: [0.0; 2],
             loads,
             greatest_load: 0.0,
             pressed: 0.0,
@@ -111,20 +110,21 @@ impl Record {
         sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
 
-    /// Looks at the load at equal parts of the run. A load that is refused fails the step to it.
-    fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) {
+    /// Looks at the load at equal parts of the run. A load that the states have no demand for fails the step to it.
+    fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) -> Result<()> {
         let (start, length) = (contact.time(), self.until - contact.time());
         for k in 0..=PARTS_OF_RUN {
             let time = start + length * f64::from(k) / f64::from(PARTS_OF_RUN);
-            let load = history.at(time);
-            self.by_force &= is_force(load);
-            self.loads.extend(value(contact, load).ok().filter(|load| load.is_finite()).map(|load| (time, load)));
+            let load = history.checked_at(time, false).inspect_err(|_| self.loads.clear())?;
+            self.by_force &= load.is_force();
+            self.loads.extend(value(contact, load).ok().map(|load| (time, load)));
         }
         self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
         // a body without elastic response has no depth as soon as the load acts
         let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
         let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
         self.pressed = lengths.fold(length / f64::from(PARTS_OF_RUN), f64::max);
+        Ok(())
     }
 
     /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
@@ -170,7 +170,7 @@ impl HalvedSteps {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
         }
         if self.record.loads.is_empty() {
-            self.record.sample(contact, history);
+            self.record.sample(contact, history)?;
         }
         if is_first {
             self.record.corner = now;
@@ -206,7 +206,7 @@ impl HalvedSteps {
             let event = self.event(contact, history, step, &loads, tolerance)?;
             end = event.unwrap_or(end);
             let (report, difference) = self.compare(contact, history, Span { now, end })?;
-            let force_ends = report.force == 0.0 && contact.level() > 0.0 && is_force(load_at(history, end)?);
+            let force_ends = report.force == 0.0 && contact.level() > 0.0 && load_at(history, end)?.is_force();
             let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
             let order = match last {
                 _ if is_first => 1.0,
@@ -245,7 +245,7 @@ impl HalvedSteps {
         tolerance: f64,
     ) -> Result<Option<f64>> {
         let Span { now, end } = step;
-        let by_force = is_force(load_at(history, end)?);
+        let by_force = load_at(history, end)?.is_force();
         if !by_force && contact.level() > 0.0 {
             return Ok(None);
         }
@@ -346,7 +346,7 @@ impl HalvedSteps {
         }
         let levels = [contact.level(), cuts[0], cuts[1]];
         let deepest = levels.into_iter().fold(0.0, f64::max);
-        let presses = is_force(load_at(history, end)?) && value(contact, load_at(history, now + half)?)? > 0.0;
+        let presses = load_at(history, end)?.is_force() && value(contact, load_at(history, now + half)?)? > 0.0;
         if levels.iter().any(|level| *level < SHALLOW * deepest) || deepest == 0.0 && presses {
             for start in [contact, middle] {
                 let mut quarter = |ends: &[f64]| -> Result<[f64; 2]> {
@@ -373,10 +373,6 @@ impl HalvedSteps {
 /// The load at a time, or just before it where it jumps.
 pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
     history.checked_before(time, false)
-}
-
-pub(super) fn is_force(load: Load) -> bool {
-    matches!(load, Load::Force { .. })
 }
 
 /// Force, or depth of the load point or of the far end of its spring.

@@ -1,12 +1,11 @@
 //! The elastic states of a contact, and what lies between them.
 
 use std::f64::consts::PI;
-use std::fmt;
 
 use crate::Grid;
 use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
-use crate::load::Tilt;
+use crate::load::{Tilt, load_point};
 use crate::numeric::{hermite, hermite_slope, root};
 use crate::states::pressed::Pressed;
 
@@ -186,7 +185,7 @@ impl ElasticStates {
 
     /// The coordinates at which the load acts: those of free tilts, the origin along the other axes.
     pub(super) fn load_point(&self) -> [f64; 2] {
-        load_point(&self.tilt)
+        load_point(self.tilt)
     }
 
     /// Distance from the load point to the edge of the greatest contact \[m\], at most; 0 where no tilt is free.
@@ -375,22 +374,9 @@ impl ElasticStates {
     }
 }
 
-/// The coordinates at which a load of these tilts acts.
-pub(super) fn load_point(tilt: &[Tilt; 2]) -> [f64; 2] {
-    tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 })
-}
-
 /// Approach of a point of the body.
 pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64 {
     approach + tilt[0] * point[0] + tilt[1] * point[1]
 }
 
-impl fmt::Debug for ElasticStates {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ElasticStates")
-            .field("states", &self.states.len())
-            .field("last_level", &self.last_level())
-            .field("error", &self.error)
-            .finish_non_exhaustive()
-    }
-}
+debug_by!(self: ElasticStates => states: self.states.len(), last_level: self.last_level(), error: self.error);

@@ -90,7 +90,7 @@ impl Loading<'_> {
     fn reach(&self) -> Result<Reach> {
         positive("end of the run", self.until)?;
         let all = self.sampled(PARTS)?;
-        if all.iter().all(|load| matches!(load, Load::Force { .. })) {
+        if all.iter().all(Load::is_force) {
             return Ok(Reach::Level(
                 MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
             ));

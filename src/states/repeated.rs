@@ -7,7 +7,6 @@ use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory};
 use crate::run::Stepping;
 use crate::states::contact::StatesContact;
-use crate::states::control::is_force;
 use crate::states::curve::ElasticStates;
 use crate::states::reach::Loading;
 use crate::states::twin::Profile;
@@ -71,7 +70,7 @@ impl Repeated {
         drop(run);
         let mut by_force = true;
         for end in &ends {
-            by_force &= is_force(history.checked_at(*end, false)?);
+            by_force &= history.checked_at(*end, false)?.is_force();
         }
         let most = if by_force { PARTS_OF_STEP } else { PARTS_BY_APPROACH };
         let parts = (MOST_STEPS / ends.len()).clamp(1, most);

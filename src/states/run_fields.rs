@@ -38,7 +38,7 @@ enum InSpace {
 
 impl<'a> Run<'a> {
     /// Makes the pressure at the times to sample ([`Run::sample_at`]) exact to `accuracy`: the error in time is Σ |δp| over Σ p, or over a
-    /// hundredth of the greatest force of the run if that is more. 99 % of random fields of bodies that creep up to 100-fold are below the
+    /// hundredth of the greatest force so far if that is more. 99 % of random fields of bodies that creep up to 100-fold are below the
     /// accuracy; up to 1000-fold the greatest error is 1.6 times as much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force
     /// alone: cells that joined in the last long step have the pressure of one moment, which is off by 1 to 30 %.
     ///
@@ -164,7 +164,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
                 Ok(found) => {
                     [report.elastic_contacts, report.convolutions] = found.spent;
                     if let Some(contact) = contact.with_pressure(&found.pressure) {
-                        report.error = Some(found.error);
+                        report.error = Some(found.error).filter(|error| error.is_finite());
                         return Ok((Some(contact), report));
                     }
                 }

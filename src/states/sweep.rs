@@ -10,9 +10,9 @@ use crate::contact::{Builder, Settings, ViscoelasticContact};
 use crate::error::{Error, Result, StatesError, count_within, finite, positive, within};
 use crate::geometry::Geometry;
 use crate::kernel::{InfluenceKernel, Layer};
-use crate::load::{Load, Tilt};
+use crate::load::{Load, Tilt, load_point};
 use crate::rheology::{Elastic, Material};
-use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at, load_point};
+use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at};
 use crate::states::elastic::{ElasticContact, Solved};
 use crate::states::pressed::Pressed;
 use crate::states::reach::{MARGIN, Reach};
@@ -124,8 +124,7 @@ impl Sweep {
         to: Reach,
         progress: impl FnMut(&[ElasticState]) -> ControlFlow<()>,
     ) -> Result<Arc<ElasticStates>> {
-        let accuracy =
-            within("accuracy of a sweep", self.accuracy, (1e-8..=0.1).contains(&self.accuracy), "in [1e-8, 0.1]")?;
+        within("accuracy of a sweep", self.accuracy, (1e-8..=0.1).contains(&self.accuracy), "in [1e-8, 0.1]")?;
         count_within("states of a sweep", self.max_states, self.max_states >= 3, "3 or more")?;
         if let Reach::Approach(reach) = to {
             positive("reach of a sweep", reach)?;
@@ -137,21 +136,19 @@ impl Sweep {
         let nu = self.layer.as_ref().map_or(0.5, Layer::poisson_ratio);
         // C = (1 − ν) J/2 = 1 Pa⁻¹
         let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
-        let scene = self.builder.material(unit).settings(self.settings);
+        let scene = self.builder.clone().material(unit).settings(self.settings);
         let elastic = ElasticContact::new(&scene)?;
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
-        let at = load_point(&self.tilt);
+        let at = load_point(self.tilt);
         let grid = elastic.grid().clone();
         let mut solver = Solver {
+            asked: &self,
             elastic,
-            tilt: self.tilt,
             at,
             rest: Rest { approach: 0.0, tilt },
             last_depth: 0.0,
             last_level: 0.0,
             first_level: 0.0,
-            accuracy,
-            max_states: self.max_states,
             allowed_fall: FALL_OVER_TOLERANCE * self.settings.tolerance,
             solved: Vec::new(),
             kept: self.keep_pressures.then(Vec::new),
@@ -189,9 +186,9 @@ impl Pair {
 }
 
 /// The elastic contact that finds states.
-struct Solver<P> {
+struct Solver<'a, P> {
+    asked: &'a Sweep,
     elastic: ElasticContact,
-    tilt: [Tilt; 2],
     /// The load point.
     at: [f64; 2],
     rest: Rest,
@@ -199,8 +196,6 @@ struct Solver<P> {
     last_level: f64,
     /// The level from which the contact only grows.
     first_level: f64,
-    accuracy: f64,
-    max_states: usize,
     allowed_fall: f64,
     solved: Vec<ElasticState>,
     /// The pressures of these states, if they are kept.
@@ -209,13 +204,13 @@ struct Solver<P> {
     progress: P,
 }
 
-impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
+impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
     /// The greatest level under some loads.
     fn largest_level(&mut self, loads: &[Load]) -> Result<f64> {
         let mut largest = 0.0_f64;
         for &load in loads {
-            if load.tilt() != self.tilt {
-                let swept = Load::Force { normal: 0.0, tilt: self.tilt }.to_string();
+            if load.tilt() != self.asked.tilt {
+                let swept = Load::Force { normal: 0.0, tilt: self.asked.tilt }.to_string();
                 return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
             }
             largest = largest.max(self.elastic.solve(load)?.state.level);
@@ -229,14 +224,14 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     }
 
     fn solve(&mut self, level: f64) -> Result<Solved> {
-        self.elastic.solve(Load::Force { normal: level, tilt: self.tilt })
+        self.elastic.solve(Load::Force { normal: level, tilt: self.asked.tilt })
     }
 
     /// Adds a state. Breaks if the sweep is to end with it.
     fn add(&mut self, Solved { state, pressure }: &Solved) -> ControlFlow<()> {
         self.solved.push(*state);
         self.kept.iter_mut().for_each(|kept| kept.push(pressure.clone()));
-        let ends = (self.progress)(&self.solved).is_break() || self.solved.len() >= self.max_states;
+        let ends = (self.progress)(&self.solved).is_break() || self.solved.len() >= self.asked.max_states;
         if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
@@ -271,7 +266,8 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     fn first_pass(&mut self, last: f64) -> Result<Vec<Rc<Solved>>> {
         let mut states = vec![Rc::new(self.solve(last)?)];
         // on the same cells, motions are linear in the level; no contact has fewer than one cell for each free motion
-        let (mut is_linear, free) = (false, self.tilt.iter().filter(|tilt| matches!(tilt, Tilt::Free { .. })).count());
+        let (mut is_linear, free) =
+            (false, self.asked.tilt.iter().filter(|tilt| matches!(tilt, Tilt::Free { .. })).count());
         while let Some(Solved { state, pressure }) = states.last().map(Rc::as_ref) {
             let is_smallest = is_linear && (state.cells <= 1 + free || state.level < LINEAR_LEVEL * last);
             if is_smallest || state.level < LEAST_LEVEL * last {
@@ -311,13 +307,13 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
             self.error = self.error.max(error);
             return Ok(ControlFlow::Break(()));
         }
-        let curve = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt);
+        let curve = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.asked.tilt);
         let middle = Rc::new(self.solve((lower.state.level * upper.state.level).sqrt())?);
         let mut error = curve.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
         if self.kept.is_some() {
             error = error.max(self.error_of_pressure([&lower, &middle, &upper]));
         }
-        if SAFETY * error <= self.accuracy || upper.state.level < FINEST * lower.state.level {
+        if SAFETY * error <= self.asked.accuracy || upper.state.level < FINEST * lower.state.level {
             self.check_growth(&lower, &middle)?;
             self.check_growth(&middle, &upper)?;
             self.error = self.error.max(error);
@@ -346,12 +342,12 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     }
 
     fn finish(self) -> ElasticStates {
-        let Solver { solved, mut kept, rest, tilt, error, first_level, .. } = self;
+        let Solver { asked, solved, mut kept, rest, error, first_level, .. } = self;
         let mut order: Vec<usize> = (0..solved.len()).filter(|&k| solved[k].level >= first_level).collect();
         order.sort_by(|&a, &b| solved[a].level.total_cmp(&solved[b].level));
         let states = order.iter().map(|&k| solved[k]).collect();
         let pressures = kept.iter_mut().flat_map(|kept| order.iter().map(|&k| std::mem::take(&mut kept[k]))).collect();
-        let mut states = ElasticStates::new(states, rest, tilt);
+        let mut states = ElasticStates::new(states, rest, asked.tilt);
         (states.error, states.first_level, states.pressures) = (error, first_level, pressures);
         states
     }

@@ -347,6 +347,22 @@ impl LoadHistory for Turning<'_> {
     }
 }
 
+/// Bodies that are surely apart have no pressure. Where they may touch, and nothing has pressed yet, no error is known.
+#[test]
+fn no_error_of_zero_is_told_at_the_first_touch() {
+    let mut contact = ball();
+    let touch = contact.approach();
+    let rows = [(0.0, -1e-5), (1.0, 0.0), (3.0, 2e-5)].map(|(time, depth)| (time, Load::approach(touch + depth)));
+    let history = PiecewiseLinear::new(&rows).unwrap();
+    let run = contact.follow(&history, Stepping::adaptive(1e-2), 3.0).sample_at([0.5, 1.0, 2.0]).unwrap();
+    let (mut run, mut told) = (run.fields_to(1e-2).unwrap(), Vec::new());
+    while run.next_step().unwrap().is_some() {
+        let asked = run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for());
+        told.extend(asked.map(|sample| sample.field().and_then(|field| field.error)));
+    }
+    assert!(matches!(told[..], [Some(0.0), None, Some(error)] if 0.0 < error && error < 1e-2), "{told:?}");
+}
+
 /// Tilts that turn, load points that move and surfaces that attract each other have no elastic states: graded steps, and an estimate by steps
 /// twice as long.
 #[test]

@@ -78,7 +78,7 @@ impl OpeningEdge {
         let what = "the theory of an opening edge";
         positive("work of separation", work)?;
         length("range of the attraction", range)?;
-        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series(what))?;
+        let creep = material.spectrum_for(what)?;
         if creep.glassy() == 0.0 {
             return Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what }));
         }

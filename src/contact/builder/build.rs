@@ -326,7 +326,7 @@ fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> 
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     match settings.time_rule {
         TimeRule::Exponential | TimeRule::ExponentialLinear => {
-            let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact"))?;
+            let creep = material.spectrum_for("a contact")?;
             Ok(match settings.frame {
                 Frame::Bodies => History::exponential(&creep),
                 Frame::Indenter => History::moving_frame(&creep, periodic),

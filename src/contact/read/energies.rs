@@ -113,7 +113,7 @@ impl EnergyBalance {
                 ("time at which an energy balance begins", contact.time(), "0, before any step");
             return Err(Error::OutOfRange { field, value, allowed });
         }
-        let creep = contact.material().contact_spectrum()?.ok_or_else(|| contact.material().no_series(what))?;
+        let creep = contact.material().spectrum_for(what)?;
         Ok(EnergyBalance {
             branches: BranchEnergies::new(&creep, cells),
             energies: Energies::default(),

@@ -91,7 +91,7 @@ impl Estimated {
     /// What these loads leave free.
     pub(crate) fn under(loads: &[Load]) -> Estimated {
         let any = |is: fn(&Load) -> bool| loads.iter().any(is);
-        match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !matches!(load, Load::Force { .. }))) {
+        match (any(|load| !matches!(load, Load::Approach { .. })), any(|load| !load.is_force())) {
             (false, true) => Estimated::Force,
             (_, false) => Estimated::Approach,
             (true, true) => Estimated::ApproachOrForce,

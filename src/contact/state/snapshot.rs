@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::contact::{Scene, State, ViscoelasticContact};
 use crate::error::{Error, Result, within};
 use crate::extent::Extent;
-use crate::load::{Load, Tilt};
+use crate::load::{Load, Tilt, load_point};
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
 /// space. About 48 bytes per computed cell and what the history takes ([`Memory`](crate::contact::Memory)); where a window is
@@ -167,7 +167,7 @@ impl ViscoelasticContact {
             Tilt::Fixed(_) => Tilt::Fixed(now.tilt[axis]),
             free => free,
         });
-        let at = tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+        let at = load_point(tilt);
         let approach = now.approach + now.tilt[0] * at[0] + now.tilt[1] * at[1];
         match *other {
             Load::Force { .. } => Load::Force { normal: now.force, tilt },

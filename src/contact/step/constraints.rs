@@ -9,7 +9,7 @@ use crate::contact::step::edge::MOST;
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
 use crate::error::{AdhesionError, Convergence, Error, Result, Special, StepError, exact_length};
 use crate::hereditary::Interval;
-use crate::load::{Load, Tilt};
+use crate::load::{Load, Tilt, load_point};
 use crate::rheology::is_known;
 use crate::solver::{Counts, Freedom, Outcome, Solution};
 
@@ -20,7 +20,7 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
     for (body, load) in loads.iter().enumerate() {
         load.validate_in(scene.attraction.is_some())?;
         let free_below_approach = scene.attraction.is_some()
-            && !matches!(load, Load::Force { .. })
+            && !load.is_force()
             && load.tilt().iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
         if free_below_approach {
             let what = "a body that tilts freely under a given approach or a spring";
@@ -62,7 +62,7 @@ pub(super) fn find_free_motions(scene: &Scene, region: &Region, step: &Step<'_>,
 /// The free motions of a body under a load.
 fn freedom(load: &Load, grid: &Grid) -> Freedom {
     let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
-    let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+    let point = load_point(load.tilt());
     let (translation, total) = match load {
         Load::Force { normal, .. } => (true, normal / grid.cell_area()),
         Load::Approach { .. } => (false, 0.0),

@@ -273,11 +273,7 @@ impl Attempt {
 
 /// Numbers of a step that must agree on all ranks.
 fn marks(step: &Step<'_>) -> [f64; 4] {
-    let load = step.loads.first().map_or(0.0, |load| match load {
-        Load::Force { normal, .. } => *normal,
-        Load::Approach { approach, .. } => *approach,
-        Load::Spring { drive, .. } => *drive,
-    });
+    let load = step.loads.first().map_or(0.0, Load::main);
     [step.interval.time, step.interval.dt, step.tolerance, load]
 }
 

@@ -17,7 +17,7 @@ pub(super) use remainder::Remainder;
 pub(crate) use wave::Bonded;
 use wave::Response;
 
-use crate::error::{Error, KernelError, Result, length, within};
+use crate::error::{Error, KernelError, Result, length, poisson_ratio, within};
 
 /// Ratio of the shear moduli of a layer and its base.
 const SHEAR_RATIOS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
@@ -228,10 +228,6 @@ impl Layer {
             _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
         }
     }
-}
-
-fn poisson_ratio(field: &'static str, nu: f64) -> Result<f64> {
-    within(field, nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")
 }
 
 /// "layer of 1e-4 m, ν = 0.5, bonded to a rigid base".

@@ -19,7 +19,7 @@ use crate::error::{KernelError, Result, exact_length, in_order, least_length, wi
 use crate::fft::Plane;
 use crate::kernel::{HalfSpace, fast_length};
 use crate::observe::profile::line_through;
-use crate::{Grid, InfluenceKernel, memory};
+use crate::{Grid, InfluenceKernel, error, memory};
 use rectangle::Weights;
 use rectangle::corner;
 use waves::Wave;
@@ -105,8 +105,7 @@ impl SubsurfaceStress {
     /// If the stress in the body is not known ([`KernelError::NoStress`]), there is not one pressure per cell, one is not
     /// finite or beyond ±1e150 Pa, `poisson_ratio` is outside (−1, ½], or there is not enough memory for the transforms.
     pub fn new(kernel: &InfluenceKernel, pressure: &[f64], poisson_ratio: f64) -> Result<SubsurfaceStress> {
-        let nu =
-            within("Poisson's ratio", poisson_ratio, poisson_ratio > -1.0 && poisson_ratio <= 0.5, "in (-1, 0.5]")?;
+        let nu = error::poisson_ratio("Poisson's ratio", poisson_ratio)?;
         SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 1.0 - 2.0 * nu])])
     }
 

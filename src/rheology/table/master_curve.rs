@@ -2,7 +2,7 @@ use crate::error::{Error, Place, Result, TableError, in_order, least_length};
 use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::isotherm::Isotherm;
-use crate::rheology::table::shift::shift_between;
+use crate::rheology::table::shift::{Shift, shift_between};
 use crate::rheology::{CreepSeries, MaterialFunction, Tension, TimeTemperature};
 
 /// A reference this near \[K\] to the temperature of an isotherm is that temperature.
@@ -39,14 +39,8 @@ pub struct MasterCurve {
     reference: f64,
     /// By temperature, ascending.
     isotherms: Vec<Isotherm>,
-    /// ln a_T of each.
-    log_shifts: Vec<f64>,
-    /// Their standard errors.
-    log_errors: Vec<f64>,
-    /// ln of the factor of the values of each.
-    log_factors: Vec<f64>,
-    /// By how much the shifts by the storage and by the loss modulus differ, from each isotherm to its neighbour.
-    disagreements: Vec<f64>,
+    /// Of each from the reference; the disagreement is that of the shift from its neighbour.
+    shifts: Vec<Shift>,
 }
 
 impl MasterCurve {
@@ -78,25 +72,16 @@ impl MasterCurve {
             let allowed = "the temperature of one of the isotherms, within 0.5 K";
             return Err(Error::OutOfRange { field: "reference temperature", value: reference, allowed });
         };
-        let mut log_shifts = vec![0.0; isotherms.len()];
-        let [mut log_errors, mut log_factors, mut disagreements] = [(); 3].map(|()| log_shifts.clone());
+        let mut shifts = vec![Shift::default(); isotherms.len()];
         for k in (center + 1..isotherms.len()).chain((0..center).rev()) {
             let (before, [colder, warmer], sign) =
                 if k > center { (k - 1, [k - 1, k], 1.0) } else { (k + 1, [k, k + 1], -1.0) };
             let shift = shift_between(&isotherms[colder], &isotherms[warmer], is_vertical)?;
-            log_shifts[k] = log_shifts[before] + sign * shift.log;
-            log_factors[k] = log_factors[before] + sign * shift.vertical;
-            log_errors[k] = log_errors[before].hypot(shift.error);
-            disagreements[k] = shift.disagreement;
+            let log = shifts[before].log + sign * shift.log;
+            let vertical = shifts[before].vertical + sign * shift.vertical;
+            shifts[k] = Shift { log, error: shifts[before].error.hypot(shift.error), vertical, ..shift };
         }
-        Ok(MasterCurve {
-            reference: isotherms[center].temperature,
-            isotherms,
-            log_shifts,
-            log_errors,
-            log_factors,
-            disagreements,
-        })
+        Ok(MasterCurve { reference: isotherms[center].temperature, isotherms, shifts })
     }
 
     /// Shifts by a known `law`, to its reference temperature.
@@ -121,17 +106,10 @@ impl MasterCurve {
     /// not hold at the temperature of one.
     pub fn with_law(law: &TimeTemperature, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
-        let log_shifts: Vec<f64> =
-            isotherms.iter().map(|isotherm| Ok(law.shift_factor(isotherm.temperature)?.ln())).collect::<Result<_>>()?;
-        let none = vec![0.0; isotherms.len()];
-        Ok(MasterCurve {
-            reference: law.reference(),
-            isotherms,
-            log_shifts,
-            log_errors: none.clone(),
-            log_factors: none.clone(),
-            disagreements: none,
-        })
+        let shift =
+            |isotherm: &Isotherm| Ok(Shift { log: law.shift_factor(isotherm.temperature)?.ln(), ..Shift::default() });
+        let shifts = isotherms.iter().map(shift).collect::<Result<_>>()?;
+        Ok(MasterCurve { reference: law.reference(), isotherms, shifts })
     }
 
     /// The reference temperature \[K\].
@@ -142,13 +120,13 @@ impl MasterCurve {
     /// Temperature \[K\] and shift factor a_T of each isotherm, by temperature: at T all times are a_T times
     /// the times at the reference.
     pub fn shift_factors(&self) -> Vec<(f64, f64)> {
-        self.of_each(&self.log_shifts, f64::exp).collect()
+        self.of_each(|shift| shift.log.exp()).collect()
     }
 
     /// Temperature \[K\] and vertical factor b_T of each isotherm, by temperature: at T all values are b_T times those at the
     /// reference. 1 without vertical shifts.
     pub fn vertical_factors(&self) -> Vec<(f64, f64)> {
-        self.of_each(&self.log_factors, f64::exp).collect()
+        self.of_each(|shift| shift.vertical.exp()).collect()
     }
 
     /// Temperature \[K\] and standard error of log₁₀ a_T of each isotherm, by temperature; 0 at the reference, and with a law.
@@ -156,21 +134,18 @@ impl MasterCurve {
     /// Neighbours are shifted one after the other, so that errors grow away from the reference. They include shifts that fit
     /// nearly as well, as where a curve is nearly a power law.
     pub fn shift_errors(&self) -> Vec<(f64, f64)> {
-        self.of_each(&self.log_errors, decades).collect()
+        self.of_each(|shift| decades(shift.error)).collect()
     }
 
     /// Temperatures \[K\] of isotherms that storage and loss moduli would shift differently relative to their neighbours, by
     /// more than their errors explain, and by how many decades: the body is not thermorheologically simple, or a modulus is
     /// disturbed by the machine.
     pub fn disagreements(&self) -> Vec<(f64, f64)> {
-        self.of_each(&self.disagreements, decades).filter(|(_, decades)| *decades > 0.0).collect()
+        self.of_each(|shift| decades(shift.disagreement)).filter(|(_, decades)| *decades > 0.0).collect()
     }
 
-    fn of_each(&self, logarithms: &[f64], value: fn(f64) -> f64) -> impl Iterator<Item = (f64, f64)> {
-        self.isotherms
-            .iter()
-            .zip(logarithms)
-            .map(move |(isotherm, &logarithm)| (isotherm.temperature, value(logarithm)))
+    fn of_each(&self, value: fn(&Shift) -> f64) -> impl Iterator<Item = (f64, f64)> {
+        self.isotherms.iter().zip(&self.shifts).map(move |(isotherm, shift)| (isotherm.temperature, value(shift)))
     }
 
     /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁.
@@ -208,8 +183,7 @@ impl MasterCurve {
 
     /// Temperature and ln a_T of every isotherm but that at the reference.
     fn off_reference(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let pairs = self.isotherms.iter().zip(&self.log_shifts);
-        pairs.map(|(isotherm, &shift)| (isotherm.temperature, shift)).filter(|(t, _)| *t != self.reference)
+        self.of_each(|shift| shift.log).filter(|(temperature, _)| *temperature != self.reference)
     }
 
     /// The points of the curve, with values as at the reference: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
@@ -223,10 +197,9 @@ impl MasterCurve {
 
     /// The rows of all isotherms, at reduced times or frequencies.
     fn reduced(&self) -> impl Iterator<Item = Row> {
-        let shifts = self.log_shifts.iter().zip(&self.log_factors);
-        self.isotherms.iter().zip(shifts).flat_map(|(isotherm, (&shift, &vertical))| {
-            let factor = if isotherm.experiment.layout().zero { (-shift).exp() } else { shift.exp() };
-            let values = move |row: &Row| row.values.iter().map(|value| value / vertical.exp()).collect();
+        self.isotherms.iter().zip(&self.shifts).flat_map(|(isotherm, shift)| {
+            let factor = if isotherm.experiment.layout().zero { (-shift.log).exp() } else { shift.log.exp() };
+            let values = |row: &Row| row.values.iter().map(|value| value / shift.vertical.exp()).collect();
             isotherm.rows.iter().map(move |row| Row { x: row.x * factor, values: values(row), ..row.clone() })
         })
     }

@@ -35,7 +35,7 @@ const LEAST_DISAGREEMENT: f64 = 0.115;
 const MOST_APART: f64 = 0.3;
 
 /// A shift and its standard error, in ln a.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Shift {
     pub(super) log: f64,
     pub(super) error: f64,

@@ -39,11 +39,12 @@ impl Levels {
         let compliance = self.history.rule().compliance();
         match demand {
             Demand::Force(force) => {
-                Wanted { level: self.level_of_force(force * compliance + lead), give: f64::INFINITY, sum: 0.0 }
+                Wanted { level: self.level_of_force(force * compliance + lead), give: f64::INFINITY, sum: 0.0, lead }
             }
             Demand::Depth { depth, give } => {
                 let give = give / compliance;
-                self.level_of_depth(states, give, depth + give * lead)
+                let [level, sum] = self.level_of_depth(states, give, depth + give * lead);
+                Wanted { level, give, sum, lead }
             }
         }
     }
@@ -62,24 +63,24 @@ impl Levels {
     }
 
     /// The level c up to which groups are held where D(c) + `give` Σ (1 − W) Δl = `depth`, with D(c) = δ(c) + Σ W Δδ
-    /// above c; NaN beyond the sweep.
-    fn level_of_depth(&self, states: &ElasticStates, give: f64, depth: f64) -> Wanted {
+    /// above c; NaN beyond the sweep. And the sum that it is found by.
+    fn level_of_depth(&self, states: &ElasticStates, give: f64, depth: f64) -> [f64; 2] {
         let mut reached: f64 =
             self.spans().map(|(_, lower, group, free)| free.min(1.0) * (group.motions.depth - lower.depth)).sum();
         if depth <= reached {
-            return Wanted { level: 0.0, give, sum: 0.0 };
+            return [0.0, 0.0];
         }
         for (bottom, lower, group, free) in self.spans() {
             let rise = (1.0 - free).max(0.0) * (group.motions.depth - lower.depth);
             let more = rise + (1.0 - free) * give * (group.top - bottom);
             if reached + more >= depth {
                 let sum = lower.depth + give * bottom + (depth - reached) / (1.0 - free);
-                return Wanted { level: states.level_where(give, sum).clamp(bottom, group.top), give, sum };
+                return [states.level_where(give, sum).clamp(bottom, group.top), sum];
             }
             reached += more;
         }
         let (top, motions) = self.bottom(self.groups.len());
         let sum = motions.depth + give * top + (depth - reached);
-        Wanted { level: states.level_where(give, sum), give, sum }
+        [states.level_where(give, sum), sum]
     }
 }

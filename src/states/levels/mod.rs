@@ -26,12 +26,14 @@ pub(super) enum Demand {
     Depth { depth: f64, give: f64 },
 }
 
-/// A level c, and how it is found: δ(c) + `give` c = `sum`; `give` is infinite where it does not depend on the states.
+/// A level c, and how it is found: δ(c) + `give` c = `sum`; `give` is infinite where it does not depend on the states. Levels that the edge meets
+/// have this `lead`, 0 if they have none.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wanted {
     pub(super) level: f64,
     pub(super) give: f64,
     pub(super) sum: f64,
+    lead: f64,
 }
 
 /// Levels from the top of the group before to its own, with one past.
@@ -157,7 +159,7 @@ impl Levels {
             let what = "a jump of the load that changes the pressure";
             let level = self.level_without_response(demand);
             let level = level.ok_or(Error::Step(StepError::NoElasticResponse { time, what }))?;
-            return Ok(Wanted { level, give: f64::INFINITY, sum: 0.0 });
+            return Ok(Wanted { level, give: f64::INFINITY, sum: 0.0, lead: 0.0 });
         }
         if !compliance.is_finite() {
             return Err(Error::Step(StepError::Overflow { time, what: "the compliance" }));
@@ -220,12 +222,12 @@ impl Levels {
     }
 
     /// Accepts the step of [`Levels::wanted`].
-    pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, level: f64) {
+    pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, Wanted { level, lead, .. }: Wanted) {
         if self.history.rule().compliance() > 0.0 {
-            let (lead, edge) = (self.lead(), self.level);
+            let edge = self.level;
             let swept = if self.history.leads() { self.swept(level) } else { 0.0 };
             self.cut_at(states, level);
-            if 0.0 < lead && lead <= swept {
+            if lead > 0.0 {
                 self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
             self.hold(level);
