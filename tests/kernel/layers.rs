@@ -1,6 +1,7 @@
 //! Kernels of layers: limits, sums over cells, waves, and invalid layers.
 
 use crate::common::builder_of;
+use std::f64::consts::{FRAC_2_PI, TAU};
 use std::sync::Arc;
 
 use super::{assert_answers_waves, convolve};
@@ -71,6 +72,26 @@ fn thick_layers_are_half_spaces() {
     }
 }
 
+/// Hankel's integrals against Fourier's: a long row of cells under one pressure is a line contact.
+#[test]
+fn rows_of_cells_are_lines() {
+    for (nu, side) in [(0.5, 0.25), (0.2, 0.25), (0.0, 1.5)] {
+        for layer in &layers(1.0, nu)[..2] {
+            let count = (60.0 / side) as usize;
+            let row = Grid::new([6, count], [6.0 * side, side * count as f64]).unwrap();
+            let line = Grid::new([6, 1], [6.0 * side, 1.0]).unwrap();
+            let cells = InfluenceKernel::layer(&row, *layer).unwrap();
+            let line = InfluenceKernel::layer_line(&line, *layer, None).unwrap();
+            for i in 0..6 {
+                let at = |j: usize| cells.coefficient(i, j as isize).unwrap();
+                let sum = at(0) + 2.0 * (1..count).map(at).sum::<f64>();
+                let (exact, scale) = (line.coefficient(i, 0).unwrap(), line.coefficient(0, 0).unwrap());
+                assert!((sum - exact).abs() < 1e-10 * scale, "{layer}, {i}: {sum:e} {exact:e}");
+            }
+        }
+    }
+}
+
 /// A pressure on all cells of a large grid compresses the middle by the mean of long waves; cells much longer than the
 /// layer is thick do so by themselves.
 #[test]
@@ -103,9 +124,88 @@ fn periodic_layers_answer_every_wave() {
     }
 }
 
+/// Far from a load on a layer on a half-space, in line contact, the surface follows the base to where it is at rest.
 #[test]
-fn layers_periodic_along_one_axis_have_their_limits() {
+fn lines_on_half_spaces_are_at_rest_at_their_datum() {
+    let layer = Layer::bonded_to_half_space(0.05, 0.4, 5.0, 0.3).unwrap();
+    let grid = Grid::new([2001, 1], [40.02, 1.0]).unwrap();
+    let kernel = InfluenceKernel::layer_line(&grid, layer, Some(40.02)).unwrap();
+    let side = grid.spacing()[0];
+    let base = 5.0 * 0.7 / 0.6;
+    let at = |i: isize| kernel.coefficient(i, 0).unwrap();
+    for i in [500, 1000, 2000] {
+        let exact = -FRAC_2_PI * base * side * (side * i as f64 / 40.02).ln();
+        assert!((at(i) - exact).abs() < 1e-4 * at(0), "{i}: {:e} {exact:e}", at(i));
+    }
+}
+
+/// What a layer that is periodic along x2 adds to the half-space, for a wave along x2, from the sum over many images of what it
+/// adds to the coefficients of cells. That is smooth, so that uniform cells leave of the wave sin(κd/2)/(κd/2), and no other
+/// one as long as they are short against the thickness.
+#[test]
+fn layers_periodic_along_one_axis_are_sums_of_images() {
+    let (side, count, cells, periods) = (0.25, 6, 32, 80);
+    let length = side * count as f64;
+    // the end of the sum, so smooth that the waves do not see it
+    let end = |y: f64| {
+        let p = (2.0 * y / f64::from(periods) - 1.0).max(0.0);
+        1.0 - p.powi(5) * (126.0 - 420.0 * p + 540.0 * p * p - 315.0 * p.powi(3) + 70.0 * p.powi(4))
+    };
+    let grid = Grid::new([count, cells * periods as usize], [length, f64::from(periods)]).unwrap();
+    let half_space = InfluenceKernel::half_space(&grid).unwrap();
+    let strips = Grid::new([count, 8], [length, 1.0]).unwrap();
+    for thickness in [0.15, 0.6, 3.0] {
+        for layer in layers(thickness, 0.5).into_iter().chain(layers(thickness, 0.2)) {
+            let kernel = InfluenceKernel::layer(&grid, layer).unwrap();
+            let datum = layer.compliance(0.0).is_infinite().then_some(10.0);
+            let periodic = InfluenceKernel::layer_periodic_along(&strips, layer, Axis::X2, datum).unwrap();
+            let of_half_space = InfluenceKernel::periodic_along(&strips, Axis::X2, 10.0).unwrap();
+            for waves in [1.0, 2.0] {
+                let wave: Vec<f64> = (0..strips.len())
+                    .map(|k| if k < 8 { (TAU * waves * strips.center(0, k)[1]).cos() } else { 0.0 })
+                    .collect();
+                let [with, without] = [&periodic, &of_half_space].map(|kernel| convolve(kernel, &wave));
+                let half = 0.5 * TAU * waves / cells as f64;
+                for i in 0..count {
+                    let term = |j: usize| {
+                        let at = |kernel: &InfluenceKernel| kernel.coefficient(i as isize, j as isize).unwrap();
+                        let y = j as f64 / cells as f64;
+                        end(y) * (TAU * waves * y).cos() * (at(&kernel) - at(&half_space))
+                    };
+                    let exact = term(0) + 2.0 * (1..cells * periods as usize).map(term).sum::<f64>();
+                    let found = (with[8 * i] - without[8 * i]) / wave[0] * half.sin() / half;
+                    let scale = without[0] / wave[0];
+                    assert!((found - exact).abs() < 1e-9 * scale, "{layer}, {waves}, {i}: {found:e} {exact:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn layers_periodic_along_one_axis_are_lines_and_half_spaces() {
     let grid = Grid::new([24, 10], [2.0, 1.0]).unwrap();
+    let turned = Grid::new([10, 24], [1.0, 2.0]).unwrap();
+    let line = Grid::new([24, 1], [2.0, 1.0]).unwrap();
+    for layer in layers(0.3, 0.4) {
+        let datum = layer.compliance(0.0).is_infinite().then_some(7.0);
+        let along = |grid: &Grid, axis| InfluenceKernel::layer_periodic_along(grid, layer, axis, datum).unwrap();
+        let (kernel, other) = (along(&grid, Axis::X2), along(&turned, Axis::X1));
+        assert_eq!((kernel.periodic_axes(), other.periodic_axes()), ([false, true], [true, false]));
+        // uniform along x2: a line
+        let uniform: Vec<f64> = (0..24).map(|i| ((i * i) as f64).sin() + 1.1).collect();
+        let on_line = convolve(&InfluenceKernel::layer_line(&line, layer, datum).unwrap(), &uniform);
+        let rows: Vec<f64> = uniform.iter().flat_map(|&p| [p; 10]).collect();
+        let found = convolve(&kernel, &rows);
+        let greatest = on_line.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        assert!((0..240).all(|k| (found[k] - on_line[k / 10]).abs() < 1e-13 * greatest), "{layer}");
+        // axes exchanged
+        let pressure: Vec<f64> = (0..240).map(|k| ((k * k + 3 * k) as f64).sin()).collect();
+        let exchanged: Vec<f64> = (0..240).map(|k| pressure[k % 24 * 10 + k / 24]).collect();
+        let (one, two) = (convolve(&kernel, &pressure), convolve(&other, &exchanged));
+        assert!((0..240).all(|k| (one[k] - two[k % 10 * 24 + k / 10]).abs() < 1e-13 * greatest), "{layer}");
+    }
+    // a layer of the material of its base, and a thick one
     let half_space = InfluenceKernel::periodic_along(&grid, Axis::X2, 7.0).unwrap();
     let same = Layer::bonded_to_half_space(0.3, 0.3, 1.0, 0.3).unwrap();
     for layer in [same, Layer::bonded_to_half_space(1e15, 0.3, 4.0, 0.4).unwrap()] {

@@ -1,10 +1,16 @@
 //! The kernels beside the half-space's, each against its closed form and a sum of its own.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::{assert_answers_waves, convolve, noise, values};
 use crate::common::refused::field;
+use approx::assert_abs_diff_eq;
 use viscocontact::{Axis, Error, Grid, InfluenceKernel, KernelError};
+
+fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
+    let scale = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    assert_abs_diff_eq!(found, exact, epsilon = tolerance * scale);
+}
 
 /// Westergaard's waves, on lengths of period even, odd and not smooth.
 #[test]
@@ -44,6 +50,56 @@ fn strips_are_periodic_along_one_axis() {
             assert!((value - own).abs() < 1e-13 * exact[0].abs().max(1.0), "{k}: {value} {own}");
         }
     }
+}
+
+/// Far from a point load a strip is a row of half-spaces: differences of the displacement are those of the sum over
+/// the images.
+#[test]
+fn strips_are_rows_of_images() {
+    let (grid, period) = (Grid::new([80, 80], [4.0, 4.0]).unwrap(), 4.0);
+    let kernel = InfluenceKernel::periodic_along(&grid, Axis::X2, 4.0).unwrap();
+    // a smooth load: the waves of a cell's corners are not resolved
+    let bump = |x: f64, y: f64| (-(x * x + y * y) / 0.08).exp();
+    let v = convolve(&kernel, &values(&grid, bump));
+    let half_space = InfluenceKernel::half_space(&grid).unwrap();
+    let near = convolve(&half_space, &values(&grid, bump));
+    let force = values(&grid, bump).iter().sum::<f64>() * grid.cell_area();
+    // a Gaussian of the width σ² = 0.04 is, far away, a point load and a Laplacian of its potential
+    let far = |x: f64, y: f64| {
+        let r = x.hypot(y);
+        force / PI * (1.0 / r + 0.5 * 0.04 / r.powi(3))
+    };
+    let images = |[x, y]: [f64; 2]| {
+        (1..4000)
+            .map(|m| f64::from(m) * period)
+            .map(|d| far(x, y - d) + far(x, y + d) - 2.0 * force / (PI * d))
+            .sum::<f64>()
+    };
+    let (a, b) = ([60, 44], [42, 10]);
+    let at = |[i, j]: [usize; 2]| (i * 80 + j, grid.center(i, j));
+    let ((ka, xa), (kb, xb)) = (at(a), at(b));
+    let (found, exact) = (v[ka] - v[kb], near[ka] - near[kb] + images(xa) - images(xb));
+    assert!(
+        (found - exact).abs() < 3e-4 * near[ka] && (images(xa) - images(xb)).abs() > 0.01 * near[ka],
+        "{found} {exact} {}",
+        near[ka]
+    );
+}
+
+/// A half-space made of its own coefficients, and of its own waves, is the half-space.
+#[test]
+fn users_may_bring_their_own_coefficients() {
+    let grid = Grid::new([12, 9], [1.0, 0.8]).unwrap();
+    let half_space = InfluenceKernel::half_space(&grid).unwrap();
+    let mut unit = vec![0.0; grid.len()];
+    unit[0] = 1.0;
+    let love = convolve(&half_space, &unit);
+    let own = InfluenceKernel::from_coefficients(&grid, |i, j| love[i.unsigned_abs() * 9 + j.unsigned_abs()]).unwrap();
+    let pressure = noise(grid.len());
+    assert_close(&convolve(&own, &pressure), &convolve(&half_space, &pressure), 1e-14);
+    let periodic = InfluenceKernel::periodic(&grid).unwrap();
+    let waves = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 2.0 / q1.hypot(q2) } else { 0.0 });
+    assert_close(&convolve(&waves.unwrap(), &pressure), &convolve(&periodic, &pressure), 1e-14);
 }
 
 #[test]
@@ -113,5 +169,28 @@ fn slender_cells_add_up_to_one() {
         let one = Grid::new([1, 1], [aspect, 3.0]).unwrap();
         let whole = convolve(&InfluenceKernel::half_space(&one).unwrap(), &[1.0]);
         assert!((row[1] / whole[0] - 1.0).abs() < 1e-12, "{aspect:e}: {:e} {:e}", row[1], whole[0]);
+    }
+}
+
+/// Pressures that are not numbers are refused before they are transformed, products that leave the range of `f64` after it.
+#[test]
+fn products_beyond_numbers_are_refused() {
+    for cells in [[4, 3], [1, 12], [2, 1], [12, 1], [17, 1]] {
+        let grid = Grid::new(cells, [1.0e3, 1.0e3]).unwrap();
+        let line = (cells[1] == 1).then(|| InfluenceKernel::line(&grid, 1.0e4));
+        let kernels = [InfluenceKernel::half_space(&grid), InfluenceKernel::periodic_along(&grid, Axis::X2, 1.0e9)];
+        for kernel in kernels.into_iter().chain(line) {
+            let kernel = kernel.unwrap();
+            let refused = |pressure: &[f64]| {
+                let mut out = vec![0.0; grid.len()];
+                field(kernel.convolve(pressure, &mut out, &mut kernel.workspace().unwrap()))
+            };
+            assert_eq!(refused(&vec![1e308; grid.len()]), "K p");
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut pressure = vec![1.0; grid.len()];
+                pressure[grid.len() / 2] = bad;
+                assert_eq!([refused(&pressure), refused(&vec![bad; grid.len()])], ["pressure"; 2]);
+            }
+        }
     }
 }

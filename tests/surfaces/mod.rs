@@ -6,4 +6,5 @@ mod sliding;
 mod sliding_bodies;
 mod sliding_cost;
 mod sliding_limits;
+mod sliding_marched;
 mod steady;

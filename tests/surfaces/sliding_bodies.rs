@@ -1,5 +1,5 @@
 //! Steady motions over strips and layers, of the same creep and of another, against dense problems whose coefficients are Fourier integrals.
-//! `SLIDING_BODIES` (24) random scenes, `SLIDING_SEED` (1).
+//! `SLIDING_BODIES` (16) random scenes, `SLIDING_SEED` (1).
 
 use std::f64::consts::{PI, TAU};
 
@@ -467,7 +467,7 @@ fn strip(x: f64, side: f64, kappa: f64, datum: f64) -> f64 {
 /// Random scenes against dense problems; under the approach that a force finds, the same state.
 #[test]
 fn strips_and_layers_are_those_of_a_dense_problem() {
-    let (scenes, seed) = (from_environment("SLIDING_BODIES", 24), from_environment("SLIDING_SEED", 1));
+    let (scenes, seed) = (from_environment("SLIDING_BODIES", 16), from_environment("SLIDING_SEED", 1));
     let (mut compared, mut worst, mut kinds, mut drags) = (0, [0.0_f64; 4], [0; 8], Vec::new());
     for number in 0..scenes {
         let scene = Scene::draw(&mut Draws::new(7_000_000 * seed + number), number as usize);
@@ -540,11 +540,77 @@ fn body(factor: f64, nu: f64) -> Material {
     Creep { glassy: factor, terms: vec![(2.0 * factor, 0.05), (4.0 * factor, 1.0)] }.material(nu)
 }
 
-/// Friction and approach are the same to 1e-8.
+/// The kernels of a body, without a layer and with one.
+type Kernels = dyn Fn(&Grid, Option<Layer>) -> viscocontact::Result<InfluenceKernel>;
+
+/// Friction and approach over two bases are the same to 1e-8.
 fn same(what: &str, found: &SlidingReport, exact: &SlidingReport) {
     let errors = [found.friction() / exact.friction() - 1.0, found.approach / exact.approach - 1.0];
     println!("{what}: {errors:?}");
     assert!(errors.iter().all(|error| error.abs() < 1e-8), "{what}: {errors:?}");
+}
+
+/// The general layer on a base of its own material, on one as stiff in proportion, and on ever stiffer ones is the half-space, the layer whose base creeps as it
+/// does, and the layer on a rigid base.
+#[test]
+fn bases_that_are_equal_elastic_or_rigid_are_limits() {
+    let thickness = 0.1;
+    let grids = [Grid::square(24, 1.0).unwrap(), Grid::new([48, 1], [1.0, 1.0]).unwrap()];
+    let bodies: [(&Grid, &Kernels); 4] = [
+        (&grids[0], &|grid, layer| {
+            layer.map_or_else(|| InfluenceKernel::half_space(grid), |layer| InfluenceKernel::layer(grid, layer))
+        }),
+        (&grids[0], &|grid, layer| {
+            layer.map_or_else(|| InfluenceKernel::periodic(grid), |layer| InfluenceKernel::layer_periodic(grid, layer))
+        }),
+        (&grids[0], &|grid, layer| match layer {
+            Some(layer) => {
+                let datum = format!("{layer}").contains("half-space").then_some(40.0);
+                InfluenceKernel::layer_periodic_along(grid, layer, Axis::X2, datum)
+            }
+            None => InfluenceKernel::periodic_along(grid, Axis::X2, 40.0),
+        }),
+        (&grids[1], &|grid, layer| match layer {
+            Some(layer) => {
+                let datum = format!("{layer}").contains("half-space").then_some(40.0);
+                InfluenceKernel::layer_line(grid, layer, datum)
+            }
+            None => InfluenceKernel::line(grid, 40.0),
+        }),
+    ];
+    for (number, (grid, kernel)) in bodies.into_iter().enumerate() {
+        // the mean of a compressible layer counts on a rigid base alone
+        let nu = if number == 1 { 0.5 } else { 0.4 };
+        for velocity in [[0.3, 0.0], [0.0, -0.3]] {
+            if number == 3 && velocity[0] == 0.0 {
+                continue;
+            }
+            let at = |sliding: viscocontact::Result<SteadySliding>| {
+                sliding.unwrap().at(velocity, Load::force(20.0)).unwrap()
+            };
+            let half_space = at(pressed(|grid| kernel(grid, None), grid).material(body(1.0, nu)).build_sliding());
+            let on = |base: Material| {
+                let layer = Layer::bonded_to_material(thickness, &body(1.0, nu), &base).unwrap();
+                let builder = || pressed(|grid| kernel(grid, Some(layer)), grid).material(body(1.0, nu));
+                [at(builder().build_sliding_on(base)), at(builder().build_sliding())]
+            };
+            same(&format!("{number} equal"), &on(body(1.0, nu))[0], &half_space);
+            let [general, own] = on(body(0.2, 0.3));
+            same(&format!("{number} in proportion"), &general, &own);
+            // linear in the compliance of the base but for its square
+            let [stiff, stiffer] = [4e-6, 2e-6].map(|part| on(body(part, 0.3))[0]);
+            let rigid = at(pressed(|grid| kernel(grid, Some(Layer::bonded_to_rigid(thickness, nu)?)), grid)
+                .material(body(1.0, nu))
+                .build_sliding());
+            let limit = [
+                (stiffer.friction(), stiff.friction(), rigid.friction()),
+                (stiffer.approach, stiff.approach, rigid.approach),
+            ];
+            let errors = limit.map(|(stiffer, stiff, rigid)| (2.0 * stiffer - stiff) / rigid - 1.0);
+            println!("{number} rigid: {errors:?}");
+            assert!(errors.iter().all(|error| error.abs() < 1e-8), "{number}: {errors:?}");
+        }
+    }
 }
 
 /// A ball on a half-space that flows: the pressure is steady, from coefficients that are integrals over the whole way.

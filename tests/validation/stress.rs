@@ -50,6 +50,20 @@ fn a_ball_yields_where_hertz_says() {
     }
 }
 
+/// The same on coarser grids: of second order in the cell, like the pressure.
+#[test]
+fn the_greatest_stress_converges() {
+    let error = |cells: usize| {
+        let (contact, hertz) = ball(cells, 0.3);
+        let found =
+            contact.stress().unwrap().greatest(&depths(12, 1.2 * hertz.contact_radius), Stress::von_mises).unwrap();
+        (found.value / (0.620_041 * hertz.pressure(0.0)) - 1.0).abs()
+    };
+    let errors = [32, 128].map(error);
+    println!("von Mises at 32², 128²: {errors:?}");
+    assert!(errors[0] < 6e-4 && errors[1] < 6e-5, "{errors:?}");
+}
+
 /// On the axis of a ball (K. L. Johnson, Contact Mechanics, 1985, (3.45)): σ33 = −p0/(1 + ζ²) and
 /// σ11 = σ22 = −(1 + ν) p0 (1 − ζ atan 1/ζ) + ½ p0/(1 + ζ²) at ζ = z/a.
 #[test]
@@ -102,6 +116,26 @@ fn a_cylinder_yields_where_hertz_says() {
             assert_abs_diff_eq!(stress.s33, -peak / root, epsilon = 1e-3 * peak);
             assert_abs_diff_eq!(along, nu * (across + stress.s33), epsilon = 1e-9 * peak);
         }
+    }
+}
+
+/// A plane carries the force, but for what a point force puts beyond the grid: between that beyond the circles in and around
+/// the grid, F (1 + c²/z²)^(−3/2).
+#[test]
+fn a_plane_carries_the_force() {
+    let (contact, hertz) = ball(64, 0.3);
+    let grid = Grid::square(192, 24.0 * hertz.contact_radius).unwrap();
+    let mut wide = contact_of(&Sphere::new(RADIUS).unwrap(), grid, contact.material().clone(), Settings::default());
+    wide.step(0.0, Load::force(0.5)).unwrap();
+    let stress = wide.stress().unwrap();
+    for over_a in [0.5, 1.0, 2.0] {
+        let z = over_a * hertz.contact_radius;
+        let plane = stress.on_plane(z).unwrap();
+        let force = -plane.iter().map(|s| s.s33).sum::<f64>() * wide.grid().cell_area();
+        let beyond = |c: f64| (1.0 + (c / z).powi(2)).powf(-1.5);
+        let half = 12.0 * hertz.contact_radius;
+        let missing = 1.0 - force / wide.force();
+        assert!(missing < 1.02 * beyond(half) && missing > 0.98 * beyond(2f64.sqrt() * half), "{over_a}: {missing:e}");
     }
 }
 
