@@ -200,8 +200,8 @@ impl Descent<'_> {
                     None => (least < SUSPECT || iteration < LEAST_MEASURED) && self.least_stiffness() < NEAR_FOLD,
                 };
                 if suspected && looks < LOOKS {
+                    let softness = self.softest(looks);
                     looks += 1;
-                    let softness = self.softest();
                     gradient = self.gradient();
                     (softest, has_last) = (Some(softness), false);
                     if softness < UNSTABLE {
@@ -275,8 +275,8 @@ impl Descent<'_> {
                 break;
             }
             if !kept && leaves.is_some() {
-                // on neither side: a state
-                (looks, measured[iteration % REMEMBERED]) = (LOOKS, 1.0);
+                // on neither side: a state, or a mix of directions at a corner of the law
+                measured[iteration % REMEMBERED] = 1.0;
                 continue;
             }
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down

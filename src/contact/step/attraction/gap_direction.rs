@@ -195,7 +195,7 @@ impl Descent<'_> {
     /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
     /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from a random direction: the last one has the symmetry of the state, and may have none of the one that breaks it.
     /// Writes it, with its M d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
-    pub(super) fn softest(&mut self) -> f64 {
+    pub(super) fn softest(&mut self, look: usize) -> f64 {
         let Descent { problem, balance, inverse, own, window, trial, counts } = self;
         let (law, rows, c) = (problem.law, window.kernel.rows().clone(), balance.compliance);
         let (solution, gap) = (&mut trial.solution, &trial.gap);
@@ -215,8 +215,8 @@ impl Descent<'_> {
                 field.iter_mut().enumerate().filter(|(k, _)| is_open(*k)).for_each(|(_, y)| *y -= sum / open);
             }
         };
-        // another each time: of two modes that are soft alike the last one has found a mix, and would find none of what is left
-        let salt = own.report.passes * gap.len();
+        // another for each look of a descent: of two modes that are soft alike the last one has found a mix, and would find none of what is left
+        let salt = look * gap.len();
         let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
         v.iter_mut().enumerate().for_each(|(k, v)| *v = softening[k] * (2.0 * scattered(salt + k) - 1.0));
         smooth(window, v);
