@@ -140,6 +140,12 @@ fn solved(factors: &impl Solve<f64>, b: &[f64]) -> Vec<f64> {
     x
 }
 
+/// x of A x = b, A row by row; `None` if A is not positive definite.
+pub fn solve_definite(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+    let factors = MatRef::from_row_major_slice(a, b.len(), b.len()).llt(Side::Lower).ok()?;
+    Some(solved(&factors, b))
+}
+
 /// By row pivoting; `None` if a row depends on the others.
 fn gauss(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
     let (n, scale) = (b.len(), a.iter().fold(0.0, |most: f64, a| most.max(a.abs())));

@@ -3,6 +3,7 @@
 
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::quadratic::solve_definite;
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::prelude::*;
 
@@ -20,30 +21,6 @@ fn love(x: f64, y: f64, side: f64) -> f64 {
     (corner(x + a, y + a) - corner(x - a, y + a) - corner(x + a, y - a) + corner(x - a, y - a)) / std::f64::consts::PI
 }
 
-/// Solves A x = b by Cholesky's factors; `None` if A is not positive definite.
-fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
-    let n = b.len();
-    for k in 0..n {
-        let pivot = a[k][k] - a[k][..k].iter().map(|l| l * l).sum::<f64>();
-        if pivot <= 0.0 {
-            return None;
-        }
-        a[k][k] = pivot.sqrt();
-        let (upper, lower) = a.split_at_mut(k + 1);
-        let row = &upper[k];
-        for below in lower {
-            let sum: f64 = below[..k].iter().zip(&row[..k]).map(|(x, y)| x * y).sum();
-            below[k] = (below[k] - sum) / row[k];
-        }
-        b[k] = (b[k] - a[k][..k].iter().zip(&b[..k]).map(|(l, y)| l * y).sum::<f64>()) / a[k][k];
-    }
-    for k in (0..n).rev() {
-        let sum: f64 = (k + 1..n).map(|i| a[i][k] * b[i]).sum();
-        b[k] = (b[k] - sum) / a[k][k];
-    }
-    Some(b)
-}
-
 /// The bodies as an energy of their gaps: ½ (h − d)ᵀ K⁻¹ (h − d) − Σ ∫ₕ^∞ s, with d the gap of rigid bodies.
 struct Dense<'a> {
     inverse: Vec<Vec<f64>>,
@@ -54,10 +31,10 @@ impl Dense<'_> {
     fn new(law: &dyn Attraction) -> Dense<'_> {
         let side = SIDE / CELLS as f64;
         let at = |k: usize| [k / CELLS, k % CELLS].map(|index| index as f64 * side);
-        let row = |i: usize| (0..ALL).map(move |j| love(at(i)[0] - at(j)[0], at(i)[1] - at(j)[1], side)).collect();
-        let matrix: Vec<Vec<f64>> = (0..ALL).map(row).collect();
-        let unit = |k: usize| (0..ALL).map(|i| f64::from(u8::from(i == k))).collect();
-        Dense { inverse: (0..ALL).map(|k| solve(matrix.clone(), unit(k)).unwrap()).collect(), law }
+        let love = |k: usize| love(at(k / ALL)[0] - at(k % ALL)[0], at(k / ALL)[1] - at(k % ALL)[1], side);
+        let matrix: Vec<f64> = (0..ALL * ALL).map(love).collect();
+        let unit = |k: usize| -> Vec<f64> { (0..ALL).map(|i| f64::from(u8::from(i == k))).collect() };
+        Dense { inverse: (0..ALL).map(|k| solve_definite(&matrix, &unit(k)).unwrap()).collect(), law }
     }
 
     /// Net traction of the body: K⁻¹ (h − d).
@@ -88,11 +65,10 @@ impl Dense<'_> {
             };
             let mut shift = 0.0;
             let direction = loop {
-                let row = |&i: &usize| {
-                    let own = |&j: &usize| self.inverse[i][j] + if i == j { shift - softens(gap[i]) } else { 0.0 };
-                    free.iter().map(own).collect()
-                };
-                match solve(free.iter().map(row).collect(), free.iter().map(|&k| -slope[k]).collect()) {
+                let own = |i: usize, j: usize| self.inverse[i][j] + if i == j { shift - softens(gap[i]) } else { 0.0 };
+                let matrix: Vec<f64> = free.iter().flat_map(|&i| free.iter().map(move |&j| own(i, j))).collect();
+                let down: Vec<f64> = free.iter().map(|&k| -slope[k]).collect();
+                match solve_definite(&matrix, &down) {
                     Some(direction) => break direction,
                     None => shift = 2.0 * shift + 0.1 * greatest / self.law.range(),
                 }

@@ -184,7 +184,7 @@ impl EnergyBalance {
         let half = 0.5 * (contact.time() - end.start.clock.time);
         let mut part = contact.within_step(contact.time() - half)?;
         self.take_in_half(&part, half, halvings)?;
-        part.take_part(contact.time(), &loads, contact.settings().tolerance(), end.start.interpolant, None)?;
+        part.take_part(contact.time(), &loads, contact.settings().tolerance(), end.start.interpolant)?;
         self.take_in_half(&part, half, halvings)?;
         Ok(!part.is_elsewhere(end))
     }

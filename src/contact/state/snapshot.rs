@@ -154,7 +154,7 @@ impl ViscoelasticContact {
         let mut reach = None;
         if time > from {
             let loads = loads(&contact)?;
-            reach = contact.take_part(time, &loads, tolerance, state.start.interpolant, None)?;
+            reach = contact.take_part(time, &loads, tolerance, state.start.interpolant)?;
         }
         Ok((contact, reach))
     }

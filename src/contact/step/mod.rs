@@ -117,7 +117,7 @@ impl ViscoelasticContact {
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
-        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, cancelled: None })
+        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, end: None, cancelled: None })
     }
 
     /// The motion that a load leaves free to the body of a contact in steady motion, if it can be balanced, and the part that it prescribes, whose approach
@@ -201,11 +201,9 @@ impl ViscoelasticContact {
         loads: &[Load],
         tolerance: f64,
         interpolant: Interpolant,
-        cancelled: Option<&AtomicBool>,
     ) -> Result<Option<Extent>> {
         let mut part = self.request(time, time - self.time(), loads, tolerance)?;
         part.interval.interpolant = interpolant;
-        part.cancelled = cancelled;
         let attempt = self.attempt(&part)?;
         self.adopt(attempt, part, [0.0; 2])
     }

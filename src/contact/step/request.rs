@@ -19,6 +19,8 @@ pub(crate) struct Step<'a> {
     pub(crate) indenter: Arc<Indenter>,
     /// Tolerance of the solver.
     pub(crate) tolerance: f64,
+    /// The end of a step of surfaces that attract each other, where it is known: nothing is solved.
+    pub(crate) end: Option<&'a Solution>,
     /// Set by another thread to end the step.
     pub(crate) cancelled: Option<&'a AtomicBool>,
 }

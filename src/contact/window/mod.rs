@@ -79,15 +79,8 @@ impl Window {
         self.near.is_some()
     }
 
-    /// Does the job with the near field in place of the kernel, if there is one.
-    pub(in crate::contact) fn with_near_field<T>(&mut self, job: impl FnOnce(&mut Window) -> T) -> T {
-        self.trade_kernels();
-        let done = job(self);
-        self.trade_kernels();
-        done
-    }
-
-    fn trade_kernels(&mut self) {
+    /// Exchanges the kernel for the near field, if there is one, and back.
+    pub(in crate::contact) fn trade_kernels(&mut self) {
         if let Some((kernel, work)) = &mut self.near {
             std::mem::swap(&mut self.kernel, kernel);
             self.work.trade(work);

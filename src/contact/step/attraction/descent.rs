@@ -12,7 +12,7 @@
 
 use std::sync::atomic::Ordering;
 
-use super::front::Front;
+use super::front::{Front, Moved};
 use super::passes::InGap;
 use super::{Attracted, AttractedStep};
 use crate::contact::step::request::Trial;
@@ -34,17 +34,18 @@ const ROUNDING: f64 = 1e-13;
 /// is r over the curvature. The least of so many iterations counts.
 const SOFT: f64 = 0.2;
 const REMEMBERED: usize = 8;
-/// Iterations that lose cells before the edge of a line contact is moved on.
-const LOSSES: usize = 16;
+/// Iterations that lose cells while the residual does not fall, before the edge of a line contact is moved on.
+const LOSSES: usize = 3;
 /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
 const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
 /// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by this factor.
 const SMOOTH: f64 = 0.1;
 /// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
-/// softer than this.
+/// softer than this. Where the state before was stiffer than this, and the attraction no steeper since, none is looked for.
 const SUSPECT: f64 = 0.85;
-const VERY_SOFT: f64 = 0.02;
+const VERY_SOFT: f64 = 0.005;
+const NEAR_FOLD: f64 = 0.25;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
 const UNSTABLE: f64 = -1e-4;
@@ -69,6 +70,17 @@ pub(super) struct Balance {
     pub(super) inverse: [f64; 2],
 }
 
+/// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the attraction, and r of the pressure.
+pub(super) struct Descent<'a> {
+    pub(super) problem: &'a AttractedStep<'a>,
+    pub(super) balance: Balance,
+    pub(super) inverse: &'a mut PeriodInverse,
+    pub(super) own: &'a mut Attracted,
+    pub(super) window: &'a mut Window,
+    pub(super) trial: &'a mut Trial,
+    pub(super) counts: &'a mut Counts,
+}
+
 impl Balance {
     /// q of the lift x.
     pub(super) fn tractions(
@@ -84,10 +96,37 @@ impl Balance {
         let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
         q.iter_mut().for_each(|q| *q = *q / self.compliance + add);
     }
+
+    /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.
+    fn project(&self, rows: &Rows, gap: &[f64], x: &mut [f64]) -> bool {
+        let below = x.iter().zip(gap).any(|(x, z)| z + x < 0.0);
+        if !self.held {
+            if below {
+                x.iter_mut().zip(gap).for_each(|(x, z)| *x = x.max(-z));
+            }
+            return below;
+        }
+        let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
+        let mut shift = 0.0;
+        for _ in 0..SHORTENINGS * 4 {
+            let [sum, free] = rows.sum_terms(|k| {
+                let moved = x[k] + shift;
+                Some(if gap[k] + moved > 0.0 { [moved, 1.0] } else { [-gap[k], 0.0] })
+            });
+            if sum.abs() <= scale || free == 0.0 {
+                break;
+            }
+            shift -= sum / free;
+        }
+        if below || shift != 0.0 {
+            x.iter_mut().zip(gap).for_each(|(x, z)| *x = (*x + shift).max(-z));
+        }
+        below || shift != 0.0
+    }
 }
 
 impl AttractedStep<'_> {
-    fn balance(&self, window: &Window, inverse: &PeriodInverse) -> Balance {
+    pub(super) fn balance(&self, window: &Window, inverse: &PeriodInverse) -> Balance {
         let (c, cells, wanted) = (self.given[0], window.kernel.rows().len() as f64, self.wanted);
         let PeriodInverse { mean: [stiffness, compliance], .. } = *inverse;
         let held = compliance == 0.0 && !wanted.translation;
@@ -121,85 +160,93 @@ impl AttractedStep<'_> {
         trial.solution.motions[0] = ModeCoefficients([if self.wanted.translation { motion } else { 0.0 }, 0.0, 0.0]);
     }
 
-    /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial, with a kernel and its inverse.
-    pub(super) fn descend_in_gap(
-        &self,
-        inverse: &mut PeriodInverse,
-        own: &mut Attracted,
-        window: &mut Window,
-        trial: &mut Trial,
-        counts: &mut Counts,
-    ) -> Result<()> {
-        let AttractedStep { step, stop, .. } = *self;
-        let (limit, time) = (self.limit(), step.interval.time);
-        let balance = self.balance(window, inverse);
-        if self.lift(balance, trial) || self.state.extrapolation.refresh_is_due() {
-            balance.tractions(inverse, window, &trial.solution.potential, &mut trial.solution.attraction, false);
+    /// The greatest |r| that ends a descent, over the greatest traction: the error is r over the curvature.
+    pub(super) fn tolerance(&self, softness: f64) -> f64 {
+        self.limit() * (softness / SOFT).clamp(SMALLEST, 1.0)
+    }
+}
+
+impl Descent<'_> {
+    /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial.
+    pub(super) fn run(&mut self) -> Result<()> {
+        let AttractedStep { state, step, stop, wanted, .. } = *self.problem;
+        let (limit, time, region) = (self.problem.limit(), step.interval.time, &state.region);
+        if self.lift() || state.extrapolation.refresh_is_due() {
+            let Descent { balance, inverse, window, trial, counts, .. } = self;
+            let Solution { potential: x, attraction: q, .. } = &mut trial.solution;
+            balance.tractions(inverse, window, x, q, false);
             counts.convolutions += 1;
         }
-        let mut energy = self.energy_in_gap(balance, window, trial);
+        let mut energy = self.energy();
         let (mut steepest, mut has_last) = (0.0, false);
         // of the last iterations, of all, and of the direction that was looked for
-        let (mut measured, mut least, mut softest) = ([1.0_f64; REMEMBERED], 1.0_f64, None::<f64>);
-        let (mut plain, mut front) = (false, Front::new(self.state.region.cells(), self.state.region.folded(), LOSSES));
-        let mut looks = if own.looks { 0 } else { LOOKS };
+        let (mut measured, mut least) = ([1.0_f64; REMEMBERED], 1.0_f64);
+        let mut softest = self.own.softest;
+        let (mut plain, mut front) = (false, Front::new(region.cells(), region.folded(), LOSSES));
+        let mut looks = if self.own.looks { 0 } else { LOOKS };
         for iteration in 0..=MAX_ITERATIONS {
-            let mut gradient = self.gradient(balance, window, trial);
+            let mut gradient = self.gradient();
             if !(gradient.greatest.is_finite() && energy[0].is_finite()) {
                 let what = "the residual of the contact problem";
                 return Err(Error::Step(StepError::Overflow { time, what }));
             }
             let recent = measured.iter().fold(1.0_f64, |least, &soft| least.min(soft));
-            let soft = if iteration < LEAST_MEASURED { own.softness } else { recent }.min(softest.unwrap_or(1.0));
+            let soft = if iteration < LEAST_MEASURED { self.own.softness } else { recent }.min(softest.unwrap_or(1.0));
             let mut leaves = None;
             let share = if iteration == 0 { SMOOTH } else { 1.0 };
-            if gradient.greatest <= share * self.tolerance(own.exactness * soft) {
-                if least < SUSPECT && looks < LOOKS && softest.is_none_or(|softness| softness < VERY_SOFT) {
+            if gradient.greatest <= share * self.own.exactness * self.problem.tolerance(soft) {
+                let suspected = match softest {
+                    Some(softness) => softness < VERY_SOFT,
+                    None => (least < SUSPECT || iteration < LEAST_MEASURED) && self.least_stiffness() < NEAR_FOLD,
+                };
+                if suspected && looks < LOOKS {
+                    let softness = self.softest(looks);
                     looks += 1;
-                    let softness = self.softest(balance, inverse, own, window, trial, counts);
-                    gradient = self.gradient(balance, window, trial);
+                    gradient = self.gradient();
                     (softest, has_last) = (Some(softness), false);
                     if softness < UNSTABLE {
-                        leaves = Some((self.way_out(gradient, own, window, trial), softness));
+                        leaves = Some((self.way_out(gradient), softness));
                         softest = None;
                     }
                 }
                 let soft = soft.min(softest.unwrap_or(1.0));
-                if leaves.is_none() && gradient.greatest <= self.tolerance(own.exactness * soft) {
-                    own.softness = if iteration == 0 { own.softness } else { soft };
-                    trial.solution.residual = gradient.greatest / limit * stop.tolerance;
-                    self.finish(balance, gradient.multiplier, trial);
+                if leaves.is_none() && gradient.greatest <= self.own.exactness * self.problem.tolerance(soft) {
+                    self.own.softness = if iteration == 0 { self.own.softness } else { soft };
+                    self.own.softest = softest;
+                    self.trial.solution.stiffness = softest.unwrap_or_else(|| self.least_stiffness());
+                    self.trial.solution.residual = gradient.greatest / limit * stop.tolerance;
+                    self.finish(gradient.multiplier);
                     return Ok(());
                 }
             }
             if stop.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
                 return Err(Error::Cancelled { what: "a step" });
             }
-            let pull = -self.wanted.total;
+            let pull = -wanted.total;
             if matches!(step.loads[0], Load::Force { .. })
                 && pull > 0.0
                 && gradient.at_wall == 0.0
                 && gradient.attraction <= CARRIED * pull
             {
-                return Err(AdhesionError::PulledOff { time, force: -pull * self.area() }.into());
+                return Err(AdhesionError::PulledOff { time, force: -pull * self.problem.area() }.into());
             }
-            own.report.passes += 1;
-            counts.iterations += 1;
+            self.own.report.passes += 1;
+            self.counts.iterations += 1;
             let (mut length, curvature) = if let Some(leaves) = leaves {
                 leaves
             } else {
                 if plain {
-                    let opposite = own.in_gap().direction.iter_mut().zip(&trial.solution.pressure);
+                    let opposite = self.own.in_gap().direction.iter_mut().zip(&self.trial.solution.pressure);
                     opposite.for_each(|(direction, r)| *direction = -r);
                     steepest = 0.0;
                 } else {
-                    steepest = self.turn(balance, own, window, trial, steepest, has_last);
-                    counts.convolutions += 1;
+                    steepest = self.turn(steepest, has_last);
                 }
+                let Descent { balance, inverse, own, window, counts, .. } = self;
                 let InGap { direction, image, .. } = own.in_gap();
                 balance.tractions(inverse, window, direction, image, true);
                 counts.convolutions += 1;
-                self.length(gradient, own, window, trial)
+                self.length(gradient)
             };
             measured[iteration % REMEMBERED] = curvature;
             least = least.min(curvature);
@@ -208,88 +255,98 @@ impl AttractedStep<'_> {
             for shortening in 0..if length > 0.0 { shortenings } else { 0 } {
                 if shortening == SHORTENINGS {
                     // beside a corner of the law E may fall on the other side
-                    let InGap { direction, image, .. } = own.in_gap();
+                    let InGap { direction, image, .. } = self.own.in_gap();
                     direction.iter_mut().chain(image).for_each(|value| *value = -*value);
                     length = whole;
                 }
-                let clipped = self.try_lift(balance, length, own, window, trial);
-                let InGap { image, lift, traction, .. } = own.in_gap();
-                if clipped || iteration % FRESH == FRESH - 1 {
-                    balance.tractions(inverse, window, lift, traction, false);
-                    counts.convolutions += 1;
-                } else {
-                    let tractions = trial.solution.attraction.iter().zip(&*image);
-                    traction.iter_mut().zip(tractions).for_each(|(next, (q, image))| *next = q + length * image);
-                }
-                let tried = self.swap_energy(balance, own, window, trial);
+                self.go_along(length, iteration % FRESH == FRESH - 1);
+                let tried = self.swap_energy();
                 let rise = (tried[0] - energy[0]) / energy[1];
                 if rise <= ROUNDING {
-                    own.report.rise = own.report.rise.max(rise - ROUNDING);
+                    self.own.report.rise = self.own.report.rise.max(rise - ROUNDING);
                     (energy, kept) = (tried, true);
                     break;
                 }
-                own.report.rejected += 1;
-                self.swap_energy(balance, own, window, trial);
+                self.own.report.rejected += 1;
+                self.swap_energy();
                 length *= SHORTER;
             }
             if !kept && plain {
                 break;
             }
             if !kept && leaves.is_some() {
-                // on neither side: a state
-                (looks, measured[iteration % REMEMBERED]) = (LOOKS, 1.0);
+                // on neither side: a state, or a mix of directions at a corner of the law
+                measured[iteration % REMEMBERED] = 1.0;
                 continue;
             }
             // where the wall turns the direction of the preconditioner uphill, the gradient itself leads down
             plain = !kept && !has_last;
             has_last = kept && leaves.is_none();
-            own.in_gap().traction.copy_from_slice(&trial.solution.pressure);
-            let Trial { gap, solution, .. } = &*trial;
-            let (x, cells) = (&solution.potential, gap.len());
-            if let Some(profile) = front.look((gradient.greatest, curvature <= 0.0), cells, |k| gap[k] + x[k] <= 0.0) {
-                let InGap { lift, image, traction, .. } = own.in_gap();
-                for (k, tried) in lift.iter_mut().enumerate() {
-                    let from = profile.source(k, cells);
-                    let rise = gap[from] - gap[k];
-                    *tried = x[from] + if rise.is_finite() { rise } else { 0.0 };
-                }
-                self.project(balance, window.kernel.rows(), gap, lift);
-                balance.tractions(inverse, window, lift, image, false);
-                counts.convolutions += 1;
-                // r of the last iteration stays
-                std::mem::swap(image, traction);
-                let tried = self.swap_energy(balance, own, window, trial);
-                let falls = tried[0] < energy[0];
-                front.learn(falls);
-                if falls {
+            self.own.in_gap().traction.copy_from_slice(&self.trial.solution.pressure);
+            let Trial { gap, solution, .. } = &*self.trial;
+            let x = &solution.potential;
+            if let Some(moved) = front.look(gradient.greatest, gap.len(), |k| gap[k] + x[k] <= 0.0) {
+                let tried = self.move_front(&moved);
+                front.learn(tried[0] < energy[0]);
+                if tried[0] < energy[0] {
                     (energy, has_last) = (tried, false);
                 } else {
-                    self.swap_energy(balance, own, window, trial);
-                    let InGap { image, traction, .. } = own.in_gap();
+                    self.swap_energy();
+                    let InGap { image, traction, .. } = self.own.in_gap();
                     std::mem::swap(image, traction);
                 }
             }
         }
-        let change = self.gradient(balance, window, trial).greatest;
-        Err(AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance: limit }.into())
+        let change = self.gradient().greatest;
+        Err(AdhesionError::NotConverged { time, passes: self.own.report.passes, change, tolerance: limit }.into())
     }
 
-    /// The greatest |r| that ends a descent, over the greatest traction: the error is r over the curvature.
-    pub(super) fn tolerance(&self, softness: f64) -> f64 {
-        self.limit() * (softness / SOFT).clamp(SMALLEST, 1.0)
+    /// Writes x + `length` d, kept to h ≥ 0, and its q to what is tried; where the wall or the mean changed it, or on demand, q is computed afresh.
+    fn go_along(&mut self, length: f64, afresh: bool) {
+        let Descent { balance, inverse, own, window, trial, counts, .. } = self;
+        let Solution { potential: x, attraction: q, .. } = &trial.solution;
+        let InGap { direction, image, lift, traction } = own.in_gap();
+        for_each_band([&mut *lift], |first, [lift]| {
+            lift.iter_mut().zip(first..).for_each(|(lift, k)| *lift = x[k] + length * direction[k]);
+        });
+        if balance.project(window.kernel.rows(), &trial.gap, lift) || afresh {
+            balance.tractions(inverse, window, lift, traction, false);
+            counts.convolutions += 1;
+        } else {
+            let tractions = q.iter().zip(&*image);
+            traction.iter_mut().zip(tractions).for_each(|(next, (q, image))| *next = q + length * image);
+        }
+    }
+
+    /// Tries the profile beside a running edge further on; returns its energy. r of the last iteration stays, in the place of M d.
+    fn move_front(&mut self, moved: &Moved) -> [f64; 2] {
+        let Descent { balance, inverse, own, window, trial, counts, .. } = self;
+        let (gap, x) = (&trial.gap, &trial.solution.potential);
+        let InGap { lift, image, traction, .. } = own.in_gap();
+        for (k, tried) in lift.iter_mut().enumerate() {
+            let from = moved.source(k, gap.len());
+            let rise = gap[from] - gap[k];
+            *tried = x[from] + if rise.is_finite() { rise } else { 0.0 };
+        }
+        balance.project(window.kernel.rows(), gap, lift);
+        balance.tractions(inverse, window, lift, image, false);
+        counts.convolutions += 1;
+        std::mem::swap(image, traction);
+        self.swap_energy()
     }
 
     /// Exchanges x and q of the trial for the tried ones; returns their energy.
-    fn swap_energy(&self, balance: Balance, own: &mut Attracted, window: &Window, trial: &mut Trial) -> [f64; 2] {
-        let InGap { lift, traction, .. } = own.in_gap();
-        std::mem::swap(lift, &mut trial.solution.potential);
-        std::mem::swap(traction, &mut trial.solution.attraction);
-        self.energy_in_gap(balance, window, trial)
+    fn swap_energy(&mut self) -> [f64; 2] {
+        let InGap { lift, traction, .. } = self.own.in_gap();
+        std::mem::swap(lift, &mut self.trial.solution.potential);
+        std::mem::swap(traction, &mut self.trial.solution.attraction);
+        self.energy()
     }
 
     /// Writes the lift x of z, s, K (z − s) and the motion of the trial, and its q but for what the wall changes; returns whether that is so.
-    fn lift(&self, balance: Balance, trial: &mut Trial) -> bool {
-        let (rows, Trial { gap, solution, .. }) = (self.state.region.rows(), trial);
+    fn lift(&mut self) -> bool {
+        let Descent { problem, balance, trial, .. } = self;
+        let (rows, Trial { gap, solution, .. }) = (problem.state.region.rows(), &mut **trial);
         let Solution { pressure, attraction: q, potential: x, motions, .. } = solution;
         let (c, motion) = (balance.compliance, motions[0].0[0]);
         for_each_band([&mut *x, &mut *q], |first, [x, q]| {
@@ -308,56 +365,31 @@ impl AttractedStep<'_> {
                 *x = -gap;
             }
         }
-        self.project(balance, &rows, gap, x) || opens
-    }
-
-    /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.
-    pub(super) fn project(&self, balance: Balance, rows: &Rows, gap: &[f64], x: &mut [f64]) -> bool {
-        let below = x.iter().zip(gap).any(|(x, z)| z + x < 0.0);
-        if !balance.held {
-            if below {
-                x.iter_mut().zip(gap).for_each(|(x, z)| *x = x.max(-z));
-            }
-            return below;
-        }
-        let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
-        let mut shift = 0.0;
-        for _ in 0..SHORTENINGS * 4 {
-            let [sum, free] = rows.sum_terms(|k| {
-                let moved = x[k] + shift;
-                Some(if gap[k] + moved > 0.0 { [moved, 1.0] } else { [-gap[k], 0.0] })
-            });
-            if sum.abs() <= scale || free == 0.0 {
-                break;
-            }
-            shift -= sum / free;
-        }
-        if below || shift != 0.0 {
-            x.iter_mut().zip(gap).for_each(|(x, z)| *x = (*x + shift).max(-z));
-        }
-        below || shift != 0.0
+        balance.project(&rows, gap, x) || opens
     }
 
     /// E over the area of a cell, and the sum of its parts.
-    fn energy_in_gap(&self, balance: Balance, window: &Window, trial: &Trial) -> [f64; 2] {
+    fn energy(&self) -> [f64; 2] {
+        let Descent { problem, balance, window, trial, .. } = self;
         let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
         window.kernel.rows().sum_terms(|k| {
             let (h, stored) = (gap[k] + x[k], 0.5 * x[k] * (q[k] + balance.offset));
-            let attracted = if h.is_finite() { self.law.energy(h.max(0.0)) } else { 0.0 };
+            let attracted = if h.is_finite() { problem.law.energy(h.max(0.0)) } else { 0.0 };
             Some([stored - attracted, stored.abs() + attracted + f64::MIN_POSITIVE])
         })
     }
 
     /// From x and q of the trial its z, s and K (z − s), and its motion.
-    fn finish(&self, balance: Balance, multiplier: f64, trial: &mut Trial) {
+    fn finish(&mut self, multiplier: f64) {
+        let Descent { problem, balance, trial, .. } = self;
         let (c, cells) = (balance.compliance, trial.gap.len() as f64);
-        let rows = self.state.region.rows();
-        let Trial { solution, gap, .. } = trial;
+        let rows = problem.state.region.rows();
+        let Trial { solution, gap, .. } = &mut **trial;
         let (x, q) = (&mut solution.potential, &mut solution.attraction);
         q.iter_mut().for_each(|q| *q -= multiplier);
         let mean = |field: &[f64]| rows.sum(field) / cells;
-        let motion = if self.wanted.translation { c * balance.inverse[1] * mean(q) - mean(x) } else { 0.0 };
-        let greatest = self.law.traction(0.0);
+        let motion = if problem.wanted.translation { c * balance.inverse[1] * mean(q) - mean(x) } else { 0.0 };
+        let greatest = problem.law.traction(0.0);
         for (((x, q), z), gap) in x.iter_mut().zip(q).zip(&mut solution.pressure).zip(gap) {
             *z = if *gap + *x <= 0.0 { (*q + greatest).max(0.0) } else { 0.0 };
             (*x, *q) = ((*x + motion) / c, *z - *q);

@@ -2,7 +2,7 @@
 
 use super::passes::InPasses;
 use super::{Attracted, AttractedStep};
-use crate::contact::state::{Equilibrium, State};
+use crate::contact::state::Equilibrium;
 use crate::contact::step::request::Trial;
 use crate::load::Load;
 use crate::parallel::for_each_band;
@@ -85,10 +85,6 @@ impl AttractedStep<'_> {
         }
     }
 
-    fn motion_at_end(&self, trial: &Trial) -> RigidMotion {
-        self.state.region.modes(trial.free[0]).physical(trial.solution.motions[0])
-    }
-
     /// The energy over the area of a cell, and the sum of its parts, of a state with the potential K (z − s), in the gap before any traction: the
     /// wall holds its cells while this gap changes by what a step begins with.
     fn energy_of(&self, solution: &Solution, motion: RigidMotion, gap: &[f64]) -> [f64; 2] {
@@ -116,47 +112,29 @@ impl AttractedStep<'_> {
         sum == 0.0 && (0..trial.gap.len()).any(pulls)
     }
 
-    /// What the energy bends up on the straight way from the state before to this one: Σ(Δq cKΔq + k Δω²), and ΣΔs Δh of the attraction, over the area of a cell.
-    fn bends_up(&self, trial: &Trial) -> [f64; 2] {
+    /// What the energy bends up on the straight way between two states, in the gap of the trial: Σ(Δq cKΔq + k Δω²), and ΣΔs Δh of the attraction, over the area
+    /// of a cell.
+    fn bends_up(&self, gap: &[f64], [before, now]: [(&Solution, RigidMotion); 2]) -> [f64; 2] {
         let (state, law, c) = (self.state, self.law, self.given[0]);
-        let [start, end] = [self.free_motion(&self.state.current), self.motion_at_end(trial)];
-        let [before, now] = [&state.current.solution, &trial.solution];
         let [convex, softened] = state.region.rows().sum_terms(|k| {
             let at = state.region.center(k);
-            let gap =
-                |solution: &Solution, motion: RigidMotion| trial.gap[k] + c * solution.potential[k] - motion.at(at);
-            let [h0, h1] = [gap(before, start), gap(now, end)];
+            let [h0, h1] = [before, now].map(|(solution, motion)| gap[k] + c * solution.potential[k] - motion.at(at));
             let attraction = |h: f64| law.traction(h.max(0.0));
-            let net = |solution: &Solution| solution.pressure[k] - solution.attraction[k];
+            let [q0, q1] = [before, now].map(|(solution, _)| solution.pressure[k] - solution.attraction[k]);
             h0.is_finite().then(|| {
-                let displaced = c * (now.potential[k] - before.potential[k]);
-                [(net(now) - net(before)) * displaced, (attraction(h1) - attraction(h0)) * (h1 - h0)]
+                let displaced = c * (now.0.potential[k] - before.0.potential[k]);
+                [(q1 - q0) * displaced, (attraction(h1) - attraction(h0)) * (h1 - h0)]
             })
         });
-        [convex + self.of_spring(end.approach - start.approach), softened]
+        [convex + self.of_spring(now.1.approach - before.1.approach), softened]
     }
 
     /// By what part of its convex part the energy bends up in the direction of the last step. Beside a fold surfaces move along the mode that is soft, in which
     /// a small residual is a great error.
     pub(super) fn softness(&self, trial: &Trial) -> f64 {
-        let (law, c) = (self.law, self.given[0]);
-        let State { previous, current, region, .. } = self.state;
-        let [start, end] = [previous, current].map(|state| self.free_motion(state));
-        let [before, now] = [&previous.solution, &current.solution];
-        let [convex, softened] = region.rows().sum_terms(|k| {
-            let at = region.center(k);
-            let lift = |solution: &Solution, motion: RigidMotion| c * solution.potential[k] - motion.at(at);
-            let (h, moved) = (trial.gap[k] + lift(now, end), lift(now, end) - lift(before, start));
-            let net = |solution: &Solution| solution.pressure[k] - solution.attraction[k];
-            let attraction = |h: f64| law.traction(h.max(0.0));
-            h.is_finite().then(|| {
-                let open = now.pressure[k] == 0.0 && moved != 0.0;
-                let softened = if open { (attraction(h - moved) - attraction(h)) * moved } else { 0.0 };
-                [(net(now) - net(before)) * moved, softened]
-            })
-        });
-        let convex = convex + self.of_spring(end.approach - start.approach);
-        if convex > 0.0 { 1.0 - softened / convex } else { 1.0 }
+        let ends = [&self.state.previous, &self.state.current];
+        let [convex, softened] = self.bends_up(&trial.gap, ends.map(|at| (&at.solution, self.free_motion(at))));
+        if convex > 0.0 { 1.0 + softened / convex } else { 1.0 }
     }
 
     /// The work of the spring on a way, over the area of a cell.
@@ -170,10 +148,11 @@ impl AttractedStep<'_> {
 
     /// Writes to the report what the step released, and whether the surfaces may have snapped.
     pub(super) fn report_release(&self, own: &mut Attracted, trial: &Trial) {
-        let [before, _] =
-            self.energy_of(&self.state.current.solution, self.free_motion(&self.state.current), &trial.gap);
-        let [now, scale] = self.energy_of(&trial.solution, self.motion_at_end(trial), &trial.gap);
-        let [convex, softened] = self.bends_up(trial);
+        let current = &self.state.current;
+        let motion = self.state.region.modes(trial.free[0]).physical(trial.solution.motions[0]);
+        let ends = [(&current.solution, self.free_motion(current)), (&trial.solution, motion)];
+        let [[before, _], [now, scale]] = ends.map(|(solution, motion)| self.energy_of(solution, motion, &trial.gap));
+        let [convex, softened] = self.bends_up(&trial.gap, ends);
         let report = &mut own.report;
         report.released = self.area() * (before - now);
         report.unaccounted = report.released - 0.5 * self.area() * (convex + softened);

@@ -1,6 +1,6 @@
 //! The edge of a line contact that runs over many cells within a step.
 //!
-//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where the energy bends down, and cells
+//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where cells
 //! were lost several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
 //! cells that are left, since the edge may stop. The trial is kept where the energy falls.
 
@@ -22,7 +22,6 @@ pub(super) struct Front {
     /// How often cells were lost while the residual did not fall, less a pause.
     losses: usize,
     residual: f64,
-    bends_down: bool,
     span: usize,
 }
 
@@ -44,22 +43,15 @@ impl Front {
             least,
             losses: 0,
             residual: 0.0,
-            bends_down: false,
             span: 1,
         }
     }
 
-    /// Looks at the residual, over the greatest traction, whether the energy bends down, and which cells touch; returns how the profile is to be moved.
-    pub(super) fn look(
-        &mut self,
-        (residual, bends_down): (f64, bool),
-        cells: usize,
-        touches: impl Fn(usize) -> bool,
-    ) -> Option<Moved> {
+    /// Looks at the residual, over the greatest traction, and at which cells touch; returns how the profile is to be moved.
+    pub(super) fn look(&mut self, residual: f64, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
         if !self.is_line {
             return None;
         }
-        self.bends_down |= bends_down;
         if residual < FINE || residual < FALLEN * self.residual {
             (self.losses, self.residual) = (0, residual);
         }
@@ -68,7 +60,7 @@ impl Front {
         let touching = in_contact().count();
         let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
         self.losses += usize::from(lost > 0);
-        if lost == 0 || self.losses < self.least || !self.bends_down {
+        if lost == 0 || self.losses < self.least {
             return None;
         }
         let mut parts: Vec<(usize, usize)> = Vec::new();

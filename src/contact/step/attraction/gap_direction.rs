@@ -1,13 +1,11 @@
 //! Gradient, direction and length of an iteration in the gap.
 
-use super::descent::Balance;
+use super::descent::Descent;
 use super::passes::InGap;
-use super::{Attracted, AttractedStep};
-use crate::contact::step::request::Trial;
+use crate::adhesion::Attraction;
 use crate::contact::window::Window;
-use crate::kernel::PeriodInverse;
 use crate::parallel::for_each_band;
-use crate::solver::Counts;
+use crate::solver::Solution;
 use crate::sum::scattered;
 
 /// Least curvature of E along a direction, over the curvature of its convex part.
@@ -21,9 +19,8 @@ const SLOPE_LEFT: f64 = 0.1;
 const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
-/// The softest direction is looked for in at least and at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
-const LEAST_TURNS: usize = 3;
-const MOST_TURNS: usize = 20;
+/// The softest direction is looked for in at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
+const MOST_TURNS: usize = 60;
 const NEGATIVE: f64 = -1e-2;
 const PRECISE: f64 = 0.2;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
@@ -43,18 +40,23 @@ pub(super) struct Gradient {
     pub(super) at_wall: f64,
 }
 
-impl AttractedStep<'_> {
+/// −s′ of an open gap.
+fn softens(law: &dyn Attraction, h: f64) -> f64 {
+    let small = DIFFERENCE * law.range();
+    if h > 0.0 && h.is_finite() { (law.traction(h) - law.traction(h + small)) / small } else { 0.0 }
+}
+
+impl Descent<'_> {
     /// Writes r to the pressure.
-    pub(super) fn gradient(&self, balance: Balance, window: &Window, trial: &mut Trial) -> Gradient {
-        let (law, gap, rows) = (self.law, &trial.gap, window.kernel.rows());
-        let Trial { solution, .. } = trial;
-        let (x, q, r) = (&solution.potential, &solution.attraction, &mut solution.pressure);
+    pub(super) fn gradient(&mut self) -> Gradient {
+        let Descent { problem, balance, window, trial, .. } = self;
+        let (law, gap, rows) = (problem.law, &trial.gap, window.kernel.rows());
+        let Solution { potential: x, attraction: q, pressure: r, .. } = &mut trial.solution;
         let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
         for_each_band([&mut *r], |first, [r]| {
             r.iter_mut().zip(first..).for_each(|(r, k)| *r = q[k] + traction(gap[k] + x[k]));
         });
         let is_open = |k: usize| gap[k] + x[k] > 0.0;
-        let r = &*r;
         let mut multiplier = 0.0;
         if balance.held {
             // cells at the wall that open join the mean
@@ -68,7 +70,6 @@ impl AttractedStep<'_> {
             }
         }
         let [attraction, at_wall] = rows.sum_terms(|k| Some([r[k] - q[k], if is_open(k) { 0.0 } else { 1.0 }]));
-        let r = &mut solution.pressure;
         let mut most = 0.0_f64;
         for (k, r) in r.iter_mut().enumerate() {
             *r -= multiplier;
@@ -81,18 +82,12 @@ impl AttractedStep<'_> {
     }
 
     /// Writes the next direction; returns y·r of the steepest one, y = K r.
-    pub(super) fn turn(
-        &self,
-        balance: Balance,
-        own: &mut Attracted,
-        window: &mut Window,
-        trial: &Trial,
-        before: f64,
-        has_last: bool,
-    ) -> f64 {
-        let Window { kernel, work, .. } = window;
+    pub(super) fn turn(&mut self, before: f64, has_last: bool) -> f64 {
+        let Descent { balance, own, window, trial, counts, .. } = self;
+        let Window { kernel, work, .. } = &mut **window;
         let (rows, gap, x, r) = (kernel.rows(), &trial.gap, &trial.solution.potential, &trial.solution.pressure);
         let InGap { direction, traction: last_r, lift: steepest_y, .. } = own.in_gap();
+        counts.convolutions += 1;
         kernel.apply(r, steepest_y, work);
         let is_free = |k: usize| gap[k] + x[k] > 0.0 || r[k] < 0.0;
         let c = balance.compliance;
@@ -128,8 +123,9 @@ impl AttractedStep<'_> {
     }
 
     /// The length of the step along the direction, and its curvature over the curvature of the convex part.
-    pub(super) fn length(&self, gradient: Gradient, own: &mut Attracted, window: &Window, trial: &Trial) -> (f64, f64) {
-        let (law, rows, gap) = (self.law, window.kernel.rows(), &trial.gap);
+    pub(super) fn length(&mut self, gradient: Gradient) -> (f64, f64) {
+        let Descent { problem, own, window, trial, .. } = self;
+        let (law, rows, gap) = (problem.law, window.kernel.rows(), &trial.gap);
         let (x, q) = (&trial.solution.potential, &trial.solution.attraction);
         let InGap { direction: d, image, .. } = own.in_gap();
         let traction = |h: f64| if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 };
@@ -148,7 +144,7 @@ impl AttractedStep<'_> {
         let mut length = if bends_down { -LONGEST * start / convex } else { -start / (convex * curvature) };
         let (mut low, mut high) = (0.0, None);
         for _ in 0..TRIES {
-            let at = self.slope(gradient, length, own, window, trial) + length * convex;
+            let at = self.slope(gradient, length) + length * convex;
             if at.abs() <= SLOPE_LEFT * start.abs() {
                 break;
             }
@@ -167,44 +163,47 @@ impl AttractedStep<'_> {
     }
 
     /// The slope of E along the direction after a step of this length, but for the slope of its convex part.
-    fn slope(&self, gradient: Gradient, length: f64, own: &mut Attracted, window: &Window, trial: &Trial) -> f64 {
+    fn slope(&mut self, gradient: Gradient, length: f64) -> f64 {
+        let Descent { problem, own, window, trial, .. } = self;
         let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
         let InGap { direction: d, .. } = own.in_gap();
         let [attracted] = window.kernel.rows().sum_terms(|k| {
             (d[k] != 0.0).then(|| {
                 let h = gap[k] + x[k] + length * d[k];
-                let s = if h.is_finite() { self.law.traction(h.max(0.0)) } else { 0.0 };
+                let s = if h.is_finite() { problem.law.traction(h.max(0.0)) } else { 0.0 };
                 [(q[k] + s - gradient.multiplier) * d[k]]
             })
         });
         attracted
     }
 
+    /// What the least curvature of the state before the step was found to be, less the greatest rise of −s′ since, over its greatest value.
+    pub(super) fn least_stiffness(&self) -> f64 {
+        let Descent { problem, window, trial, .. } = self;
+        let (state, law, initial) = (problem.state, problem.law, window.gap(&problem.step.indenter));
+        let [now, u] = [&trial.solution.potential, state.history.displacement()];
+        let mut motion = state.current.motions[0];
+        motion.approach -= initial.datum;
+        let rise = |k: usize| {
+            let before = initial.above[k] + u[k] - motion.at(state.region.center(k));
+            softens(law, trial.gap[k] + now[k]) - softens(law, before)
+        };
+        let most = state.region.rows().greatest((0..u.len()).map(rise).fold(0.0, f64::max));
+        state.current.solution.stiffness - most / problem.scene.softening
+    }
+
     /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
     /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from a random direction: the last one has the symmetry of the state, and may have none of the one that breaks it.
     /// Writes it, with its M d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
-    pub(super) fn softest(
-        &self,
-        balance: Balance,
-        inverse: &mut PeriodInverse,
-        own: &mut Attracted,
-        window: &mut Window,
-        trial: &mut Trial,
-        counts: &mut Counts,
-    ) -> f64 {
-        let (law, rows, c) = (self.law, window.kernel.rows().clone(), balance.compliance);
-        let Trial { solution, gap, .. } = trial;
+    pub(super) fn softest(&mut self, look: usize) -> f64 {
+        let Descent { problem, balance, inverse, own, window, trial, counts } = self;
+        let (law, rows, c) = (problem.law, window.kernel.rows().clone(), balance.compliance);
+        let (solution, gap) = (&mut trial.solution, &trial.gap);
         let (x, softening) = (&solution.potential, &mut solution.pressure);
-        let small = DIFFERENCE * law.range();
         for_each_band([&mut *softening], |first, [softening]| {
-            for (softening, k) in softening.iter_mut().zip(first..) {
-                let h = gap[k] + x[k];
-                let softens = h > 0.0 && h.is_finite();
-                *softening = if softens { (law.traction(h) - law.traction(h + small)) / small } else { 0.0 };
-            }
+            softening.iter_mut().zip(first..).for_each(|(softening, k)| *softening = softens(law, gap[k] + x[k]));
         });
         let (softening, is_open) = (&*softening, |k: usize| gap[k] + x[k] > 0.0);
-        let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
         // K of a field, on the open cells
         let smooth = |window: &mut Window, field: &mut [f64]| {
             let Window { kernel, work, .. } = window;
@@ -216,7 +215,10 @@ impl AttractedStep<'_> {
                 field.iter_mut().enumerate().filter(|(k, _)| is_open(*k)).for_each(|(_, y)| *y -= sum / open);
             }
         };
-        v.iter_mut().enumerate().for_each(|(k, v)| *v = softening[k] * (2.0 * scattered(k) - 1.0));
+        // another for each look of a descent: of two modes that are soft alike the last one has found a mix, and would find none of what is left
+        let salt = look * gap.len();
+        let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
+        v.iter_mut().enumerate().for_each(|(k, v)| *v = softening[k] * (2.0 * scattered(salt + k) - 1.0));
         smooth(window, v);
         balance.tractions(inverse, window, v, image, true);
         counts.convolutions += 2;
@@ -255,7 +257,9 @@ impl AttractedStep<'_> {
             let y = &*image_of_p;
             let [steepest] = rows.sum_terms(|k| Some([y[k] * (softening[k] * v[k] - share * image[k])]));
             let square = steepest / convex;
-            if turn >= LEAST_TURNS && square.max(0.0).sqrt() <= PRECISE * (1.0 - share).abs() {
+            // a random direction has 1/√N of one of quotient 0, which gains e^(2√q) a turn on one of quotient q
+            let grown = 4.0 * (1.0 - share).abs().sqrt() * turn as f64 >= (v.len() as f64).ln();
+            if grown && square.max(0.0).sqrt() <= PRECISE * (1.0 - share).abs() {
                 break;
             }
             let beta = if before > 0.0 { square / before } else { 0.0 };
@@ -274,39 +278,20 @@ impl AttractedStep<'_> {
     }
 
     /// Turns the softest direction downhill; returns how far to go along it: as far as E falls.
-    pub(super) fn way_out(&self, gradient: Gradient, own: &mut Attracted, window: &Window, trial: &Trial) -> f64 {
-        let uphill = self.slope(gradient, 0.0, own, window, trial) > 0.0;
-        let InGap { direction, image, .. } = own.in_gap();
+    pub(super) fn way_out(&mut self, gradient: Gradient) -> f64 {
+        let uphill = self.slope(gradient, 0.0) > 0.0;
+        let InGap { direction, image, .. } = self.own.in_gap();
         if uphill {
             direction.iter_mut().chain(image.iter_mut()).for_each(|value| *value = -*value);
         }
-        let convex = window.kernel.rows().sum_of_pairs(direction, image, |d, image| d * image);
+        let convex = self.window.kernel.rows().sum_of_pairs(direction, image, |d, image| d * image);
         let mut length = 1.0;
         for _ in 0..TRIES {
-            if self.slope(gradient, 2.0 * length, own, window, trial) + 2.0 * length * convex >= 0.0 {
+            if self.slope(gradient, 2.0 * length) + 2.0 * length * convex >= 0.0 {
                 break;
             }
             length *= 2.0;
         }
         length
-    }
-
-    /// Writes x + `length` d, kept to h ≥ 0, to the lift that is tried; returns whether the wall or the mean changed it.
-    pub(super) fn try_lift(
-        &self,
-        balance: Balance,
-        length: f64,
-        own: &mut Attracted,
-        window: &Window,
-        trial: &Trial,
-    ) -> bool {
-        let (x, gap) = (&trial.solution.potential, &trial.gap);
-        let InGap { lift: tried, direction, .. } = own.in_gap();
-        for_each_band([&mut *tried], |first, [tried]| {
-            for (tried, k) in tried.iter_mut().zip(first..) {
-                *tried = x[k] + length * direction[k];
-            }
-        });
-        self.project(balance, window.kernel.rows(), gap, tried)
     }
 }

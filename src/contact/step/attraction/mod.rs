@@ -101,7 +101,10 @@ impl AttractedStep<'_> {
     fn iterate(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial) -> Result<()> {
         let (state, scene, mut counts) = (self.state, self.scene, Counts::default());
         own.report = PassReport::default();
-        if self.wanted.tilts() || !self.solve_in_gap(own, window, trial, &mut counts)? {
+        trial.solution.stiffness = 0.0;
+        if let Some(end) = self.step.end {
+            trial.solution.clone_from(end);
+        } else if self.wanted.tilts() || !self.solve_in_gap(own, window, trial, &mut counts)? {
             self.solve_by_passes(own, window, trial, &mut counts)?;
         }
         trial.solution.counts = counts;
@@ -233,7 +236,7 @@ impl AttractedStep<'_> {
             plain = !own.has_last || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
-            if let Some(profile) = front.look((1.0, true), s.len(), |k| trial.solution.pressure[k] > 0.0) {
+            if let Some(profile) = front.look(1.0, s.len(), |k| trial.solution.pressure[k] > 0.0) {
                 let InPasses { last_g, .. } = own.in_passes();
                 s.iter_mut().enumerate().for_each(|(k, s)| *s = last_g[profile.source(k, g.len())]);
                 (plain, moved) = (false, true);
@@ -339,9 +342,7 @@ impl AttractedStep<'_> {
             }
             load => [load],
         };
-        let indenter = std::sync::Arc::clone(&self.step.indenter);
-        let step =
-            Step { interval: self.step.interval, loads: &loads, indenter, tolerance, cancelled: self.step.cancelled };
+        let step = Step { loads: &loads, tolerance, ..self.step.clone() };
         solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
     }
 

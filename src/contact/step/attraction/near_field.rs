@@ -6,11 +6,11 @@
 //! once when they end: a defect correction (Stetter, Numer. Math. 29, 1978). Rounds of descents follow until the new F (z − s) changes
 //! nothing any more. What is left of an error after a round is about the share of F in the potential.
 
+use super::descent::Descent;
 use super::{Attracted, AttractedStep};
 use crate::contact::step::request::Trial;
 use crate::contact::window::Window;
 use crate::error::{Error, Result};
-use crate::kernel::PeriodInverse;
 use crate::parallel::for_each_band;
 use crate::solver::{Counts, Solution};
 
@@ -38,63 +38,12 @@ impl AttractedStep<'_> {
     ) -> Result<bool> {
         let Some(mut inverse) = window.inverse.take() else { return Ok(false) };
         self.begin_in_gap(window, trial);
-        (own.softness, own.exactness) = (0.0, 1.0);
-        let solved = if window.has_near_field() {
-            self.descend_in_rounds(&mut inverse, own, window, trial, counts)
-        } else {
-            self.descend_in_gap(&mut inverse, own, window, trial, counts).map(|()| true)
-        };
+        (own.softness, own.exactness, own.softest) = (0.0, 1.0, None);
+        let (near, balance) = (window.has_near_field(), self.balance(window, &inverse));
+        let mut descent = Descent { problem: self, balance, inverse: &mut inverse, own, window, trial, counts };
+        let solved = if near { descent.run_in_rounds() } else { descent.run().map(|()| true) };
         window.inverse = Some(inverse);
         solved
-    }
-
-    /// Rounds of descents with the near field.
-    fn descend_in_rounds(
-        &self,
-        inverse: &mut PeriodInverse,
-        own: &mut Attracted,
-        window: &mut Window,
-        trial: &mut Trial,
-        counts: &mut Counts,
-    ) -> Result<bool> {
-        if self.extent(trial) > MAX_EXTENT {
-            return Ok(false);
-        }
-        self.split(own, window, trial, counts);
-        let (c, mut pays, mut last) = (self.given[0], true, f64::INFINITY);
-        while pays {
-            self.open_gap(window, trial);
-            for_each_band([&mut trial.gap], |first, [gap]| {
-                gap.iter_mut().zip(&own.far[first..]).for_each(|(gap, far)| *gap += c * far);
-            });
-            let before = counts.convolutions;
-            let passed = window.with_near_field(|window| self.descend_in_gap(inverse, own, window, trial, counts));
-            counts.preconditioner_applications += self.near_price() * (counts.convolutions - before);
-            counts.convolutions = before;
-            match passed {
-                Err(Error::Cancelled { what }) => return Err(Error::Cancelled { what }),
-                Err(_) => {
-                    // perhaps there is a state with K
-                    self.begin_in_gap(window, trial);
-                    return Ok(false);
-                }
-                Ok(()) => {}
-            }
-            let [change, most] = self.correct(own, window, trial, counts);
-            let most = c * most * self.scene.softening / self.law.traction(0.0);
-            let allowed = MOST_CHANGE * self.tolerance(own.softness);
-            if most <= allowed {
-                trial.solution.potential.iter_mut().zip(&own.far).for_each(|(v, far)| *v += far);
-                return Ok(true);
-            }
-            pays = change <= LEAST_GAIN * last;
-            if !pays && most <= NEARLY * allowed && own.exactness > MORE_EXACT * MORE_EXACT {
-                (own.exactness, pays) = (MORE_EXACT * own.exactness, true);
-            }
-            last = change;
-        }
-        trial.solution.potential.iter_mut().zip(&own.far).for_each(|(v, far)| *v += far);
-        Ok(false)
     }
 
     /// Convolutions with N, in quarters of one with K: along an axis that is periodic, or a single cell, nothing is padded.
@@ -118,9 +67,62 @@ impl AttractedStep<'_> {
         let [along1, along2] = [0, 1].map(|axis| (ends[axis][1] - begin(axis)) / region.cells()[axis] as f64);
         along1.max(along2)
     }
+}
+
+impl Descent<'_> {
+    /// Rounds of descents with the near field.
+    fn run_in_rounds(&mut self) -> Result<bool> {
+        let problem = self.problem;
+        if problem.extent(self.trial) > MAX_EXTENT {
+            return Ok(false);
+        }
+        self.split();
+        let (c, mut pays, mut last) = (self.balance.compliance, true, f64::INFINITY);
+        while pays {
+            problem.open_gap(self.window, self.trial);
+            for_each_band([&mut self.trial.gap], |first, [gap]| {
+                gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
+            });
+            let before = self.counts.convolutions;
+            self.window.trade_kernels();
+            let passed = self.run();
+            self.window.trade_kernels();
+            self.counts.preconditioner_applications += problem.near_price() * (self.counts.convolutions - before);
+            self.counts.convolutions = before;
+            match passed {
+                Err(Error::Cancelled { what }) => return Err(Error::Cancelled { what }),
+                Err(_) => {
+                    // perhaps there is a state with K
+                    problem.begin_in_gap(self.window, self.trial);
+                    return Ok(false);
+                }
+                Ok(()) => {}
+            }
+            let [change, most] = self.correct();
+            let most = c * most * problem.scene.softening / problem.law.traction(0.0);
+            let allowed = MOST_CHANGE * problem.tolerance(self.own.softness);
+            if most <= allowed {
+                self.join();
+                return Ok(true);
+            }
+            pays = change <= LEAST_GAIN * last;
+            if !pays && most <= NEARLY * allowed && self.own.exactness > MORE_EXACT * MORE_EXACT {
+                (self.own.exactness, pays) = (MORE_EXACT * self.own.exactness, true);
+            }
+            last = change;
+        }
+        self.join();
+        Ok(false)
+    }
+
+    /// Adds the far field to N (z − s).
+    fn join(&mut self) {
+        self.trial.solution.potential.iter_mut().zip(&self.own.far).for_each(|(v, far)| *v += far);
+    }
 
     /// F (z − s) anew; returns Σ (z + s) |ΔF (z − s)|, and the greatest |ΔF (z − s)|.
-    fn correct(&self, own: &mut Attracted, window: &mut Window, trial: &Trial, counts: &mut Counts) -> [f64; 2] {
+    fn correct(&mut self) -> [f64; 2] {
+        let Descent { own, window, trial, counts, .. } = self;
         let Solution { pressure, attraction, potential, .. } = &trial.solution;
         let (exact, far) = own.image_of_net(&trial.solution, window);
         counts.convolutions += 1;
@@ -135,9 +137,12 @@ impl AttractedStep<'_> {
     }
 
     /// Writes N (z − s) to the potential, and what it lacks of K (z − s) to the far field.
-    fn split(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
-        let (near, far) = window.with_near_field(|window| own.image_of_net(&trial.solution, window));
-        counts.preconditioner_applications += self.near_price();
+    fn split(&mut self) {
+        let Descent { own, window, trial, counts, .. } = self;
+        window.trade_kernels();
+        let (near, far) = own.image_of_net(&trial.solution, window);
+        window.trade_kernels();
+        counts.preconditioner_applications += self.problem.near_price();
         std::mem::swap(far, &mut trial.solution.potential);
         far.iter_mut().zip(near).for_each(|(far, near)| *far -= near);
         trial.solution.potential.copy_from_slice(near);

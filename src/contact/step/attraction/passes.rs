@@ -18,8 +18,9 @@ pub(crate) struct Attracted {
     pub(super) softness: f64,
     /// The greatest residual of a descent, over what its softness asks for.
     pub(super) exactness: f64,
-    /// Whether a state is looked at for a direction along which the energy bends down.
+    /// Whether a state is looked at for a direction along which the energy bends down, and the least curvature that this step has found so.
     pub(super) looks: bool,
+    pub(super) softest: Option<f64>,
     /// Whether there is a pass before.
     pub(super) has_last: bool,
     /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows before they do.
@@ -125,6 +126,7 @@ impl Attracted {
             softness: 0.0,
             exactness: 1.0,
             looks: true,
+            softest: None,
             has_last: false,
             error: 1.0,
             report: PassReport::default(),

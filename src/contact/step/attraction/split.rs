@@ -1,18 +1,21 @@
 //! Whether surfaces snapped within a step: a jump is what stays however the step is split.
 //!
-//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half releases a quarter of it. So a step
-//! that is suspected of a jump is taken again in two halves, from its start, and a half that is suspected again in its halves, as far as to a quarter of the step.
+//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half releases a quarter of it. So of a step
+//! that is suspected of a jump the middle is computed, and both halves are looked at: the end of the second is known. A half that is suspected is
+//! halved again, as far as to a quarter of the step.
 
 use super::{PassReport, add};
 use crate::contact::{State, Step, ViscoelasticContact};
 use crate::error::Result;
 use crate::load::Load;
-use crate::solver::Counts;
+use crate::solver::{Counts, Solution};
 
 /// The shortest parts of a step.
 const SHORTEST: f64 = 0.25;
 /// A part of a step with a jump releases more than this share of what the step released.
 const LEFT: f64 = 0.16;
+/// Tolerance of parts, of which the energy alone is asked.
+const COARSE: f64 = 1e-2;
 
 impl ViscoelasticContact {
     pub(in crate::contact) fn may_have_snapped(&self) -> bool {
@@ -32,9 +35,10 @@ impl ViscoelasticContact {
         let mut end = end.unwrap_or_else(|| Box::new(state.clone()));
         (*end).clone_from(state);
         state.roll_back();
-        let (start, mut counts) = (self.load_like(0, &step.loads[0]), Counts::default());
-        let jumps = self.jumps_between(0.0, 1.0, start, step, whole.released, &mut counts);
-        let jumped = jumps.unwrap_or(true) || self.is_elsewhere(&end);
+        let start = self.load_like(0, &step.loads[0]);
+        let mut search = Search { contact: self, step, start, released: whole.released, counts: Counts::default() };
+        let jumps = search.jumps(0.0, 1.0, &end.current.solution);
+        let (counts, jumped) = (search.counts, jumps.unwrap_or(true));
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
         if let Some(own) = self.computation.trial.passes.as_mut() {
@@ -51,37 +55,48 @@ impl ViscoelasticContact {
         });
         off > 0.5 * change
     }
+}
 
-    /// Whether surfaces jump between two shares of a step that began under the load `start` and `released` so much.
-    fn jumps_between(
-        &mut self,
-        from: f64,
-        to: f64,
-        start: Load,
-        step: &Step<'_>,
-        released: f64,
-        counts: &mut Counts,
-    ) -> Result<bool> {
-        let (middle, part) = (0.5 * (from + to), 0.5 * (to - from));
+/// The search for a jump in a step that was taken.
+struct Search<'a> {
+    contact: &'a mut ViscoelasticContact,
+    step: &'a Step<'a>,
+    start: Load,
+    released: f64,
+    counts: Counts,
+}
+
+impl Search<'_> {
+    /// Whether surfaces jump between two shares of the step, from the state of the contact to `end`. Where they do not, the contact comes to the end.
+    fn jumps(&mut self, from: f64, to: f64, end: &Solution) -> Result<bool> {
+        let middle = 0.5 * (from + to);
+        Ok(self.jumps_in_part(from, middle, None)? || self.jumps_in_part(middle, to, Some(end))?)
+    }
+
+    /// Whether surfaces jump in a part of the step, which is only compared with its start where its `end` is known.
+    fn jumps_in_part(&mut self, from: f64, to: f64, end: Option<&Solution>) -> Result<bool> {
+        let Search { contact, step, .. } = self;
+        let (part, begun) = (to - from, contact.time());
+        let left = step.interval.time - begun;
+        let time = if to == 1.0 { step.interval.time } else { begun + left * part / (1.0 - from) };
+        let loads = [self.start.towards(&step.loads[0], to)];
+        let tolerance = step.tolerance.max(COARSE);
+        let mut taken = contact.request(time, time - begun, &loads, tolerance)?;
+        (taken.interval.interpolant, taken.end, taken.cancelled) = (step.interval.interpolant, end, step.cancelled);
+        let attempt = contact.attempt(&taken)?;
+        contact.adopt(attempt, taken, [0.0; 2])?;
+        let State { current, .. } = &contact.computation.state;
+        add(&mut self.counts, current.solution.counts);
         // besides the jump, what is smooth
-        let least = (LEFT + (1.0 - LEFT) * part * part) * released;
-        for [from, to] in [[from, middle], [middle, to]] {
-            let begun = self.time();
-            let left = step.interval.time - begun;
-            let time = if to == 1.0 { step.interval.time } else { begun + left * (to - from) / (1.0 - from) };
-            let loads = [start.towards(&step.loads[0], to)];
-            self.take_part(time, &loads, step.tolerance, step.interval.interpolant, step.cancelled)?;
-            add(counts, self.computation.state.current.solution.counts);
-            if self.passes().is_some_and(|report| report.may_jump(least)) {
-                if part <= SHORTEST {
-                    return Ok(true);
-                }
-                self.computation.state.roll_back();
-                if self.jumps_between(from, to, start, step, released, counts)? {
-                    return Ok(true);
-                }
-            }
+        let least = (LEFT + (1.0 - LEFT) * part * part) * self.released;
+        if !contact.passes().is_some_and(|report| report.may_jump(least)) {
+            return Ok(false);
         }
-        Ok(false)
+        if part <= SHORTEST {
+            return Ok(true);
+        }
+        let end = current.solution.clone();
+        contact.computation.state.roll_back();
+        self.jumps(from, to, &end)
     }
 }
