@@ -1,14 +1,22 @@
 //! What is to be identified, and from what.
 
+use viscocontact::numeric::{Descent, least_squares};
+
 use crate::bounds::Bounds;
 use crate::error::{Error, Result, positive};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
-use crate::least_squares::{Minimum, minimise};
 use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::{Chosen, Kind, Nuisance, Parameter, PerCurve, Property};
 use crate::problem::Problem;
+
+/// Steps after which a search has failed, if the last one reduces the sum of squares by more than a fraction.
+const MAX_STEPS: usize = 200;
+const SLOW: f64 = 1e-6;
+/// A search ends whose steps are worth less than this fraction, and hardly less and less: where the data hardly determine a combination of
+/// parameters, hundreds of such steps would change it by a small part of its deviation.
+const SLOW_ENOUGH: f64 = 1e-7;
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
@@ -181,9 +189,22 @@ impl Identification {
         self.noise == Noise::Autoregressive
     }
 
-    /// Minimum from a start.
-    pub(crate) fn minimum(&self, problem: &Problem, coordinates: Vec<f64>) -> Result<Minimum> {
-        minimise(coordinates, [problem.rounding(), problem.enough], |x| problem.residuals(x), |x| problem.jacobian(x))
+    /// Minimum from a start: a sum of squares that is rounding, or that a step reduces by less than a fraction. What such a step leaves is far less,
+    /// but for parameters that go to a limit.
+    pub(crate) fn minimum(&self, problem: &Problem, start: Vec<f64>) -> Result<Descent> {
+        let rounding = problem.rounding();
+        let is_enough = |at: &Descent| {
+            let [last, before] = at.reductions;
+            let is_slow = last > 0.5 * before && last <= SLOW_ENOUGH;
+            at.sum() <= rounding || last <= problem.enough || is_slow || at.steps == MAX_STEPS
+        };
+        let found = least_squares(start, |x| problem.residuals(x), |x| problem.slopes(x), is_enough)?;
+        if found.steps < MAX_STEPS || found.reductions[0] <= SLOW {
+            return Ok(found);
+        }
+        let reason =
+            "the sum of squares still falls: give start values, fix parameters, or take a model with fewer of them";
+        Err(Error::NotConverged { iterations: MAX_STEPS, reason })
     }
 
     /// The problem of some curves.

@@ -48,7 +48,6 @@ mod experiment;
 mod fit;
 mod forward;
 mod identification;
-mod least_squares;
 mod model;
 mod noise;
 mod parameters;

@@ -334,6 +334,12 @@ impl Problem {
 
     /// Derivatives of the residuals by the free coordinates.
     pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
+        let slopes = self.slopes(coordinates)?;
+        Ok(Mat::from_fn(self.len(), slopes.len(), |k, j| slopes[j][k]))
+    }
+
+    /// Derivatives of the residuals, a column for each free coordinate.
+    pub(crate) fn slopes(&self, coordinates: &[f64]) -> Result<Vec<Vec<f64>>> {
         let values = self.values(coordinates);
         let material = self.free().filter(|parameter| parameter.kind == Kind::Material).count();
         let moved = |column: usize| [WIDTH, -WIDTH].map(|width| self.moved(coordinates, column, width));
@@ -341,12 +347,12 @@ impl Problem {
         let all = std::iter::once(values.clone()).chain((0..material).flat_map(moved));
         let sums = self.model.sums(&all.map(|values| values[..count].to_vec()).collect::<Vec<_>>(), self.window)?;
         let prony = &sums[0];
-        let mut jacobian = Mat::zeros(self.len(), coordinates.len());
+        let mut columns = vec![vec![0.0; self.len()]; coordinates.len()];
         let mut row = 0;
         for (curve, part) in self.parts.iter().enumerate() {
             let mut put = |column: usize, mut slopes: Vec<f64>| {
                 part.whiten(&mut slopes);
-                slopes.into_iter().enumerate().for_each(|(k, slope)| jacobian[(row + k, column)] = slope);
+                columns[column][row..row + part.len()].copy_from_slice(&slopes);
             };
             let mut curved = Vec::new();
             for (column, parameter) in self.free().enumerate() {
@@ -389,6 +395,6 @@ impl Problem {
             }
             row += part.len();
         }
-        Ok(jacobian)
+        Ok(columns)
     }
 }

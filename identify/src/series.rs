@@ -144,7 +144,8 @@ impl Model {
             }
             Model::Stretched => Box::new(move |t| of[1] + (of[0] - of[1]) * (-(t / of[2]).powf(of[3])).exp()),
             Model::FractionalZener => {
-                let spectrum = fractional_spectrum(of[3], [rates[0], rates[rates.len() - 1]].map(|rate| rate * of[2]));
+                let spectrum =
+                    fractional_spectrum(of[3], [rates[0], rates[rates.len() - 1]].map(|rate| rate.ln() + of[2].ln()));
                 let relaxed = move |t: f64| if t == 0.0 { 1.0 } else { spectrum.modulus(t) };
                 Box::new(move |t| of[1] + (of[0] - of[1]) * relaxed(t / of[2]))
             }
@@ -223,15 +224,15 @@ fn fractional_share(alpha: f64, y: f64) -> f64 {
     (s / c * rest).atan2(1.0 - u * s * s / (c * c)) / (PI * alpha)
 }
 
-/// E_α(−t^α) at times that rates between two show: a sum by the trapezoidal rule in v = y + asinh(y/b), where ±ib are the poles: the spectrum is
+/// E_α(−t^α) at times that rates between two, given by their logarithms, show: a sum by the trapezoidal rule in v = y + asinh(y/b), where ±ib are the poles: the spectrum is
 /// as smooth in v for α → 1, where the peak is narrow, as for α → 0, where it is wide. (The Mittag-Leffler function of the main crate takes a
 /// hundred times as long.)
 fn fractional_spectrum(alpha: f64, [slowest, fastest]: [f64; 2]) -> Prony {
     let width = PI * (1.0 - alpha) / alpha;
     let v = |y: f64| y + (y / width).asinh();
     let reach = LEAST_SHARE / alpha;
-    let first = (slowest.ln() - LEAST_SHARE).clamp(-reach, -1.0);
-    let last = (fastest.ln() + LEAST_SHARE).clamp(1.0, reach);
+    let first = (slowest - LEAST_SHARE).clamp(-reach, -1.0);
+    let last = (fastest + LEAST_SHARE).clamp(1.0, reach);
     let y = |v_k: f64| {
         // Newton's steps from the side of 0, where v is steepest, do not pass the root
         let mut y = v_k * width / (1.0 + width);

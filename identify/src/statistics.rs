@@ -10,6 +10,11 @@ pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
 }
 
+/// Sum of squares.
+pub(crate) fn square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
 /// Arithmetic mean.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64

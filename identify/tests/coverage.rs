@@ -129,29 +129,41 @@ fn outliers_have_no_weight() {
 /// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 8 million and more are a second of one core.
 #[test]
 fn searches_take_little_work() {
-    let models: [(Model, &[f64], usize); 7] = [
+    const POWER_LAW: Model = Model::PowerLaw { cutoff: 1e-6 };
+    let models: [(Model, &[f64], usize); 10] = [
         (Model::Zener, &[4.0e3, 1.0e3, 0.5], 1),
-        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.02], 3),
-        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.3], 4),
-        (Model::PowerLaw { cutoff: 1e-6 }, &[1.0e3, 0.9], 3),
+        (POWER_LAW, &[1.0e3, 0.02], 3),
+        (POWER_LAW, &[1.0e3, 0.3], 4),
+        (POWER_LAW, &[1.0e3, 0.9], 3),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.02], 13),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.05], 13),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.15], 13),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 13),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 4),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 3),
     ];
-    let rng = &mut ChaCha8Rng::seed_from_u64(3);
+    let seeds: u64 = std::env::var("WORK_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2);
     for (model, values, millions) in models {
-        let times: Vec<f64> = (0..1000).map(|k| 2.0 * f64::from(k) / 999.0).collect();
-        let drive = times.iter().map(|&t: &f64| 1.2e-6 * t.min(1.0) - 0.2e-6 + 1e-9 * normal(rng)).collect();
-        let sphere = ElasticStates::sphere(5e-6).unwrap();
-        let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere).with_spring(0.05).unwrap();
-        let names = model.parameters();
-        let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
-        let samples = Identification::new(model).respond(&experiment, &named).unwrap();
-        let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-        let force = samples.iter().map(|sample| sample.force + 0.01 * greatest * normal(rng)).collect();
-        let fitting = Identification::new(model).contact_point(Nuisance::Fitted);
-        let work = fitting.fit(&[Curve::new(experiment, force).unwrap()]).unwrap().work();
-        println!("{model:?} {values:?}: {:.2} million", work as f64 * 1e-6);
-        assert!(work > 50_000 && work < millions * 1_000_000, "{model:?} {values:?}: {work}");
+        let work = |seed: u64| {
+            let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+            let times: Vec<f64> = (0..1000).map(|k| 2.0 * f64::from(k) / 999.0).collect();
+            let drive = times.iter().map(|&t: &f64| 1.2e-6 * t.min(1.0) - 0.2e-6 + 1e-9 * normal(rng)).collect();
+            let sphere = ElasticStates::sphere(5e-6).unwrap();
+            let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere).with_spring(0.05).unwrap();
+            let names = model.parameters();
+            let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
+            let samples = Identification::new(model).respond(&experiment, &named).unwrap();
+            let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
+            let force = samples.iter().map(|sample| sample.force + 0.01 * greatest * normal(rng)).collect();
+            let fitting = Identification::new(model).contact_point(Nuisance::Fitted);
+            let fit = fitting.fit(&[Curve::new(experiment, force).unwrap()]).unwrap();
+            println!("{seed} {model:?} {values:?}: {:.2} million, {}", fit.work() as f64 * 1e-6, fit.iterations());
+            fit.work()
+        };
+        let all: Vec<usize> = (0..seeds).map(work).collect();
+        let most = all.iter().copied().max().unwrap_or_default();
+        println!("{model:?} {values:?}: {:.2} million at most", most as f64 * 1e-6);
+        let allowed = if std::env::var("WORK_ANY").is_ok() { 1000 } else { millions };
+        assert!(most > 50_000 && most < allowed * 1_000_000, "{model:?} {values:?}: {all:?}");
     }
 }

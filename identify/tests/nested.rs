@@ -1,5 +1,7 @@
 //! Models that contain each other, on random curves.
 
+use std::ops::Range;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
@@ -7,9 +9,11 @@ use viscocontact_identify::{Curve, Experiment, Fit, FitWarning, Identification, 
 
 use crate::random::{choice, logarithmic, normal, uniform};
 
-/// Number of curves: `NESTED_CURVES`, or fewer.
-fn curves() -> u64 {
-    std::env::var("NESTED_CURVES").ok().and_then(|text| text.parse().ok()).unwrap_or(8)
+/// Seeds of the curves: `NESTED_CURVES` of them from `NESTED_SEED` on, or fewer.
+fn seeds() -> Range<u64> {
+    let of = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
+    let first = of("NESTED_SEED").unwrap_or(0);
+    first..first + of("NESTED_CURVES").unwrap_or(8)
 }
 
 const POWER_LAW: Model = Model::PowerLaw { cutoff: 1e-6 };
@@ -73,7 +77,7 @@ fn searches_end_at_the_minimum() {
     ];
     let fitting = |model: Model| Identification::new(model).contact_point(Nuisance::Fitted);
     let (mut compared, mut above, mut apart, mut iterations) = (0, Vec::new(), Vec::new(), 0);
-    for seed in 0..curves() {
+    for seed in seeds() {
         let Case { curve, truth, values, text } = case(seed);
         let data = std::slice::from_ref(&curve);
         let fit = |model: Model| fitting(model).fit(data).unwrap_or_else(|error| panic!("{text}: {model:?}: {error}"));
@@ -93,14 +97,15 @@ fn searches_end_at_the_minimum() {
         }
         let (default, known) = (sum(of(truth)), at_truth.fit(data).as_ref().map_or(f64::NAN, sum));
         iterations += of(truth).iterations();
+        println!("{text}: default over known {:.1e}; {} above so far", default / known - 1.0, above.len());
         if (default / known - 1.0).abs() > 1e-6 || known.is_nan() {
             apart.push(format!("{text}: default start {:.2e} above the start at the truth", default / known - 1.0));
         }
     }
-    let [pairs, starts] = [above.len(), apart.len()];
-    println!("{compared} pairs, {pairs} above; {starts} of {} starts apart; {iterations} iterations", curves());
-    assert!(compared as u64 == 5 * curves());
+    let (curves, [pairs, starts]) = (seeds().count(), [above.len(), apart.len()]);
+    println!("{compared} pairs, {pairs} above; {starts} of {curves} starts apart; {iterations} iterations");
+    assert_eq!(compared, 5 * curves);
     println!("{}\n{}", above.join("\n"), apart.join("\n"));
     assert!(above.is_empty());
-    assert!(apart.len() as u64 <= curves().div_ceil(100));
+    assert!(starts <= curves.div_ceil(100));
 }

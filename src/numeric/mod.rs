@@ -2,11 +2,13 @@
 
 mod hermite;
 mod least;
+mod least_squares;
 mod non_negative;
 mod root;
 
 pub use hermite::{hermite, hermite_slope};
 pub use least::{golden_section, least};
+pub use least_squares::{Descent, least_squares};
 pub use non_negative::non_negative_least_squares;
 pub(crate) use non_negative::solve;
 pub use root::root;

@@ -4,10 +4,10 @@ use faer::Mat;
 
 use crate::bounds::inverse_gram;
 use crate::error::Result;
-use crate::least_squares::{Minimum, square};
 use crate::model::Scale;
 use crate::parameters::Parameter;
 use crate::problem::{Part, Problem};
+use crate::statistics::square;
 
 /// A parameter is at a limit if its coordinate would have to change by so much for an effect of one standard deviation: by a factor of e¹⁰.
 const NO_EFFECT: f64 = 10.0;
@@ -62,12 +62,12 @@ pub(super) fn limit(name: &str, value: f64) -> &'static str {
 /// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ: correlations of neighbours are included with falling weights (W. K. Newey & K. D. West,
 /// 1987), over as many lags as is best for autoregressive residuals (D. W. K. Andrews, 1991). Each residual is divided by 1 less its leverage (J. G.
 /// MacKinnon & H. White, 1985).
-pub(super) fn sandwich(problem: &Problem, minimum: &Minimum, inverse: &Mat<f64>) -> Mat<f64> {
+pub(super) fn sandwich(problem: &Problem, all: &[f64], jacobian: &Mat<f64>, inverse: &Mat<f64>) -> Mat<f64> {
     let count = inverse.nrows();
     let mut middle = Mat::<f64>::zeros(count, count);
     let mut first = 0;
     for len in problem.parts.iter().map(Part::len) {
-        let (residuals, slopes) = (&minimum.residuals[first..first + len], minimum.jacobian.subrows(first, len));
+        let (residuals, slopes) = (&all[first..first + len], jacobian.subrows(first, len));
         let leverage = |k: usize| slopes.row(k) * inverse * slopes.row(k).transpose();
         let factors: Vec<f64> = (0..len).map(|k| residuals[k] / (1.0 - leverage(k)).max(0.1)).collect();
         let scores = Mat::from_fn(len, count, |k, j| slopes[(k, j)] * factors[k]);

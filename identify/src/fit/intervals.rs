@@ -4,7 +4,6 @@ use viscocontact::numeric::root;
 
 use crate::error::{Error, Result, within};
 use crate::fit::Fit;
-use crate::least_squares::square;
 use crate::parameters::Parameter;
 use crate::statistics::fisher;
 
@@ -45,7 +44,7 @@ impl Fit {
                 match self.identification.minimum(&problem, problem.coordinates(&values)) {
                     Ok(minimum) => {
                         values = problem.values(&minimum.coordinates);
-                        square(&minimum.residuals) - self.sum
+                        minimum.sum() - self.sum
                     }
                     Err(_) => NO_FIT * threshold,
                 }

@@ -16,7 +16,6 @@ use crate::error::{Error, Result, within};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
-use crate::least_squares::{Minimum, square};
 use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
 use crate::problem::{Part, Problem};
@@ -82,10 +81,11 @@ pub struct Fit {
 impl Fit {
     pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
         let Found { minimum, contained } = found;
-        let Minimum { coordinates, residuals, jacobian, iterations } = &minimum;
+        let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
+        let jacobian = &problem.jacobian(coordinates)?;
         let values = problem.values(coordinates);
         let prony = problem.prony(&values)?;
-        let (count, points, sum) = (coordinates.len(), problem.len(), square(residuals));
+        let (count, points) = (coordinates.len(), problem.len());
         if points <= count {
             return Err(Error::TooFewPoints { points, parameters: count });
         }
@@ -97,7 +97,7 @@ impl Fit {
         let free: Vec<Parameter> = problem.free().cloned().collect();
         let scales = problem.scales(coordinates);
         let (weighted, _) = inverse(&free, jacobian, sigma)?;
-        let sandwich = &scales * sandwich(&problem, &minimum, &weighted) * scales.transpose();
+        let sandwich = &scales * sandwich(&problem, residuals, jacobian, &weighted) * scales.transpose();
         let all = match identification.robust {
             true => &problem.without_outliers().jacobian(coordinates)?,
             false => jacobian,
@@ -143,7 +143,7 @@ impl Fit {
             forces.push(force);
         }
         let curves = problem.parts.iter().map(|part| part.curve.clone()).collect();
-        let (identification, iterations) = (identification.clone(), *iterations);
+        let (identification, iterations) = (identification.clone(), minimum.steps);
         Ok(Fit {
             identification,
             curves,

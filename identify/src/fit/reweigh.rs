@@ -1,14 +1,14 @@
 //! The noise of each curve, from the residuals of a fit.
 
 use faer::{Mat, Side};
-use viscocontact::numeric::least;
+use viscocontact::numeric::{Descent, least};
 
 use crate::bounds::inverse_gram;
 use crate::error::Result;
 use crate::identification::Identification;
-use crate::least_squares::{Minimum, square};
 use crate::noise::{CORRELATIONS, Whitening};
 use crate::problem::Problem;
+use crate::statistics::square;
 
 /// Correlations that are tried first.
 const TRIED: usize = 40;
@@ -31,7 +31,7 @@ impl Identification {
     }
 
     /// Sets correlation and weights of each curve by the residuals at a minimum; whether they were as good as found.
-    pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Minimum) -> Result<bool> {
+    pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Descent) -> Result<bool> {
         let mut bare = problem.clone();
         for part in &mut bare.parts {
             part.scale = 1.0;
@@ -40,9 +40,9 @@ impl Identification {
                 part.whitening = Whitening::Autoregressive(0.0);
             }
         }
-        let (residuals, jacobian) = (bare.residuals(&minimum.coordinates)?, bare.jacobian(&minimum.coordinates)?);
-        let inverse =
-            inverse_gram(&minimum.jacobian, 1e-13).unwrap_or_else(|_| Mat::zeros(jacobian.ncols(), jacobian.ncols()));
+        let at = &minimum.coordinates;
+        let (residuals, jacobian, weighed) = (bare.residuals(at)?, bare.jacobian(at)?, problem.jacobian(at)?);
+        let inverse = inverse_gram(&weighed, 1e-13).unwrap_or_else(|_| Mat::zeros(jacobian.ncols(), jacobian.ncols()));
         let (mut first, mut is_found) = (0, true);
         let mut deviations = Vec::new();
         for part in &mut problem.parts {
@@ -57,7 +57,7 @@ impl Identification {
                 part.whitening.apply(&mut own);
             }
             let leverage = |row: usize| {
-                let slopes = minimum.jacobian.row(row);
+                let slopes = weighed.row(row);
                 (slopes * &inverse * slopes.transpose()).max(0.0)
             };
             // of all parameters, the share that this curve determines

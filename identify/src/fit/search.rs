@@ -2,12 +2,12 @@
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
+use viscocontact::numeric::Descent;
 
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::fit::Fit;
 use crate::identification::Identification;
-use crate::least_squares::{Minimum, square};
 use crate::model::Model;
 use crate::problem::Problem;
 use crate::start::starts;
@@ -20,7 +20,7 @@ const AGREED: f64 = 1e-7;
 
 /// What a search found.
 pub(crate) struct Found {
-    pub(super) minimum: Minimum,
+    pub(super) minimum: Descent,
     /// A model that this one contains, and its sum of squares.
     pub(super) contained: Option<(Model, f64)>,
 }
@@ -98,7 +98,7 @@ impl Identification {
             let simpler = problem.with_model(inner)?;
             let minimum = self.global_minimum(&simpler).ok()?.minimum;
             let values = problem.of_contained(inner, &simpler.values(&minimum.coordinates));
-            Some((inner, square(&minimum.residuals), problem.coordinates(&values)))
+            Some((inner, minimum.sum(), problem.coordinates(&values)))
         });
         let start = inside.iter().map(|(.., coordinates)| coordinates.clone());
         let rough = problem.thinned();
@@ -106,7 +106,7 @@ impl Identification {
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
             best = best.and_then(|minimum| self.least(problem, std::iter::once(minimum.coordinates), AGREED));
-            let sum = |found: &Result<Minimum>| found.as_ref().map_or(f64::INFINITY, |m| square(&m.residuals));
+            let sum = |found: &Result<Descent>| found.as_ref().map_or(f64::INFINITY, Descent::sum);
             if inside.as_ref().is_none_or(|(_, least, _)| sum(&best) > *least) {
                 let again = self.least(problem, start, AGREED);
                 best = if sum(&again) < sum(&best) { again } else { best };
@@ -116,9 +116,9 @@ impl Identification {
     }
 
     /// The least of the minima from several starts; two that agree end the search.
-    fn least(&self, problem: &Problem, starts: impl Iterator<Item = Vec<f64>>, agreed: f64) -> Result<Minimum> {
-        let mut best: Result<Minimum> = Err(Error::NoContact { curve: 0 });
-        let (mut least, mut iterations) = (f64::INFINITY, 0);
+    fn least(&self, problem: &Problem, starts: impl Iterator<Item = Vec<f64>>, agreed: f64) -> Result<Descent> {
+        let mut best: Result<Descent> = Err(Error::NoContact { curve: 0 });
+        let (mut least, mut steps) = (f64::INFINITY, 0);
         for start in starts {
             let minimum = match self.minimum(problem, start) {
                 Ok(minimum) => minimum,
@@ -127,8 +127,8 @@ impl Identification {
                     continue;
                 }
             };
-            iterations += minimum.iterations;
-            let sum = square(&minimum.residuals);
+            steps += minimum.steps;
+            let sum = minimum.sum();
             let [less, more] = if sum < least { [sum, least] } else { [least, sum] };
             if sum < least || best.is_err() {
                 (least, best) = (least.min(sum), Ok(minimum));
@@ -137,6 +137,9 @@ impl Identification {
                 break;
             }
         }
-        best.map(|minimum| Minimum { iterations, ..minimum })
+        best.map(|mut minimum| {
+            minimum.steps = steps;
+            minimum
+        })
     }
 }
