@@ -126,19 +126,19 @@ fn outliers_have_no_weight() {
     }
 }
 
-/// Curves of 1000 samples whose drive scatters by 1 nm: the work of a search, of which 8 million and more are a second of one core.
+/// Curves of 1000 samples whose drive scatters by 1 nm, `WORK_SEEDS` of them or fewer: the work of a search, of which 8 million and more are a second of one core.
 #[test]
 fn searches_take_little_work() {
     const POWER_LAW: Model = Model::PowerLaw { cutoff: 1e-6 };
     let models: [(Model, &[f64], usize); 10] = [
         (Model::Zener, &[4.0e3, 1.0e3, 0.5], 1),
-        (POWER_LAW, &[1.0e3, 0.02], 3),
-        (POWER_LAW, &[1.0e3, 0.3], 4),
-        (POWER_LAW, &[1.0e3, 0.9], 3),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.02], 13),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.05], 13),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.15], 13),
-        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 13),
+        (POWER_LAW, &[1.0e3, 0.02], 2),
+        (POWER_LAW, &[1.0e3, 0.3], 2),
+        (POWER_LAW, &[1.0e3, 0.9], 2),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.02], 9),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.05], 9),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.15], 9),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.3], 9),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 4),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 3),
     ];
@@ -163,7 +163,6 @@ fn searches_take_little_work() {
         let all: Vec<usize> = (0..seeds).map(work).collect();
         let most = all.iter().copied().max().unwrap_or_default();
         println!("{model:?} {values:?}: {:.2} million at most", most as f64 * 1e-6);
-        let allowed = if std::env::var("WORK_ANY").is_ok() { 1000 } else { millions };
-        assert!(most > 50_000 && most < allowed * 1_000_000, "{model:?} {values:?}: {all:?}");
+        assert!(most > 50_000 && most < millions * 1_000_000, "{model:?} {values:?}: {all:?}");
     }
 }
