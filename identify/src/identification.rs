@@ -1,6 +1,6 @@
 //! What is to be identified, and from what.
 
-use viscocontact::numeric::{Descent, least_squares};
+use viscocontact::numeric::{LeastSquares, least_squares};
 
 use crate::bounds::Bounds;
 use crate::error::{Error, Result, positive};
@@ -191,9 +191,9 @@ impl Identification {
 
     /// Minimum from a start: a sum of squares that is rounding, or that a step reduces by less than a fraction. What such a step leaves is far less,
     /// but for parameters that go to a limit.
-    pub(crate) fn minimum(&self, problem: &Problem, start: Vec<f64>) -> Result<Descent> {
+    pub(crate) fn minimum(&self, problem: &Problem, start: Vec<f64>) -> Result<LeastSquares> {
         let rounding = problem.rounding();
-        let is_enough = |at: &Descent| {
+        let is_enough = |at: &LeastSquares| {
             let [last, before] = at.reductions;
             let is_slow = last > 0.5 * before && last <= SLOW_ENOUGH;
             at.sum() <= rounding || last <= problem.enough || is_slow || at.steps == MAX_STEPS

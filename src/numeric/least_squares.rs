@@ -22,7 +22,7 @@ const DAMPING: [f64; 2] = [1e-14, 1e-3];
 /// Where a search for the least sum of squares is.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Descent {
+pub struct LeastSquares {
     /// The coordinates.
     pub coordinates: Vec<f64>,
     /// The residuals there.
@@ -33,7 +33,7 @@ pub struct Descent {
     pub reductions: [f64; 2],
 }
 
-impl Descent {
+impl LeastSquares {
     /// The sum of squares.
     pub fn sum(&self) -> f64 {
         square(&self.residuals)
@@ -41,8 +41,9 @@ impl Descent {
 }
 
 /// Reduces the sum of squares of `residuals` from `start` until it `is_enough`, or no step reduces it. `slopes` are the derivatives of the residuals, a
-/// column for each coordinate. Where residuals cannot be computed, a step is rejected. The damping follows the gain ratio (H. B. Nielsen, *Damping
-/// Parameter in Marquardt's Method*, 1999); a step is at most 2 in each coordinate, so that logarithms are good ones.
+/// column of the same length for each coordinate. Where residuals cannot be computed, a step is rejected. The damping follows the gain ratio (H. B. Nielsen, *Damping
+/// Parameter in Marquardt's Method*, 1999); a step is at most 2 in each coordinate before it is bent to
+/// follow a curved valley, so that logarithms are good ones.
 ///
 /// ```
 /// use viscocontact::numeric::least_squares;
@@ -57,14 +58,17 @@ impl Descent {
 ///
 /// # Errors
 /// Those of `residuals` at the start, and of `slopes`.
+///
+/// # Panics
+/// If a column of `slopes` is shorter than the residuals.
 pub fn least_squares<E>(
     start: Vec<f64>,
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>, E>,
     slopes: impl Fn(&[f64]) -> Result<Vec<Vec<f64>>, E>,
-    is_enough: impl Fn(&Descent) -> bool,
-) -> Result<Descent, E> {
+    is_enough: impl Fn(&LeastSquares) -> bool,
+) -> Result<LeastSquares, E> {
     let (mut damping, mut growth) = (DAMPING[1], 2.0);
-    let mut at = Descent { residuals: residuals(&start)?, coordinates: start, steps: 0, reductions: [1.0; 2] };
+    let mut at = LeastSquares { residuals: residuals(&start)?, coordinates: start, steps: 0, reductions: [1.0; 2] };
     while !is_enough(&at) {
         let (model, sum) = (Linear::new(slopes(&at.coordinates)?, &at.residuals), at.sum());
         let (promised, coordinates, residuals) = loop {
@@ -84,7 +88,7 @@ pub fn least_squares<E>(
         damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(MOST_FALL)).max(DAMPING[0]);
         growth = 2.0;
         let reductions = [promised.max(reduced) / sum, at.reductions[0]];
-        at = Descent { coordinates, residuals, steps: at.steps + 1, reductions };
+        at = LeastSquares { coordinates, residuals, steps: at.steps + 1, reductions };
     }
     Ok(at)
 }

@@ -8,7 +8,7 @@ mod root;
 
 pub use hermite::{hermite, hermite_slope};
 pub use least::{golden_section, least};
-pub use least_squares::{Descent, least_squares};
+pub use least_squares::{LeastSquares, least_squares};
 pub use non_negative::non_negative_least_squares;
 pub(crate) use non_negative::solve;
 pub use root::root;

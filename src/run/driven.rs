@@ -76,8 +76,8 @@ pub struct Moment<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct FieldReport {
-    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force so far, if that is more. `None` if there
-    /// is no estimate.
+    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force so far, if that is more. `None`
+    /// while bodies may be about to touch for the first time, or nothing has pressed, and where a step for the estimate failed.
     pub error: Option<f64>,
     /// Number of elastic contacts that were solved for it, with those for the whole run before its first field.
     pub elastic_contacts: usize,

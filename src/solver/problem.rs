@@ -49,8 +49,8 @@ pub(crate) struct Solution {
     pub(crate) residual: f64,
     /// Rounding of the gap, in the same measure: a smaller residual cannot be detected.
     pub(crate) relative_rounding: f64,
-    /// Where surfaces attract each other, what the least curvature of the energy along any direction is at least, over the curvature of its convex part; 0 where
-    /// that is not known.
+    /// Where surfaces attract each other, an estimate of the least curvature of the energy along any direction, over the curvature of its convex part; 0 where
+    /// none is known.
     pub(crate) stiffness: f64,
     /// The residual over the iterations.
     #[cfg_attr(feature = "checkpoint", serde(skip))]

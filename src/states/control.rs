@@ -110,7 +110,7 @@ impl Record {
         sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
 
-    /// Looks at the load at equal parts of the run. A load that the states have no demand for fails the step to it.
+    /// Looks at the load at equal parts of the run, which fails where there is none. A load that the states have no demand for fails the step to it.
     fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) -> Result<()> {
         let (start, length) = (contact.time(), self.until - contact.time());
         for k in 0..=PARTS_OF_RUN {

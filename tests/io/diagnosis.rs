@@ -10,6 +10,17 @@ fn contact(cells: usize, material: Material, settings: Settings) -> Viscoelastic
 }
 
 #[test]
+fn a_good_step_has_no_warnings() {
+    for (symmetry, window) in [(true, true), (false, true), (true, false), (false, false)] {
+        let settings = Settings::default().with_symmetry(symmetry).with_window(window);
+        let mut contact = contact(64, maxwell(), settings);
+        let report = contact.step(0.0, Load::force(0.5)).unwrap();
+        assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+        assert!(contact.step(0.1, Load::force(0.5)).unwrap().warnings.is_empty());
+    }
+}
+
+#[test]
 fn contact_near_the_edge_is_warned_of_before_it_touches() {
     for (symmetry, window) in [(true, true), (false, true), (false, false)] {
         let settings = Settings::default().with_symmetry(symmetry).with_window(window);

@@ -2,7 +2,7 @@
 
 use crate::common::refused::field;
 use crate::common::watched_runs::seen;
-use crate::common::{builder_on, maxwell, sphere_on};
+use crate::common::{builder_on, maxwell, sphere, sphere_on};
 use std::process::Command;
 
 use viscocontact::ErrorKind;
@@ -128,6 +128,17 @@ fn a_bad_geometry_leaves_the_old_one() {
     contact.gap_into(&mut gap).unwrap();
     assert!(gap.iter().all(|h| h.is_finite()));
     assert!(matches!(contact.gap_into(&mut gap[1..]), Err(Error::WrongLength { field: "gap", len: 575, .. })));
+}
+
+#[test]
+fn a_moved_indenter_presses_elsewhere() {
+    let mut contact = sphere_on(grid(), maxwell(), Settings::default());
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    contact.set_geometry(&Shifted::new(sphere(), [0.5e-3, -0.5e-3]).unwrap()).unwrap();
+    contact.step(0.1, Load::force(0.1)).unwrap();
+    let center = contact.moment().map(|moment| moment / contact.force());
+    // the dent left behind makes it lean back a little
+    assert!((0.4e-3..0.51e-3).contains(&center[0]) && (-0.51e-3..-0.4e-3).contains(&center[1]), "{center:?}");
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Every solution satisfies the contact conditions, and both solvers find the same one.
 
-use crate::common::{StepLoadedSphere, builder_of, contact_of};
+use crate::common::{StepLoadedSphere, builder_of, contact_of, maxwell};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
 /// A random elastic scene: shape, mask, roughness and mesh.
@@ -279,6 +280,34 @@ fn a_thousand_spots_keep_the_conditions() {
         assert_contact_conditions(&contact, load, 1e-7);
         assert!(report.fallback_iterations == 0 && report.convolution_equivalents() < 80.0);
     }
+}
+
+/// A state that still pulls somewhere is no solution, however small its residual is when the iterations run out.
+#[test]
+fn pressures_are_never_negative_when_iterations_run_out() {
+    let wavy = Sum::new(Sphere::new(5.0e-3).unwrap(), Wavy::new(2.0e-5, 0.7e-3).unwrap());
+    let (mut solved, mut given_up) = (0, 0);
+    for max_iterations in 1..12 {
+        for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
+            let settings = Settings::default()
+                .with_max_iterations(max_iterations)
+                .with_tolerance(tolerance)
+                .with_edge(Edge::Allow);
+            let mut contact = contact_of(&wavy, Grid::square(16, 2.0e-3).unwrap(), maxwell(), settings);
+            for (dt, force) in [(0.0, 0.5), (0.1, 0.3), (0.1, 0.05), (1.0, 0.4), (0.3, 0.01), (0.0, 0.2)] {
+                match contact.step(dt, Load::force(force)) {
+                    Ok(_) => {
+                        assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{max_iterations} {tolerance:e}");
+                        assert!((contact.force() / force - 1.0).abs() < 1e-9, "{max_iterations} {tolerance:e}");
+                        solved += 1;
+                    }
+                    Err(Error::Step(StepError::NotConverged { .. })) => given_up += 1,
+                    Err(error) => panic!("unexpected {error}"),
+                }
+            }
+        }
+    }
+    assert!(solved > 20 && given_up > 20, "{solved} solved, {given_up} given up");
 }
 
 /// On cells so slender that the gradients of Polonsky & Keer lose their way, a step backwards let cells in with a negative

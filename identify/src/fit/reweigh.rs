@@ -1,7 +1,7 @@
 //! The noise of each curve, from the residuals of a fit.
 
 use faer::{Mat, Side};
-use viscocontact::numeric::{Descent, least};
+use viscocontact::numeric::{LeastSquares, least};
 
 use crate::bounds::inverse_gram;
 use crate::error::Result;
@@ -31,7 +31,7 @@ impl Identification {
     }
 
     /// Sets correlation and weights of each curve by the residuals at a minimum; whether they were as good as found.
-    pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &Descent) -> Result<bool> {
+    pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &LeastSquares) -> Result<bool> {
         let mut bare = problem.clone();
         for part in &mut bare.parts {
             part.scale = 1.0;

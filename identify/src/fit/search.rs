@@ -2,7 +2,7 @@
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
-use viscocontact::numeric::Descent;
+use viscocontact::numeric::LeastSquares;
 
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
@@ -20,7 +20,7 @@ const AGREED: f64 = 1e-7;
 
 /// What a search found.
 pub(crate) struct Found {
-    pub(super) minimum: Descent,
+    pub(super) minimum: LeastSquares,
     /// A model that this one contains, and its sum of squares.
     pub(super) contained: Option<(Model, f64)>,
 }
@@ -41,10 +41,12 @@ impl Identification {
         let mut found = self.global_minimum(&problem)?;
         if self.finds_noise(&problem) {
             for _ in 0..MAX_ROUNDS {
-                let is_found = self.reweigh(&mut problem, &found.minimum)?;
-                if is_found {
+                let mut next = problem.clone();
+                // a minimum that is kept keeps the weights that it is of
+                if self.reweigh(&mut next, &found.minimum)? {
                     break;
                 }
+                problem = next;
                 // sums of squares of other weights cannot be compared
                 found = Found { minimum: self.minimum(&problem, found.minimum.coordinates)?, contained: None };
             }
@@ -106,7 +108,7 @@ impl Identification {
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
             best = best.and_then(|minimum| self.least(problem, std::iter::once(minimum.coordinates), AGREED));
-            let sum = |found: &Result<Descent>| found.as_ref().map_or(f64::INFINITY, Descent::sum);
+            let sum = |found: &Result<LeastSquares>| found.as_ref().map_or(f64::INFINITY, LeastSquares::sum);
             if inside.as_ref().is_none_or(|(_, least, _)| sum(&best) > *least) {
                 let again = self.least(problem, start, AGREED);
                 best = if sum(&again) < sum(&best) { again } else { best };
@@ -116,8 +118,8 @@ impl Identification {
     }
 
     /// The least of the minima from several starts; two that agree end the search.
-    fn least(&self, problem: &Problem, starts: impl Iterator<Item = Vec<f64>>, agreed: f64) -> Result<Descent> {
-        let mut best: Result<Descent> = Err(Error::NoContact { curve: 0 });
+    fn least(&self, problem: &Problem, starts: impl Iterator<Item = Vec<f64>>, agreed: f64) -> Result<LeastSquares> {
+        let mut best: Result<LeastSquares> = Err(Error::NoContact { curve: 0 });
         let (mut least, mut steps) = (f64::INFINITY, 0);
         for start in starts {
             let minimum = match self.minimum(problem, start) {

@@ -213,7 +213,7 @@ impl Descent<'_> {
                 if leaves.is_none() && gradient.greatest <= self.own.exactness * self.problem.tolerance(soft) {
                     self.own.softness = if iteration == 0 { self.own.softness } else { soft };
                     self.own.softest = softest;
-                    self.trial.solution.stiffness = softest.unwrap_or_else(|| self.least_stiffness());
+                    self.trial.solution.stiffness = softest.unwrap_or_else(|| self.least_stiffness().min(recent));
                     self.trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                     self.finish(gradient.multiplier);
                     return Ok(());

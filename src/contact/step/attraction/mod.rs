@@ -126,6 +126,7 @@ impl AttractedStep<'_> {
         trial: &mut Trial,
         counts: &mut Counts,
     ) -> Result<()> {
+        trial.solution.stiffness = 0.0;
         own.error = (1.0 / self.softness(trial) - 1.0).clamp(1.0, MOST_ERROR);
         trial.free[0] = self.wanted;
         self.open_gap(window, trial);
