@@ -39,7 +39,7 @@ fn chosen_scenes_are_the_same_on_all_ranks() {
         assert!(alone.fields.iter().all(|field| field.iter().any(|&bits| bits != 0)), "{}", scene.name);
         let warned = |report: &String| warning.is_none_or(|warning| report.contains(warning));
         assert!(alone.reports.iter().all(warned), "{}: {:?}", scene.name, alone.reports);
-        for size in [1, 2, 3, 5, 8] {
+        for size in [2, 3, 8] {
             scene.on_own_rows = size != 3;
             assert_same_on(size, &scene, &alone);
         }
@@ -127,7 +127,7 @@ fn files_of_ranks_are_those_of_one_process() {
         assert!(areas.len() == 2 && areas.iter().all(|&area| area > 0.0), "{}", scene.name);
         let expected = files(&root);
         assert_eq!(expected.len(), 7, "{:?}", expected.keys());
-        for size in [1, 2, 3, 4, 5, 9] {
+        for size in [1, 3, 9] {
             fs::remove_dir_all(&root).unwrap();
             let written = Threads::run(size, |ranks| write(&scene, scene.contact(Some(&ranks))?, &root)).unwrap();
             written.into_iter().for_each(|of_rank| assert_eq!(of_rank.unwrap(), areas, "{}, {size} ranks", scene.name));
