@@ -50,7 +50,7 @@ macro_rules! debug_by {
     };
 }
 
-/// Implements a trait for a wrapper: each method by that of the value inside.
+/// Implements a trait for a wrapper: each method calls the same method of the wrapped value.
 macro_rules! forward {
     (
         $trait:path, ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr),

@@ -14,8 +14,8 @@ use crate::problem::Problem;
 /// Steps after which a search has failed, if the last one reduces the sum of squares by more than a fraction.
 const MAX_STEPS: usize = 200;
 const SLOW: f64 = 1e-6;
-/// A search ends whose steps are worth less than this fraction, and hardly less and less: where the data hardly determine a combination of
-/// parameters, hundreds of such steps would change it by a small part of its deviation.
+/// A search ends where a step reduces the sum of squares by less than this fraction, and by more than half of what the step before did: where the data
+/// hardly determine a combination of parameters, hundreds of such steps would change the combination by a small part of its deviation.
 const SLOW_ENOUGH: f64 = 1e-7;
 
 /// A model of the material with what is known of the measurement: fits curves, and gives bounds before an experiment.

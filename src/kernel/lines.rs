@@ -259,3 +259,68 @@ pub(crate) fn unite(first: &[Complex64], second: &[Complex64], k: Range<usize>, 
         *z = Complex64::new(a.re - b.im, a.im + b.re);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn signal(cells: usize) -> Vec<Complex64> {
+        (0..cells).map(|n| Complex64::new(((n * n + 3) as f64).sin(), ((5 * n * n + 1) as f64).cos())).collect()
+    }
+
+    /// Every coefficient against its definition, and the inverse.
+    #[test]
+    fn lines_match_their_sums() {
+        for folded in [false, true] {
+            for (cells, length) in [(1, 1), (1, 2), (3, 4), (3, 5), (5, 6), (6, 6), (7, 10), (15, 15), (40, 42)] {
+                let (line, x) = (Line::new(length, folded), signal(cells));
+                let mut buffer = vec![Complex64::new(f64::NAN, f64::NAN); length];
+                let mut scratch = vec![Complex64::default(); line.scratch()];
+                line.pad(&mut buffer, cells);
+                x.iter().enumerate().for_each(|(n, &x)| buffer[line.place(n)] = x);
+                line.forward(&mut buffer, &mut scratch);
+                for (k, value) in buffer.iter().enumerate() {
+                    let wave = |n: usize| match folded {
+                        true => Complex64::from(2.0 * (PI * (k * (2 * n + 1)) as f64 / (2 * length) as f64).cos()),
+                        false => Complex64::from_polar(1.0, -2.0 * PI * (k * n) as f64 / length as f64),
+                    };
+                    let exact: Complex64 = x.iter().enumerate().map(|(n, x)| x * wave(n)).sum();
+                    assert!((value - exact).norm() < 1e-12, "{cells} {length} {folded} {k}: {value} {exact}");
+                }
+                line.inverse(&mut buffer, &mut scratch);
+                for (n, x) in x.iter().enumerate() {
+                    let back = buffer[line.place(n)];
+                    assert!((back - line.norm() * x).norm() < 1e-12, "{cells} {length} {folded} {n}: {back} {x}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn two_real_lines_are_one_complex_one() {
+        for length in [1, 2, 5, 8] {
+            let line = Line::new(length, false);
+            let mut scratch = vec![Complex64::default(); line.scratch()];
+            let mut both = signal(length);
+            let mut parts =
+                [0, 1].map(|part| both.iter().map(|z| Complex64::from([z.re, z.im][part])).collect::<Vec<_>>());
+            line.forward(&mut both, &mut scratch);
+            parts.iter_mut().for_each(|part| line.forward(part, &mut scratch));
+            // in pieces of three
+            let half = length / 2 + 1;
+            let mut found = [vec![Complex64::default(); half], vec![Complex64::default(); half]];
+            let [first, second] = &mut found;
+            for (piece, (first, second)) in first.chunks_mut(3).zip(second.chunks_mut(3)).enumerate() {
+                separate(&both, 3 * piece..half, first, second);
+            }
+            for (found, exact) in found.iter().zip(&parts) {
+                assert!(found.iter().zip(exact).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
+            }
+            let mut united = vec![Complex64::default(); length];
+            for (piece, (first, second)) in found[0].chunks(3).zip(found[1].chunks(3)).enumerate() {
+                unite(first, second, 3 * piece..half, &mut united);
+            }
+            assert!(united.iter().zip(&both).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
+        }
+    }
+}

@@ -95,7 +95,7 @@ pub enum Tilt {
     },
 }
 
-/// The coordinates at which a load of these tilts acts: those of free tilts, the origin along the other axes.
+/// The load point of these tilts: `at` along an axis of free tilt, 0 along an axis of fixed tilt.
 pub(crate) fn load_point(tilt: [Tilt; 2]) -> [f64; 2] {
     tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 })
 }

@@ -93,8 +93,8 @@ pub fn least_squares<E>(
     Ok(at)
 }
 
-/// Coordinates and residuals at the end of a step that is bent to follow a curved valley: where the residuals are those of the linearised problem at
-/// the end of the straight step, up to what the damped problem cannot remove. None where the residuals cannot be computed.
+/// Coordinates and residuals at the end of a step that is bent to follow a curved valley: there the residuals equal the residuals of the linearised
+/// problem at the end of the straight step, up to what the damped problem cannot remove. None where the residuals cannot be computed.
 fn follow<E>(
     x: &[f64],
     model: &Linear,

@@ -39,7 +39,7 @@ pub struct MasterCurve {
     reference: f64,
     /// By temperature, ascending.
     isotherms: Vec<Isotherm>,
-    /// Of each from the reference; the disagreement is that of the shift from its neighbour.
+    /// The shift of each isotherm from the reference. The disagreement is that of the shift from the neighbouring isotherm.
     shifts: Vec<Shift>,
 }
 

@@ -195,9 +195,10 @@ impl Descent<'_> {
             let mut leaves = None;
             let share = if iteration == 0 { SMOOTH } else { 1.0 };
             if gradient.greatest <= share * self.own.exactness * self.problem.tolerance(soft) {
+                let stiffness = softest.unwrap_or_else(|| self.least_stiffness());
                 let suspected = match softest {
-                    Some(softness) => softness < VERY_SOFT,
-                    None => (least < SUSPECT || iteration < LEAST_MEASURED) && self.least_stiffness() < NEAR_FOLD,
+                    Some(_) => stiffness < VERY_SOFT,
+                    None => (least < SUSPECT || iteration < LEAST_MEASURED) && stiffness < NEAR_FOLD,
                 };
                 if suspected && looks < LOOKS {
                     let softness = self.softest(looks);
@@ -213,7 +214,7 @@ impl Descent<'_> {
                 if leaves.is_none() && gradient.greatest <= self.own.exactness * self.problem.tolerance(soft) {
                     self.own.softness = if iteration == 0 { self.own.softness } else { soft };
                     self.own.softest = softest;
-                    self.trial.solution.stiffness = softest.unwrap_or_else(|| self.least_stiffness().min(recent));
+                    self.trial.solution.stiffness = softest.unwrap_or(stiffness.min(recent));
                     self.trial.solution.residual = gradient.greatest / limit * stop.tolerance;
                     self.finish(gradient.multiplier);
                     return Ok(());
