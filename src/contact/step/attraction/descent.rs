@@ -48,7 +48,10 @@ const VERY_SOFT: f64 = 0.005;
 const NEAR_FOLD: f64 = 0.25;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
-const UNSTABLE: f64 = -1e-4;
+const UNSTABLE: f64 = -1e-5;
+/// A fold of E lies within r over the square of the curvature: r is to be smaller by this factor, or this small.
+const FOLD: f64 = 0.05;
+const LEAST_FOLD: f64 = 1e-9;
 /// q is computed afresh after so many iterations.
 const FRESH: usize = 50;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
@@ -61,7 +64,7 @@ pub(super) struct Balance {
     /// The stiffness of the mean of x, which replaces the one in M.
     of_mean: f64,
     /// p.
-    offset: f64,
+    pub(super) offset: f64,
     /// Compliance of the mean, in the preconditioner.
     pub(super) soft: f64,
     /// Whether the mean of x is given.
@@ -113,10 +116,10 @@ impl Balance {
                 let moved = x[k] + shift;
                 Some(if gap[k] + moved > 0.0 { [moved, 1.0] } else { [-gap[k], 0.0] })
             });
-            if sum.abs() <= scale || free == 0.0 {
+            if sum.abs() <= scale || free == 0.0 && sum > 0.0 {
                 break;
             }
-            shift -= sum / free;
+            shift -= sum / if free > 0.0 { free } else { rows.len() as f64 };
         }
         if below || shift != 0.0 {
             x.iter_mut().zip(gap).for_each(|(x, z)| *x = (*x + shift).max(-z));
@@ -203,7 +206,7 @@ impl Descent<'_> {
                 if suspected && looks < LOOKS {
                     let softness = self.softest(looks);
                     looks += 1;
-                    gradient = self.gradient();
+                    (gradient, energy) = (self.gradient(), self.energy());
                     (softest, has_last) = (Some(softness), false);
                     if softness < UNSTABLE {
                         leaves = Some((self.way_out(gradient), softness));
@@ -211,7 +214,9 @@ impl Descent<'_> {
                     }
                 }
                 let soft = soft.min(softest.unwrap_or(1.0));
-                if leaves.is_none() && gradient.greatest <= self.own.exactness * self.problem.tolerance(soft) {
+                let fold = softest.map_or(1.0, |soft| (FOLD * soft * soft).max(LEAST_FOLD));
+                if leaves.is_none() && gradient.greatest <= fold.min(self.own.exactness * self.problem.tolerance(soft))
+                {
                     self.own.softness = if iteration == 0 { self.own.softness } else { soft };
                     self.own.softest = softest;
                     self.trial.solution.stiffness = softest.unwrap_or(stiffness.min(recent));
@@ -367,17 +372,6 @@ impl Descent<'_> {
             }
         }
         balance.project(&rows, gap, x) || opens
-    }
-
-    /// E over the area of a cell, and the sum of its parts.
-    fn energy(&self) -> [f64; 2] {
-        let Descent { problem, balance, window, trial, .. } = self;
-        let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
-        window.kernel.rows().sum_terms(|k| {
-            let (h, stored) = (gap[k] + x[k], 0.5 * x[k] * (q[k] + balance.offset));
-            let attracted = if h.is_finite() { problem.law.energy(h.max(0.0)) } else { 0.0 };
-            Some([stored - attracted, stored.abs() + attracted + f64::MIN_POSITIVE])
-        })
     }
 
     /// From x and q of the trial its z, s and K (z − s), and its motion.

@@ -1,5 +1,6 @@
-//! The energy of a pass, of the state before the step, and how the surfaces respond.
+//! The energy of a pass, of an iteration in the gap, of the state before the step, and how the surfaces respond.
 
+use super::descent::Descent;
 use super::passes::InPasses;
 use super::{Attracted, AttractedStep};
 use crate::contact::state::Equilibrium;
@@ -159,5 +160,18 @@ impl AttractedStep<'_> {
         report.bend = 1.0 + softened / convex;
         let much = LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0));
         report.suspected = report.may_jump(self.area() * much) && !self.is_first(trial);
+    }
+}
+
+impl Descent<'_> {
+    /// E over the area of a cell, and the sum of its parts.
+    pub(super) fn energy(&self) -> [f64; 2] {
+        let Descent { problem, balance, window, trial, .. } = self;
+        let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
+        window.kernel.rows().sum_terms(|k| {
+            let (h, stored) = (gap[k] + x[k], 0.5 * x[k] * (q[k] + balance.offset));
+            let attracted = if h.is_finite() { problem.law.energy(h.max(0.0)) } else { 0.0 };
+            Some([stored - attracted, stored.abs() + attracted + f64::MIN_POSITIVE])
+        })
     }
 }

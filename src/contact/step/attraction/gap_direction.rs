@@ -20,9 +20,13 @@ const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
 /// The softest direction is looked for in at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
-const MOST_TURNS: usize = 60;
+const MOST_TURNS: usize = 100;
 const NEGATIVE: f64 = -1e-2;
 const PRECISE: f64 = 0.2;
+/// What rounding leaves of a direction that is exact.
+const EXHAUSTED: f64 = 1e-6;
+/// By this power of e, twice, a direction that is softer has outgrown the one that is found.
+const GROWN: f64 = 6.0;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
@@ -42,8 +46,12 @@ pub(super) struct Gradient {
 
 /// −s′ of an open gap.
 fn softens(law: &dyn Attraction, h: f64) -> f64 {
-    let small = DIFFERENCE * law.range();
-    if h > 0.0 && h.is_finite() { (law.traction(h) - law.traction(h + small)) / small } else { 0.0 }
+    if !(h > 0.0 && h.is_finite()) {
+        return 0.0;
+    }
+    let small = 0.5 * DIFFERENCE * law.range();
+    let (before, after) = ((h - small).max(0.0), h + small);
+    (law.traction(before) - law.traction(after)) / (after - before)
 }
 
 impl Descent<'_> {
@@ -198,22 +206,28 @@ impl Descent<'_> {
     pub(super) fn softest(&mut self, look: usize) -> f64 {
         let Descent { problem, balance, inverse, own, window, trial, counts } = self;
         let (law, rows, c) = (problem.law, window.kernel.rows().clone(), balance.compliance);
-        let (solution, gap) = (&mut trial.solution, &trial.gap);
-        let (x, softening) = (&solution.potential, &mut solution.pressure);
+        let gap = &trial.gap;
+        let Solution { potential: x, attraction: w, pressure: softening, .. } = &mut trial.solution;
+        let x = &*x;
         for_each_band([&mut *softening], |first, [softening]| {
             softening.iter_mut().zip(first..).for_each(|(softening, k)| *softening = softens(law, gap[k] + x[k]));
         });
         let (softening, is_open) = (&*softening, |k: usize| gap[k] + x[k] > 0.0);
-        // K of a field, on the open cells
-        let smooth = |window: &mut Window, field: &mut [f64]| {
-            let Window { kernel, work, .. } = window;
-            let mean = (balance.soft - c * balance.inverse[1]) * rows.sum(field) / field.len() as f64;
-            kernel.apply_in_place(field, work);
-            field.iter_mut().enumerate().for_each(|(k, y)| *y = if is_open(k) { c * *y + mean } else { 0.0 });
+        // a mean that is given takes none of a direction, and no constant of a residual
+        let level = |field: &mut [f64]| {
             if balance.held {
                 let [sum, open] = rows.sum_terms(|k| is_open(k).then(|| [field[k], 1.0]));
                 field.iter_mut().enumerate().filter(|(k, _)| is_open(*k)).for_each(|(_, y)| *y -= sum / open);
             }
+        };
+        // K of a field, on the open cells
+        let smooth = |window: &mut Window, field: &mut [f64]| {
+            level(field);
+            let Window { kernel, work, .. } = window;
+            let mean = (balance.soft - c * balance.inverse[1]) * rows.sum(field) / field.len() as f64;
+            kernel.apply_in_place(field, work);
+            field.iter_mut().enumerate().for_each(|(k, y)| *y = if is_open(k) { c * *y + mean } else { 0.0 });
+            level(field);
         };
         // another for each look of a descent: of two modes that are soft alike the last one has found a mix, and would find none of what is left
         let salt = look * gap.len();
@@ -237,37 +251,50 @@ impl Descent<'_> {
             let root = (b * b - 4.0 * a * e).max(0.0).sqrt();
             let t = if b < 0.0 { 2.0 * e / (-b + root) } else { -(b + root) / (2.0 * a) };
             if t.is_finite() {
-                for_each_band([&mut *v, &mut *image], |first, [v, image]| {
-                    for ((v, image), k) in v.iter_mut().zip(image).zip(first..) {
-                        (*v, *image) = (*v + t * p[k], *image + t * image_of_p[k]);
-                    }
-                });
                 softened += t * (2.0 * of_vp + t * of_pp);
                 convex += t * (2.0 * with_vp + t * with_pp);
+                // p stays apart from v, since their mix would be lost in rounding
+                let shared = (with_vp + t * with_pp) / convex;
+                for_each_band([&mut *v, &mut *image, &mut *p, &mut *image_of_p], |_, [v, image, p, image_of_p]| {
+                    for (((v, image), p), image_of_p) in v.iter_mut().zip(image).zip(p).zip(image_of_p) {
+                        (*v, *image) = (*v + t * *p, *image + t * *image_of_p);
+                        (*p, *image_of_p) = (*p - shared * *v, *image_of_p - shared * *image);
+                    }
+                });
             }
             let share = softened / convex;
             if !(softened > 0.0 && convex > 0.0) || 1.0 - share < NEGATIVE {
                 break;
             }
-            for (k, w) in image_of_p.iter_mut().enumerate() {
-                *w = if is_open(k) { softening[k] * v[k] - share * image[k] } else { 0.0 };
-            }
-            smooth(window, image_of_p);
+            for_each_band([&mut *w], |first, [w]| {
+                w.iter_mut().zip(first..).for_each(|(w, k)| {
+                    *w = if is_open(k) { softening[k] * v[k] - share * image[k] } else { 0.0 };
+                });
+            });
+            smooth(window, w);
             counts.convolutions += 1;
-            let y = &*image_of_p;
-            let [steepest] = rows.sum_terms(|k| Some([y[k] * (softening[k] * v[k] - share * image[k])]));
-            let square = steepest / convex;
+            // along p and w the quotient bends by (softening - share M), to which the next p is conjugate
+            let bends = |k: usize| softening[k] * p[k] - share * image_of_p[k];
+            let [steepest, of_p, of_w] = rows.sum_terms(|k| {
+                Some([w[k] * (softening[k] * v[k] - share * image[k]), p[k] * bends(k), w[k] * bends(k)])
+            });
+            let square = (steepest / convex).max(0.0);
+            let left = square.sqrt();
             // a random direction has 1/√N of one of quotient 0, which gains e^(2√q) a turn on one of quotient q
-            let grown = 4.0 * (1.0 - share).abs().sqrt() * turn as f64 >= (v.len() as f64).ln();
-            if grown && square.max(0.0).sqrt() <= PRECISE * (1.0 - share).abs() {
+            let grown = 4.0 * (1.0 - share).abs().sqrt() * turn as f64 >= (v.len() as f64).ln() + GROWN;
+            if left <= EXHAUSTED || grown && left <= PRECISE * (1.0 - share).abs() {
                 break;
             }
-            let beta = if before > 0.0 { square / before } else { 0.0 };
+            let conjugate = if of_p < 0.0 { -of_w / of_p } else { 0.0 };
+            let beta = if before > 0.0 { conjugate.clamp(0.0, square / before) } else { 0.0 };
             before = square;
-            p.iter_mut().zip(y).for_each(|(p, y)| *p = y + if beta > 0.0 { beta * *p } else { 0.0 });
+            p.iter_mut().zip(&*w).for_each(|(p, w)| *p = w + beta * *p);
             balance.tractions(inverse, window, p, image_of_p, true);
             counts.convolutions += 1;
         }
+        // w took the place of q
+        balance.tractions(inverse, window, x, w, false);
+        counts.convolutions += 1;
         if !(softened > 0.0 && convex > 0.0) {
             return 1.0;
         }
