@@ -110,19 +110,23 @@ impl Balance {
             return below;
         }
         let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
-        let mut shift = 0.0;
+        // cells at the wall stay there, unless no other is left
+        let (mut shift, mut lifts) = (0.0, false);
         for _ in 0..SHORTENINGS * 4 {
             let [sum, free] = rows.sum_terms(|k| {
-                let moved = x[k] + shift;
-                Some(if gap[k] + moved > 0.0 { [moved, 1.0] } else { [-gap[k], 0.0] })
+                let (h, moves) = (gap[k] + x[k], lifts || gap[k] + x[k] > 0.0);
+                Some(if moves && h + shift > 0.0 { [x[k] + shift, 1.0] } else { [-gap[k], 0.0] })
             });
             if sum.abs() <= scale || free == 0.0 && sum > 0.0 {
                 break;
             }
+            lifts |= free == 0.0;
             shift -= sum / if free > 0.0 { free } else { rows.len() as f64 };
         }
         if below || shift != 0.0 {
-            x.iter_mut().zip(gap).for_each(|(x, z)| *x = (*x + shift).max(-z));
+            for (x, z) in x.iter_mut().zip(gap) {
+                *x = if lifts || z + *x > 0.0 { (*x + shift).max(-z) } else { -z };
+            }
         }
         below || shift != 0.0
     }
@@ -364,12 +368,10 @@ impl Descent<'_> {
         let shift = balance.of_mean * of_x + balance.offset - of_q;
         q.iter_mut().for_each(|q| *q += shift);
         let mut opens = false;
-        if !balance.held {
-            // cells under pressure stay in contact
-            for ((x, _), gap) in x.iter_mut().zip(&*pressure).zip(&*gap).filter(|((_, z), _)| **z > 0.0) {
-                opens |= gap + *x != 0.0;
-                *x = -gap;
-            }
+        // cells under pressure stay in contact
+        for ((x, _), gap) in x.iter_mut().zip(&*pressure).zip(&*gap).filter(|((_, z), _)| **z > 0.0) {
+            opens |= gap + *x != 0.0;
+            *x = -gap;
         }
         balance.project(&rows, gap, x) || opens
     }

@@ -25,8 +25,8 @@ const NEGATIVE: f64 = -1e-2;
 const PRECISE: f64 = 0.2;
 /// What rounding leaves of a direction that is exact.
 const EXHAUSTED: f64 = 1e-6;
-/// By this power of e, twice, a direction that is softer has outgrown the one that is found.
-const GROWN: f64 = 6.0;
+/// By half this power of e a direction that is softer has outgrown the one that is found.
+const GROWN: f64 = 8.0;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
@@ -280,8 +280,8 @@ impl Descent<'_> {
             });
             let square = (steepest / convex).max(0.0);
             let left = square.sqrt();
-            // a random direction has 1/√N of one of quotient 0, which gains e^(2√q) a turn on one of quotient q
-            let grown = 4.0 * (1.0 - share).abs().sqrt() * turn as f64 >= (v.len() as f64).ln() + GROWN;
+            // of a random direction, as K smooths it, a long wave is about the part N^-¼; one of quotient 0 gains e^(2√q) a turn on one of quotient q
+            let grown = 4.0 * (1.0 - share).abs().sqrt() * turn as f64 >= 0.5 * (v.len() as f64).ln() + GROWN;
             if left <= EXHAUSTED || grown && left <= PRECISE * (1.0 - share).abs() {
                 break;
             }
