@@ -277,7 +277,11 @@ fn every_history_obeys_every_law() {
         ("Arc", Box::new(std::sync::Arc::new(table(&[(1.0, 0.0), (2.0, 1.0)])))),
     ];
     for (name, history) in histories {
-        for times in [load::laws::even_times(0.0, 3.0, 17), load::laws::even_times(-1.0, 1e3, 40)] {
+        for times in [
+            load::laws::even_times(0.0, 3.0, 17),
+            load::laws::even_times(-1.0, 1e3, 40),
+            load::laws::even_times(-0.02, 0.02, 3),
+        ] {
             obeys(name, load::laws::all(&*history, &times));
         }
     }

@@ -1,5 +1,5 @@
 //! A contact that ranks share out is the same as in one process, bit by bit and whatever their number: its steps, its fields,
-//! its files, and the steps after a checkpoint. `RANKS_SCENES` (24) and `RANKS_SEED` (1) choose random scenes.
+//! its files, and the steps after a checkpoint. `RANKS_SCENES` (16) and `RANKS_SEED` (1) choose random scenes.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -48,7 +48,7 @@ fn chosen_scenes_are_the_same_on_all_ranks() {
 
 #[test]
 fn random_scenes_are_the_same_on_all_ranks() {
-    let (scenes, first) = (from_environment("RANKS_SCENES", 24), 1000 * from_environment("RANKS_SEED", 1));
+    let (scenes, first) = (from_environment("RANKS_SCENES", 16), 1000 * from_environment("RANKS_SEED", 1));
     let (mut pressed, mut steps, mut failed) = (0, 0, 0);
     for seed in first..first + scenes {
         let scene = AnyScene::new(seed);
