@@ -459,7 +459,7 @@ fn strip(x: f64, side: f64, kappa: f64, datum: f64) -> f64 {
     // ∫ from 0 to s of K0(κ s)
     let from_zero = |s: f64| {
         let integrand = |t: f64| -(-kappa * s * t.cosh()).exp_m1() / t.cosh() / kappa;
-        points(0.0, 40.0, 120).map(|(t, w)| w * integrand(t)).sum::<f64>()
+        points(0.0, 40.0, 40).map(|(t, w)| w * integrand(t)).sum::<f64>()
     };
     let signed = |s: f64| s.signum() * from_zero(s.abs());
     2.0 / PI * (signed(x + half) - signed(x - half))

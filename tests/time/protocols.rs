@@ -174,7 +174,7 @@ fn difference(a: &ViscoelasticContact, b: &ViscoelasticContact) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7201), max_shrink_iters: 200, ..ProptestConfig::with_cases(100) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7201), max_shrink_iters: 200, ..ProptestConfig::with_cases(60) })]
 
     /// Jumps between loads that press nothing, or that the state satisfies already, change nothing: the same steps without
     /// the jumps end alike, by a rule that does not begin anew after a jump.
@@ -286,7 +286,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(16) })]
 
     /// Adaptive runs of forces that begin with any load that keeps the bodies apart agree with runs that begin without a jump.
     #[test]

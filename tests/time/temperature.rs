@@ -193,7 +193,7 @@ fn temperatures_beyond_the_law_are_refused() {
             (TemperatureHistory::constant(wlf(), f64::NAN).err(), "temperature"),
             (table(&[]), "temperature table"),
             (table(&[(1.0, 300.0), (0.0, 300.0)]), "must"),
-            (TemperatureHistory::function(wlf(), |_| 300.0, &[f64::NAN]).err(), "breakpoint"),
+            (TemperatureHistory::function(wlf(), |_| 300.0, &[f64::NAN]).err(), "corner of the temperature"),
         ],
     );
     // a closure that cools below T_ref − C2 after 2 s

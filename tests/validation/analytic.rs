@@ -54,7 +54,7 @@ fn pressures_carry_the_force() {
             let a = scene.contact_radius(t);
             // r = a sin θ smooths the rim, and Simpson's rule takes few of the pressures, which are integrals of integrals;
             // nothing is left at either end
-            let n = 40;
+            let n = 60;
             let step = 0.5 * PI / f64::from(n);
             let sum: f64 = (1..n)
                 .map(|k| (if k % 2 == 1 { 4.0 } else { 2.0 }, f64::from(k) * step))

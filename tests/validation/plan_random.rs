@@ -11,8 +11,8 @@ use std::time::Instant;
 use viscocontact::analytic::{Hertz, HertzEllipse};
 use viscocontact::prelude::*;
 
-use crate::common::ratios::Ratios;
-use crate::common::{Draws, RADIUS, builder_of, from_environment};
+use crate::common::random_bodies::{Body, random_body};
+use crate::common::{Draws, RADIUS, Ratios, builder_of, from_environment};
 
 const SLOPE: f64 = 0.05;
 const PUNCH: f64 = 1.0e-3;
@@ -113,25 +113,37 @@ pub(super) struct Scene {
     pub(super) kind: usize,
 }
 
-fn body(draws: &mut Draws, ratio: f64, until: f64) -> (&'static str, Material) {
-    let glassy = 1.0 / MODULUS;
-    let (name, creep) = match draws.below(3) {
-        0 => {
-            let viscosity = until / ((ratio - 1.0) * glassy);
-            ("Maxwell", GeneralizedKelvin::new(glassy, 1.0 / viscosity, &[]))
-        }
-        1 => {
-            let time = until * draws.power_of_ten(-2.0, 0.3);
-            ("Zener", GeneralizedKelvin::new(glassy, 0.0, &[((ratio - 1.0) * glassy, time)]))
-        }
-        _ => {
-            let count = 2 + draws.below(4);
-            let mut term = || ((ratio - 1.0) * glassy / count as f64, until * draws.power_of_ten(-3.0, 0.3));
-            let terms: Vec<_> = (0..count).map(|_| term()).collect();
-            ("several times", GeneralizedKelvin::new(glassy, 0.0, &terms))
-        }
+/// A step, a ramp, a ramp that is held or a wave over `until` seconds; its name and kind.
+pub(super) fn history(
+    draws: &mut Draws,
+    full: &dyn Fn(f64) -> Load,
+    until: f64,
+) -> (usize, String, Box<dyn LoadHistory>) {
+    let (kind, part) = (draws.below(4), draws.power_of_ten(-1.5, 0.0));
+    let (low, period) = (draws.between(0.2, 0.8), until / draws.between(0.3, 3.0));
+    let (name, history): (_, Box<dyn LoadHistory>) = match kind {
+        0 => ("step".into(), Box::new(StepLoad::new(full(1.0)).unwrap())),
+        1 => ("ramp".into(), Box::new(Ramp::new(full(0.0), full(1.0), until * 1.001).unwrap())),
+        2 => (format!("ramp and hold ({part:.2})"), Box::new(Ramp::new(full(0.0), full(1.0), part * until).unwrap())),
+        _ if low < 0.28 => ("triangle".into(), Box::new(Periodic::triangle(full(low), full(1.0), period).unwrap())),
+        _ if low < 0.35 => ("square".into(), Box::new(Periodic::square(full(1.0), full(low), period, 0.5).unwrap())),
+        _ => ("sine".into(), Box::new(Sinusoid::new(full(low), full(1.0), period.recip()).unwrap())),
     };
-    (name, Material::incompressible(creep.unwrap()))
+    (kind, name, history)
+}
+
+pub(super) fn accuracy(draws: &mut Draws) -> Accuracy {
+    if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD }
+}
+
+/// A body that answers at once and creeps up to 1000-fold.
+fn body(draws: &mut Draws) -> Body {
+    loop {
+        let body = random_body(draws);
+        if body.is_elastic_at_once() && (1.1..1e3).contains(&body.creep_ratio()) {
+            return body;
+        }
+    }
 }
 
 pub(super) fn scene(seed: u64, number: u64) -> Scene {
@@ -142,28 +154,15 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
         2 => Shape::Ellipsoid(RADIUS * draws.power_of_ten(-1.0, 1.0)),
         _ => Shape::Punch,
     };
-    let (ratio, until) = (draws.power_of_ten(0.1, 3.0), draws.power_of_ten(-2.0, 1.0));
-    let (body, material) = body(draws, ratio, until);
+    let body = body(draws);
+    let (ratio, until) = (body.creep_ratio(), body.until);
+    let (body, material) = (body.name, body.material);
     let radius = draws.power_of_ten(-4.0, -2.8);
     let by_force = draws.chance(0.5);
     let [depth, force] = shape.elastic(radius, material.contact_compliance(until));
     let full = |share: f64| if by_force { Load::force(share * force) } else { Load::approach(share * depth) };
-    let (kind, part) = (draws.below(4), draws.power_of_ten(-1.5, 0.0));
-    let (history_name, history): (&str, Box<dyn LoadHistory>) = match kind {
-        0 => ("step", Box::new(StepLoad::new(full(1.0)).unwrap())),
-        1 => ("ramp", Box::new(Ramp::new(full(0.0), full(1.0), until * 1.001).unwrap())),
-        2 => ("ramp and hold", Box::new(Ramp::new(full(0.0), full(1.0), part * until).unwrap())),
-        _ => {
-            let low = draws.between(0.2, 0.8);
-            let periods = draws.between(0.3, 3.0);
-            if low < 0.35 {
-                ("triangle", Box::new(Periodic::triangle(full(low), full(1.0), until / periods).unwrap()))
-            } else {
-                ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods / until).unwrap()))
-            }
-        }
-    };
-    let accuracy = if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD };
+    let (kind, history_name, history) = history(draws, &full, until);
+    let accuracy = accuracy(draws);
     // a punch aside of the load tilts, and sinks in as much in its middle
     let most = if matches!(shape, Shape::Punch) { 0.8 * PUNCH } else { f64::INFINITY };
     let aside = if draws.chance(0.3) { f64::min(draws.between(0.1, 2.0) * radius, most) } else { 0.0 };
@@ -179,7 +178,7 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
     };
     let by = if by_force { "force" } else { "approach" };
     let name = format!(
-        "{seed}:{number} {shape:?} {aside:.1e} m aside, {body} ×{ratio:.1}, {history_name} ({part:.2}) of {by}, {until:.1e} s, \
+        "{seed}:{number} {shape:?} {aside:.1e} m aside, {body} ×{ratio:.1}, {history_name} of {by}, {until:.1e} s, \
          {accuracy:?}, area {area}"
     );
     let other = None;
@@ -204,7 +203,8 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
 fn tilting(seed: u64, number: u64) -> Scene {
     let draws = &mut Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(1 << 40));
     let (ratio, by_force) = (draws.power_of_ten(0.1, 2.0), draws.chance(0.5));
-    let (body, material) = body(draws, ratio, 1.0);
+    let creep = [((ratio - 1.0) / MODULUS, draws.power_of_ten(-2.0, 0.3))];
+    let material = Material::incompressible(GeneralizedKelvin::new(1.0 / MODULUS, 0.0, &creep).unwrap());
     let (geometry, loads): (Box<dyn Geometry>, [Load; 3]) = if by_force {
         let [first, second] = [draws.between(0.0, 1e-3), draws.between(0.0, 5e-4)];
         let face = FlatPunch::rectangular([1.0e-3, draws.power_of_ten(-3.5, -2.5)]).unwrap();
@@ -218,7 +218,7 @@ fn tilting(seed: u64, number: u64) -> Scene {
     };
     let table: Vec<_> = [0.0, 0.45, 1.0].into_iter().zip(loads).collect();
     let (history, name) =
-        (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, {body} ×{ratio:.1}"));
+        (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, creep ×{ratio:.1}"));
     let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
     let (shape, until, area, aside, kind) = (None, 1.0, draws.chance(0.3), 0.0, 1);
     Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio, kind }

@@ -123,7 +123,7 @@ fn a_dense_reference_of_the_linear_rule_agrees() {
 
 fn agrees_with_a_dense_reference(time_rule: TimeRule) {
     let (count, first) =
-        (from_environment("DIFFERENTIAL_SCENES", 500) as usize, from_environment("DIFFERENTIAL_SEED", 1));
+        (from_environment("DIFFERENTIAL_SCENES", 300) as usize, from_environment("DIFFERENTIAL_SEED", 1));
     let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
     for seed in (first * 1_000_000..).take(count) {
         let scene = Scene::any(seed, 6, false);
