@@ -234,12 +234,15 @@ fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
     let punch = matches!(shape, Shape::Punch);
     let mut contact = StatesContact::new(&elastic, &scene.material).unwrap();
     // steps are graded after the start: pressures may be greatest early
-    let mut fine: Vec<f64> = (0..240).map(|k| scene.until * 10f64.powf(-6.0 + 6.0 * f64::from(k) / 239.0)).collect();
-    fine.extend((1..=400).map(|k| scene.until * f64::from(k) / 400.0));
+    let parts = from_environment("PLANS_FINE", 1) as u32;
+    let log_spaced = |k: u32| scene.until * 10f64.powf(-6.0 + 6.0 * f64::from(k) / f64::from(240 * parts));
+    let mut fine: Vec<f64> = (0..240 * parts).map(log_spaced).collect();
+    fine.extend((1..=400 * parts).map(|k| scene.until * f64::from(k) / f64::from(400 * parts)));
     fine.extend(times.iter().copied().chain([0.0]));
     let mut breakpoint = scene.history.next_breakpoint(0.0);
     while let Some(at) = breakpoint.filter(|&at| at <= scene.until) {
-        fine.extend((0..20).map(|k| at + (scene.until - at) * 10f64.powf(-5.0 + 0.25 * f64::from(k))));
+        let since = |k: u32| (scene.until - at) * 10f64.powf(-5.0 + 0.25 * f64::from(k) / f64::from(parts));
+        fine.extend((0..20 * parts).map(|k| at + since(k)));
         fine.push(at);
         breakpoint = scene.history.next_breakpoint(at);
     }
@@ -248,13 +251,17 @@ fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
     fine.dedup();
     let (mut states, mut highest) = (Vec::new(), 0.0_f64);
     for time in fine {
-        let dt = time - contact.time();
-        match scene.history.at(time) {
-            Load::Approach { approach, .. } => contact.step(dt, Load::approach(approach / approaches)).unwrap(),
-            // an eccentric force leaves the approach of the middle as it is
-            Load::Force { normal, .. } => contact.step(dt, Load::force(normal)).unwrap(),
-            load => panic!("{load:?}"),
-        };
+        // up to a jump, and over it
+        let [before, after] = [scene.history.before(time), scene.history.at(time)];
+        for load in [before].into_iter().chain((after != before).then_some(after)) {
+            let load = match load {
+                Load::Approach { approach, .. } => Load::approach(approach / approaches),
+                // an eccentric force leaves the approach of the middle as it is
+                Load::Force { normal, .. } => Load::force(normal),
+                load => panic!("{load:?}"),
+            };
+            contact.step(time - contact.time(), load).unwrap();
+        }
         let edge = (contact.contact_area() / PI).sqrt();
         if times.contains(&time) {
             let main = if scene.by_force { approaches * contact.approach() } else { contact.force() };
@@ -290,15 +297,23 @@ fn of_finer_run(scene: &Scene, plan: &Plan, times: &[f64]) -> Result<Truth, Erro
     }
     let mut contact = builder.settings(Settings::default().with_tolerance(1e-7)).build()?;
     let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
-    let mut run = contact.follow(&scene.history, stepping, scene.until).stop_at(times)?;
-    let (mut states, mut highest) = (Vec::new(), 0.0_f64);
+    let run = contact.follow(&scene.history, stepping, scene.until).stop_at(times)?;
+    let (mut states, highest) = ends_of(scene, run)?;
+    states.retain(|(time, _)| times.contains(time));
+    Ok((states.into_iter().map(|(_, state)| state).collect(), Some(highest)))
+}
+
+/// The states at the ends of steps, of several at a time the last, and the greatest pressure.
+fn ends_of(scene: &Scene, mut run: Run<'_, ViscoelasticContact>) -> Result<(Vec<(f64, [Option<f64>; 2])>, f64), Error> {
+    let (mut states, mut highest) = (Vec::<(f64, _)>::new(), 0.0_f64);
     while let Some(report) = run.next_step()? {
+        states.pop_if(|(time, _)| *time == report.time);
+        let [main, radius] = observed(scene, run.contact());
+        // the radius of a few cells is not known
+        states.push((report.time, [main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]));
         highest = highest.max(run.contact().max_pressure());
-        if times.get(states.len()) == Some(&report.time) {
-            states.push(observed(scene, run.contact()));
-        }
     }
-    Ok((states, Some(highest)))
+    Ok((states, highest))
 }
 
 fn observed(scene: &Scene, contact: &ViscoelasticContact) -> [Option<f64>; 2] {
@@ -338,20 +353,8 @@ fn deliver(scene: &Scene, limit: usize) -> Result<Outcome, Error> {
         return Ok(Outcome { over: [None; 3], ratio, promises: plan.pressure_converges(), note });
     }
     let mut contact = plan.builder.clone().build()?;
-    let mut run = contact.follow(history, plan.stepping, *until).stop_at(&plan.stops[..])?;
-    let (mut times, mut states, mut highest) = (vec![], vec![], 0.0_f64);
-    while let Some(report) = run.next_step()? {
-        // of several states at a time, the last
-        if times.last() == Some(&report.time) {
-            states.pop();
-        } else {
-            times.push(report.time);
-        }
-        let [main, radius] = observed(scene, run.contact());
-        // the radius of a few cells is not known
-        states.push([main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]);
-        highest = highest.max(run.contact().max_pressure());
-    }
+    let (states, highest) = ends_of(scene, contact.follow(history, plan.stepping, *until).stop_at(&plan.stops[..])?)?;
+    let (times, states): (Vec<f64>, Vec<_>) = states.into_iter().unzip();
     let (truth, peak) = match scene.shape {
         Some(shape) => of_states(scene, shape, &times),
         None => of_finer_run(scene, &plan, &times)?,
