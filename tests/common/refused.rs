@@ -18,12 +18,21 @@ fn field_of(error: &Error) -> Option<&'static str> {
     }
 }
 
-/// A table of refusals: each row is an error of this kind, and the name of its value, or words of its message.
-pub fn refused<const N: usize>(kind: ErrorKind, rows: [(Option<Error>, &str); N]) {
-    for (row, (error, named)) in rows.into_iter().enumerate() {
-        let error = error.unwrap_or_else(|| panic!("row {row} is not refused: {named}"));
+/// A table of values that are refused: each row is an error, and the name of its value or words of its message.
+pub fn refused<const N: usize>(rows: [(Option<Error>, &str); N]) {
+    table(ErrorKind::Value, &rows);
+}
+
+/// A table of what is not covered, likewise.
+pub fn not_covered<const N: usize>(rows: [(Option<Error>, &str); N]) {
+    table(ErrorKind::Unsupported, &rows);
+}
+
+fn table(kind: ErrorKind, rows: &[(Option<Error>, &str)]) {
+    for (row, (error, named)) in rows.iter().enumerate() {
+        let error = error.as_ref().unwrap_or_else(|| panic!("row {row} is not refused: {named}"));
         assert_eq!(error.kind(), kind, "row {row}: {error}");
-        let is_named = field_of(&error).map_or_else(|| error.to_string().contains(named), |field| field == named);
+        let is_named = field_of(error).map_or_else(|| error.to_string().contains(named), |field| field == *named);
         assert!(is_named, "row {row}, {named}: {error}");
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::{convolve, noise};
 use crate::common::builder_of;
 use crate::common::refused::{field, refused};
-use viscocontact::ErrorKind::Value;
 use viscocontact::KernelError;
 use viscocontact::prelude::*;
 
@@ -13,19 +12,18 @@ use viscocontact::prelude::*;
 fn kernels_refuse_by_name() {
     let long = "longer side of a cell over the thickness of the layer";
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e301] {
-        refused(Value, [(Layer::bonded_to_rigid(bad, 0.3).err(), "thickness of a layer")]);
+        refused([(Layer::bonded_to_rigid(bad, 0.3).err(), "thickness of a layer")]);
     }
     for bad in [-1.0, 0.51, f64::NAN] {
         let base = Layer::bonded_to_half_space(1.0, 0.3, 1.0, bad);
-        let rows = [
+        refused([
             (Layer::frictionless_on_rigid(1.0, bad).err(), "Poisson's ratio of a layer"),
             (base.err(), "Poisson's ratio of the base"),
-        ];
-        refused(Value, rows);
+        ]);
     }
     for bad in [0.0, 1e-7, 1e7, f64::NAN] {
         let ratio = Layer::bonded_to_half_space(1.0, 0.3, bad, 0.3);
-        refused(Value, [(ratio.err(), "shear modulus of a layer over that of its base")]);
+        refused([(ratio.err(), "shear modulus of a layer over that of its base")]);
     }
     let rigid = |thickness, nu| Layer::bonded_to_rigid(thickness, nu).unwrap();
     let on_half_space = Layer::bonded_to_half_space(1.0, 0.3, 5.0, 0.3).unwrap();
@@ -34,26 +32,23 @@ fn kernels_refuse_by_name() {
     let dozen = Grid::new([12, 1], [1.0, 1.0]).unwrap();
     let flat = Grid::new([4, 1], [4.0e-2, 1.0e-6]).unwrap();
     let datum = "datum of a line load";
-    refused(
-        Value,
-        [
-            (InfluenceKernel::layer_line(&line, rigid(1.0, 0.3), Some(2.0)).err(), "is 2 m"),
-            (InfluenceKernel::layer_line(&line, on_half_space, None).err(), "is absent"),
-            (InfluenceKernel::layer_line(&line, on_half_space, Some(0.5)).err(), datum),
-            (InfluenceKernel::layer_line(&grid, rigid(1.0, 0.3), None).err(), "cells along x2 of a line contact"),
-            (InfluenceKernel::layer(&grid, rigid(1e-5, 0.3)).err(), long),
-            (InfluenceKernel::layer_line(&flat, rigid(5e-6, 0.3), None).err(), long),
-            (InfluenceKernel::layer_line(&flat, rigid(20e-6, 0.5), None).err(), long),
-            // an incompressible layer under cells that do not squeeze it out
-            (InfluenceKernel::layer(&grid, rigid(0.06, 0.5)).err(), long),
-            (InfluenceKernel::layer(&grid, rigid(0.06, 0.498)).err(), long),
-            (InfluenceKernel::line(&few, 2.0).err(), "cells along x2 of a line contact"),
-            (InfluenceKernel::line(&dozen, 0.5).err(), datum),
-            (InfluenceKernel::line(&dozen, f64::NAN).err(), datum),
-            (InfluenceKernel::line(&Grid::new([4, 1], [1.0, 1.0]).unwrap(), 1.0e121).err(), datum),
-            (InfluenceKernel::periodic(&Grid::square(1, 1.0).unwrap()).err(), "cells of a periodic grid"),
-        ],
-    );
+    refused([
+        (InfluenceKernel::layer_line(&line, rigid(1.0, 0.3), Some(2.0)).err(), "is 2 m"),
+        (InfluenceKernel::layer_line(&line, on_half_space, None).err(), "is absent"),
+        (InfluenceKernel::layer_line(&line, on_half_space, Some(0.5)).err(), datum),
+        (InfluenceKernel::layer_line(&grid, rigid(1.0, 0.3), None).err(), "cells along x2 of a line contact"),
+        (InfluenceKernel::layer(&grid, rigid(1e-5, 0.3)).err(), long),
+        (InfluenceKernel::layer_line(&flat, rigid(5e-6, 0.3), None).err(), long),
+        (InfluenceKernel::layer_line(&flat, rigid(20e-6, 0.5), None).err(), long),
+        // an incompressible layer under cells that do not squeeze it out
+        (InfluenceKernel::layer(&grid, rigid(0.06, 0.5)).err(), long),
+        (InfluenceKernel::layer(&grid, rigid(0.06, 0.498)).err(), long),
+        (InfluenceKernel::line(&few, 2.0).err(), "cells along x2 of a line contact"),
+        (InfluenceKernel::line(&dozen, 0.5).err(), datum),
+        (InfluenceKernel::line(&dozen, f64::NAN).err(), datum),
+        (InfluenceKernel::line(&Grid::new([4, 1], [1.0, 1.0]).unwrap(), 1.0e121).err(), datum),
+        (InfluenceKernel::periodic(&Grid::square(1, 1.0).unwrap()).err(), "cells of a periodic grid"),
+    ]);
     // one that slides flows from crest to trough; in line contact nothing varies along the line: a metre of it is no long cell
     let of_a_metre = Grid::new([400, 1], [4.0e-3, 1.0]).unwrap();
     for nu in [0.3, 0.49, 0.498, 0.5] {
@@ -111,7 +106,7 @@ fn contacts_refuse_materials_that_are_not_the_layers() {
     ] {
         let error = build(material, counter).unwrap_err();
         assert!(matches!(error, Error::Kernel(KernelError::LayerMaterial { layer: 0.3, .. })), "{error}");
-        refused(Value, [(Some(error), word)]);
+        refused([(Some(error), word)]);
     }
 }
 
@@ -127,12 +122,11 @@ fn cells_beyond_numbers_are_refused() {
     ];
     let sides = |d1: f64, d2: f64| Grid::new([4, 3], [4.0 * d1, 3.0 * d2]).unwrap();
     for make in kernels {
-        let rows = [
+        refused([
             (make(&sides(1.0e-101, 1.0)).err(), "cell side along x1"),
             (make(&sides(1.0, 1.0e110)).err(), "cell side along x2"),
             (make(&sides(1.0e-60, 1.0e60)).err(), "aspect ratio of the cells"),
-        ];
-        refused(Value, rows);
+        ]);
         for (d1, d2) in [(1.0e-99, 1.0), (1.0, 1.0e-99), (1.0e-40, 1.0e40), (1.0e99, 1.0e99), (1.0e-99, 1.0e-99)] {
             let kernel = make(&sides(d1, d2)).unwrap();
             let found = convolve(&kernel, &noise(12));
@@ -170,6 +164,6 @@ fn products_beyond_numbers_are_refused() {
     {
         let mut work = of.workspace().unwrap();
         let product = eight.convolve(&vec![0.0; pressure], &mut vec![0.0; displacement], &mut work);
-        refused(Value, [(product.err(), named)]);
+        refused([(product.err(), named)]);
     }
 }

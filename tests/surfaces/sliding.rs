@@ -7,10 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::steady::Scene;
-use crate::common::refused::refused;
+use crate::common::refused::{not_covered, refused};
 use crate::common::steady_sliding::Time;
 use crate::common::{Draws, builder_of, from_environment};
-use viscocontact::ErrorKind::{Unsupported, Value};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
@@ -262,34 +261,28 @@ fn what_is_not_steady_is_refused() {
     let before = sliding.at([1.0, 0.0], Load::force(1.0)).unwrap();
     let pressure = sliding.contact().pressure().to_vec();
     let mut at = |velocity: f64, load: Load| sliding.at([velocity, 0.0], load).err();
-    refused(
-        Unsupported,
-        [
-            (periodic().material(fluid).build_sliding().err(), "a body that flows is not covered in steady motion"),
-            (
-                periodic().another_body(&FnGeometry::new(|x1, _| (TAU * x1).sin())).build_sliding().err(),
-                "several rigid bodies is not covered in steady motion",
-            ),
-            (periodic().attraction(law).build_sliding().err(), "attract each other is not covered in steady motion"),
-            (slope(0), "jumps"),
-            (slope(1), "jumps"),
-            (
-                of(&Sphere::new(1.0).unwrap()).kernel(kernel).build_sliding().err(),
-                "a body of coefficients is not covered in steady motion",
-            ),
-            (at(1.0, Load::eccentric_force(1.0, [0.1, 0.0])), "tilts the body along x1"),
-            (at(1.0, Load::approach_and_tilt(0.0, [0.1, 0.0])), "tilts the body along x1"),
-            (at(1.0, Load::spring(1.0, 1.0)), "a body on a spring is not covered in steady motion"),
-        ],
-    );
-    refused(
-        Value,
-        [
-            (at(1.0, Load::approach(1.0)), "that of full contact"),
-            (at(f64::NAN, Load::force(1.0)), "velocity along x1"),
-            (at(1.0, Load::force(-1.0)), "normal force"),
-        ],
-    );
+    not_covered([
+        (periodic().material(fluid).build_sliding().err(), "a body that flows is not covered in steady motion"),
+        (
+            periodic().another_body(&FnGeometry::new(|x1, _| (TAU * x1).sin())).build_sliding().err(),
+            "several rigid bodies is not covered in steady motion",
+        ),
+        (periodic().attraction(law).build_sliding().err(), "attract each other is not covered in steady motion"),
+        (slope(0), "jumps"),
+        (slope(1), "jumps"),
+        (
+            of(&Sphere::new(1.0).unwrap()).kernel(kernel).build_sliding().err(),
+            "a body of coefficients is not covered in steady motion",
+        ),
+        (at(1.0, Load::eccentric_force(1.0, [0.1, 0.0])), "tilts the body along x1"),
+        (at(1.0, Load::approach_and_tilt(0.0, [0.1, 0.0])), "tilts the body along x1"),
+        (at(1.0, Load::spring(1.0, 1.0)), "a body on a spring is not covered in steady motion"),
+    ]);
+    refused([
+        (at(1.0, Load::approach(1.0)), "that of full contact"),
+        (at(f64::NAN, Load::force(1.0)), "velocity along x1"),
+        (at(1.0, Load::force(-1.0)), "normal force"),
+    ]);
     assert_eq!(sliding.contact().pressure(), pressure);
     let apart = sliding.at([1.0, 0.0], Load::force(0.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.friction() == 0.0 && before.friction() > 0.0);
@@ -297,7 +290,7 @@ fn what_is_not_steady_is_refused() {
     let apart = periodic().build_sliding().unwrap().at([1.0, 0.0], Load::approach(-2.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.force == 0.0 && apart.residual == 0.0, "{apart:?}");
     let mut stepped = sliding.contact().clone();
-    refused(Unsupported, [(stepped.step(1.0, Load::force(1.0)).err(), "a step is not covered in steady motion")]);
+    not_covered([(stepped.step(1.0, Load::force(1.0)).err(), "a step is not covered in steady motion")]);
     // memory: stated before, in proportion to the cells
     let memory = |cells: usize| {
         let grid = Grid::square(cells, 1.0).unwrap();
