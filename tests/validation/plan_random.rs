@@ -224,9 +224,10 @@ fn tilting(seed: u64, number: u64) -> Scene {
     Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio, kind }
 }
 
-/// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the
-/// run; `None` where the reference does not have them.
-type Truth = (Vec<[Option<f64>; 2]>, Option<f64>);
+/// Approach (force where the approach is given) and contact radius √(area/π); `None` where they are not known.
+type State = [Option<f64>; 2];
+/// The state at each time, and the greatest pressure of the run.
+type Truth = (Vec<State>, Option<f64>);
 
 /// By the states of a shape in closed form.
 fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
@@ -304,7 +305,7 @@ fn of_finer_run(scene: &Scene, plan: &Plan, times: &[f64]) -> Result<Truth, Erro
 }
 
 /// The states at the ends of steps, of several at a time the last, and the greatest pressure.
-fn ends_of(scene: &Scene, mut run: Run<'_, ViscoelasticContact>) -> Result<(Vec<(f64, [Option<f64>; 2])>, f64), Error> {
+fn ends_of(scene: &Scene, mut run: Run<'_, ViscoelasticContact>) -> Result<(Vec<(f64, State)>, f64), Error> {
     let (mut states, mut highest) = (Vec::<(f64, _)>::new(), 0.0_f64);
     while let Some(report) = run.next_step()? {
         states.pop_if(|(time, _)| *time == report.time);
@@ -316,7 +317,7 @@ fn ends_of(scene: &Scene, mut run: Run<'_, ViscoelasticContact>) -> Result<(Vec<
     Ok((states, highest))
 }
 
-fn observed(scene: &Scene, contact: &ViscoelasticContact) -> [Option<f64>; 2] {
+fn observed(scene: &Scene, contact: &ViscoelasticContact) -> State {
     let main = if scene.by_force { contact.approach() } else { contact.force() };
     // contact on other bodies is no ellipse
     [Some(main), scene.other.is_none().then(|| (contact.contact_area() / PI).sqrt())]
