@@ -202,7 +202,7 @@ fn checkpoints_of_ranks_continue_on_any_other_number() {
         let sizes = if scene.name == "punch that loses symmetry" { &SIZES[..1] } else { &SIZES };
         for (place, &saved_by) in sizes.iter().enumerate() {
             on(saved_by, &scene, |mut contact| save_after(after, &scene, &mut contact, &path));
-            for ahead in [0, 1, 3] {
+            for ahead in [0, 2] {
                 assert_continues(SIZES[(place + ahead) % SIZES.len()], &scene, after, &path, &expected);
             }
         }

@@ -75,13 +75,14 @@ fn forces(states: &Arc<ElasticStates>, load: impl Fn(f64) -> Load, times: &[f64]
     let table = [(0.0, 0.0), (1.0, 1.0), (2.0, 1.0), (4.0, -1.0)].map(|(time, part)| (time, load(part)));
     let history = PiecewiseLinear::new(&table).unwrap();
     let mut contact = StatesContact::new(states, &quarter_body()).unwrap();
-    let mut run = contact.follow(&history, Stepping::adaptive(1e-8), 4.0);
+    let mut run = contact.follow(&history, Stepping::adaptive(1e-7), times[times.len() - 1]);
     let mut found = Vec::new();
     while let Some(report) = run.next_step().unwrap() {
         while times.get(found.len()).is_some_and(|time| *time <= report.time) {
             found.push(run.within_step(times[found.len()]).unwrap().force());
         }
     }
+    assert_eq!(found.len(), times.len());
     found
 }
 
