@@ -57,7 +57,7 @@ impl ViscoelasticContact {
     /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
     /// enters at the other. Otherwise the history of material that leaves is dropped: the grid should be long enough
     /// behind the contact for the bodies to recover, or for the remaining displacement to be far away. Needs
-    /// [`Frame::Indenter`].
+    /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
     /// ```
     /// use viscocontact::prelude::*;

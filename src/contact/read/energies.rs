@@ -99,7 +99,7 @@ impl EnergyBalance {
     ///
     /// # Errors
     /// If steps were taken, there are several rigid bodies, [ranks](crate::parallel) share out the rows, the bodies move under the grid
-    /// ([`Frame::Indenter`]), or their material has no exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it
+    /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), or their material has no exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it
     /// one).
     pub fn new(contact: &ViscoelasticContact) -> Result<EnergyBalance> {
         contact.covers(coverage::ENERGIES)?;

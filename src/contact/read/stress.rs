@@ -54,7 +54,7 @@ impl StressHistory {
     /// undisturbed: call it before the first load.
     ///
     /// # Errors
-    /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`]), so that the bodies move under
+    /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)), so that the bodies move under
     /// it, the stress in the body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
     pub fn new(contact: &ViscoelasticContact) -> Result<StressHistory> {
         StressHistory::of_body(contact, 0)
