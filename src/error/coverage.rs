@@ -44,8 +44,8 @@ const STRESS_OF_TRACTION: &str = "make a SubsurfaceStress from ViscoelasticConta
 const LAYER: &str = "make the layer by Layer::bonded_to_material";
 
 macro_rules! not_covered {
-    ($($name:ident: $what:literal, $($special:ident: $cure:expr),+;)*) => {
-        $(pub(crate) const $name: Case = Case($what, &[$(($special, $cure)),+]);)*
+    ($($(#[$attribute:meta])* $name:ident: $what:literal, $($special:ident: $cure:expr),+;)*) => {
+        $($(#[$attribute])* pub(crate) const $name: Case = Case($what, &[$(($special, $cure)),+]);)*
     };
 }
 
@@ -87,6 +87,7 @@ not_covered! {
     DISTRIBUTION: "a distribution", Ranks: ONE_PROCESS;
     PATCHES: "the search for patches", Ranks: ONE_PROCESS;
     ASYMMETRY: "the asymmetry", Ranks: ONE_PROCESS;
+    #[cfg(feature = "plot")]
     PICTURE: "a picture of fields", Ranks: ONE_PROCESS;
 
     // steady motions
