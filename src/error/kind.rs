@@ -50,7 +50,7 @@ impl Error {
             Error::Checkpoint { .. } => ErrorKind::File,
             Error::OutOfMemory { .. } => ErrorKind::Memory,
             Error::Cancelled { .. } => ErrorKind::Cancelled,
-            Error::WrongFrame { .. } | Error::NotCovered { .. } => ErrorKind::Unsupported,
+            Error::NotCovered { .. } => ErrorKind::Unsupported,
             Error::Kernel(error) => match error {
                 KernelError::NoStress { .. } => ErrorKind::Unsupported,
                 _ => ErrorKind::Value,

@@ -5,6 +5,7 @@ mod adhesion;
 mod checkpoint;
 mod checks;
 mod convergence;
+pub(crate) mod coverage;
 mod debug;
 mod file;
 mod kernel;
@@ -12,7 +13,6 @@ mod kind;
 mod load;
 mod map;
 mod material;
-mod not_covered;
 mod output;
 mod ranks;
 mod sliding;
@@ -32,14 +32,13 @@ pub(crate) use checks::{
     within,
 };
 pub use convergence::{Convergence, Trend};
+pub use coverage::Special;
 pub use file::FileError;
 pub use kernel::KernelError;
 pub use kind::ErrorKind;
 pub use load::LoadError;
 pub use map::MapError;
 pub use material::MaterialError;
-pub use not_covered::Special;
-pub(crate) use not_covered::{ONE_PROCESS, Refusal};
 pub use output::OutputError;
 pub use ranks::RanksError;
 pub use sliding::SlidingError;
@@ -185,16 +184,6 @@ pub enum Error {
     /// A steady motion was not found, or there is none.
     #[error(transparent)]
     Sliding(#[from] SlidingError),
-
-    /// A call needs the grid in the other [`Frame`](crate::contact::Frame): fixed to the indenter for a step over the
-    /// bodies, fixed to the bodies for a path or a direct sum.
-    #[error(
-        "{what} is not possible in the frame that Settings::frame chooses: choose the other Frame with Settings::with_frame"
-    )]
-    WrongFrame {
-        /// The call.
-        what: &'static str,
-    },
 
     /// A rheology or a material is not allowed, or lacks a property that is needed.
     #[error(transparent)]

@@ -205,12 +205,17 @@ mod tests {
     fn fields_shift_by_whole_cells() {
         let (n1, n2) = (5, 4);
         let field: Vec<f64> = (1..=20).map(f64::from).collect();
+        let mut remembered = RememberedField::new(0, 20);
+        remembered.now.clone_from(&field);
         for periodic in [[false, false], [true, false], [false, true], [true, true]] {
             for by1 in -6..=6 {
                 for by2 in -6..=6 {
-                    let mut shifted = field.clone();
-                    shift(&mut shifted, [n1, n2], [by1, by2], periodic);
-                    for (k, &value) in shifted.iter().enumerate() {
+                    let (mut displacement, of_frame) = (remembered.clone(), remembered.clone());
+                    let mut frame = MovingFrame { cells: [n1, n2], ..MovingFrame::new(of_frame, periodic) };
+                    frame.shift_start([by1, by2], &mut displacement);
+                    let [source, remainder] = frame.fields_mut().map(|field| field.now.clone());
+                    assert!(source == displacement.now && remainder == displacement.now);
+                    for (k, &value) in displacement.now.iter().enumerate() {
                         let from = |own: usize, by: isize, n: usize, periodic: bool| {
                             let index = own as isize + by;
                             let index = if periodic { index.rem_euclid(n as isize) } else { index };

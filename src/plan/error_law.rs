@@ -72,3 +72,23 @@ impl ErrorLaw {
         self.across * (self.error / target).powf(1.0 / self.order)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors that are a power of the cells have differences from which that power and the error are found.
+    #[test]
+    fn a_power_of_the_cells_is_found() {
+        for order in [0.8, 1.0, 1.5, 2.0] {
+            let error = |mesh: i32| 0.3 * 2f64.powf(-order * f64::from(mesh));
+            let differences = [0, 1, 2].map(|mesh| error(mesh) - error(mesh + 1));
+            let law = ErrorLaw::smooth(&differences, 32.0);
+            let found = [law.error, law.at(64.0), law.order, law.across_for(error(4))];
+            let exact = [error(3), error(4), order, 64.0];
+            assert!(found.iter().zip(exact).all(|(found, exact)| (found / exact - 1.0).abs() < 1e-12), "{law:?}");
+            let second = ErrorLaw::second_order(&differences);
+            assert!(order < 2.0 || (second / error(3) - 1.0).abs() < 1e-12, "{second}");
+        }
+    }
+}

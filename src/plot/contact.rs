@@ -1,6 +1,6 @@
 //! Maps and charts of a contact.
 
-use crate::error::Result;
+use crate::error::{Result, coverage};
 use crate::output::Field;
 use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, ColorScale, Legend, Map, Quantity, Style};
@@ -51,7 +51,7 @@ impl Map {
 
     /// A field of a contact, titled with its time.
     pub(super) fn field(contact: &ViscoelasticContact, field: Field) -> Result<Map> {
-        contact.not_shared("a picture of fields")?;
+        contact.covers(coverage::PICTURE)?;
         let mut buffer = Vec::new();
         let mut values = field.values(contact, &mut buffer)?.to_vec();
         if field == Field::Pressure {

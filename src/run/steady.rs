@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::axis::Axis;
 use crate::contact::moving::shortfall::Shortfall;
-use crate::contact::{Frame, StepReport, Unsteady, ViscoelasticContact};
-use crate::error::{Error, Result, StepError, finite, within};
+use crate::contact::{StepReport, Unsteady, ViscoelasticContact};
+use crate::error::{Error, Result, StepError, coverage, finite, within};
 use crate::extent::Extent;
 use crate::load::Load;
 use crate::rheology::CreepSpectrum;
@@ -116,9 +116,7 @@ impl ViscoelasticContact {
 
 impl<'a> SteadyRun<'a> {
     fn new(contact: &'a mut ViscoelasticContact, motion: SteadyMotion) -> Result<SteadyRun<'a>> {
-        if contact.settings().frame != Frame::Indenter {
-            return Err(Error::WrongFrame { what: "a motion to its steady state" });
-        }
+        contact.covers(coverage::MOTION_TO_STEADY)?;
         let velocity = finite("velocity", motion.velocity)?;
         within("velocity", velocity, velocity != 0.0, "finite and not 0")?;
         let tolerance = motion.tolerance;

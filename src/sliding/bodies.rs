@@ -9,7 +9,7 @@ use super::coefficients::{Row, Rules};
 use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
-use crate::error::{Error, Result, SlidingError, Special};
+use crate::error::{Result, SlidingError, coverage};
 use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
 use crate::numeric::EULER;
@@ -49,10 +49,7 @@ impl Bodies {
         if let Some(lines) = (0..2).find(|&axis| periodic[axis] && cells[axis] == 1) {
             return Ok(1 - lines);
         }
-        if velocity[0] != 0.0 && velocity[1] != 0.0 {
-            let what = "a motion that follows neither x1 nor x2, over a body that is not periodic along both,";
-            return Err(Error::not_covered(Special::SteadyMotion, what, "turn the shape instead"));
-        }
+        coverage::OBLIQUE.unless(|_| velocity[0] != 0.0 && velocity[1] != 0.0)?;
         Ok(usize::from(velocity[0] == 0.0))
     }
 

@@ -27,7 +27,7 @@ use std::sync::atomic::AtomicBool;
 use num_complex::Complex64;
 
 use crate::contact::{Builder, Frame, ViscoelasticContact};
-use crate::error::{Error, Result, Special, StepError, finite};
+use crate::error::{Error, Result, Special, StepError, coverage, finite};
 use crate::kernel::HalfSpace;
 use crate::load::Load;
 use crate::memory;
@@ -202,12 +202,7 @@ impl Builder {
     }
 
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
-        let shift = "multiply the velocity by the shift factor of the temperature";
-        Special::SteadyMotion.refuses([
-            (self.attraction.is_some(), "a contact of surfaces that attract each other", "build it without attraction"),
-            (self.temperature.is_some(), "a history of the temperature", shift),
-            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
-        ])?;
+        self.is_covered(Special::SteadyMotion)?;
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         self.steady = true;
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
@@ -218,31 +213,22 @@ impl Builder {
         let has_rows = periodic == [true; 2] || ends().any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
         let jumps = jumps(&contact.initial_gap().above, grid.cells(), periodic);
         let by_modulus = modulus.is_some() && periodic != [true; 2];
-        let measured = "a modulus over frequency, of a body that is not periodic along both axes,";
-        Special::SteadyMotion.refuses([
-            (!has_rows, "a body of coefficients", "take InfluenceKernel::from_spectrum or a layer"),
-            (contact.bodies() > 1, "a contact of several rigid bodies", "take one"),
-            (jumps, "a shape that jumps at the period of its body", "take one that repeats, or taper its ends"),
-            (by_modulus, measured, "fit a series to it"),
-        ])?;
+        coverage::COEFFICIENTS.unless(|_| !has_rows)?;
+        coverage::JUMPING_SHAPE.unless(|_| jumps)?;
+        coverage::MODULUS.unless(|_| by_modulus)?;
         let series = |material: &Material| material.spectrum_for("a motion").map(Creep::Series);
         let creep = if let Some(modulus) = modulus { modulus } else { series(contact.material())? };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
-        let rest = "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
-        Special::SteadyMotion.refuses([(flows, "a body that flows", rest)])?;
+        coverage::FLOW.unless(|_| flows)?;
         let on_base = |base: Material| {
-            let (what, cure) =
-                ("a base below another body than a layer", "make the layer by Layer::bonded_to_material");
             let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
-            let layer = layer.ok_or(Error::not_covered(Special::SteadyMotion, what, cure))?;
+            let layer = layer.ok_or(coverage::BASE_OF_NO_LAYER.error())?;
             let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
             let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
             let thin = ends().any(|axis| grid.lengths()[axis] > THINNEST * layer.thickness());
-            Special::SteadyMotion.refuses([
-                (other, "a base of another ratio than the layer's", cure),
-                (thin, "a layer so thin on a base of its own", "take fewer cells, or a periodic body"),
-            ])?;
+            coverage::OTHER_BASE.unless(|_| other)?;
+            coverage::THIN_LAYER.unless(|_| thin)?;
             Ok::<_, Error>(LayerOnBase { layer, own: creep.clone(), base: series(&base)?, kernel: kernel.clone() })
         };
         let layer = base.map(on_base).transpose()?;
@@ -266,8 +252,7 @@ impl SteadySliding {
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
-        let on_spring = matches!(load, Load::Spring { .. });
-        Special::SteadyMotion.refuses([(on_spring, "a body on a spring", "give the force or the approach")])?;
+        coverage::SPRING.unless(|_| matches!(load, Load::Spring { .. }))?;
         let (free, lowered) = self.contact.steady_motion(load)?;
         let mut bodies = self.moving(velocity, load)?;
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
@@ -347,19 +332,13 @@ impl SteadySliding {
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
         let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, load.is_force());
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
-        Special::SteadyMotion.refuses([(
-            drifts,
-            "a body that flows, under an approach or at rest,",
-            "give a force and a velocity",
-        )])?;
+        coverage::DRIFT.unless(|_| drifts)?;
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
         let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
         let farthest = reaches.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
         let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
-        let what =
-            "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion";
-        Special::SteadyMotion.refuses([(near, what, "give the force, or a datum farther away")])?;
+        coverage::NEAR_DATUM.unless(|_| near)?;
         Ok(bodies)
     }
 

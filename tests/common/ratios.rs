@@ -4,6 +4,15 @@
 #[derive(Debug, Default)]
 pub struct Ratios(Vec<(f64, String)>);
 
+impl FromIterator<f64> for Ratios {
+    /// Of scenes without names.
+    fn from_iter<I: IntoIterator<Item = f64>>(ratios: I) -> Ratios {
+        let mut all = Ratios::default();
+        ratios.into_iter().for_each(|ratio| all.push(ratio, ""));
+        all
+    }
+}
+
 impl Ratios {
     /// Those of several together.
     pub fn of<'a>(several: impl Iterator<Item = &'a Ratios>) -> Ratios {
@@ -29,17 +38,30 @@ impl Ratios {
         self.0.iter().filter(|ratio| ratio.0 > bound).count()
     }
 
-    /// NaN if there are none.
+    /// Fails where nothing was compared.
     pub fn quantile(&self, part: f64) -> f64 {
-        let last = self.0.len().saturating_sub(1) as f64;
-        self.0.get((part * last).round() as usize).map_or(f64::NAN, |ratio| ratio.0)
+        assert!(self.count() > 0, "nothing was compared");
+        self.0[(part * (self.count() - 1) as f64).round() as usize].0
+    }
+
+    pub fn median(&self) -> f64 {
+        self.quantile(0.5)
+    }
+
+    pub fn greatest(&self) -> f64 {
+        self.quantile(1.0)
     }
 
     /// One line, and the scenes of the greatest.
     pub fn print(&self, what: &str, scenes: usize) {
-        let [median, high, higher, most] = [0.5, 0.9, 0.99, 1.0].map(|part| self.quantile(part));
+        if self.count() == 0 {
+            return println!("  {what:<24} none");
+        }
+        let [least, low, median, high, higher, most] = [0.0, 0.1, 0.5, 0.9, 0.99, 1.0].map(|part| self.quantile(part));
         let (count, above) = (self.count(), self.above(2.0));
-        println!("  {what:<24} {count:>5}: {median:.3} {high:.3} {higher:.2} {most:.2}, above 2: {above}");
+        println!(
+            "  {what:<24} {count:>5}: from {least:.3}, {low:.3} {median:.3} {high:.3} {higher:.2} {most:.2}, above 2: {above}"
+        );
         self.0.iter().rev().take(scenes).for_each(|(ratio, scene)| println!("    {ratio:.2} {scene}"));
     }
 }

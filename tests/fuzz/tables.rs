@@ -9,7 +9,7 @@ use viscocontact_scenes::{pairs, triples};
 
 pub fn targets() -> Vec<Target> {
     vec![
-        Target { name: "table_slices", short: 300, run: slices },
+        Target { name: "table_slices", short: 150, run: slices },
         Target { name: "table_master", short: 60, run: master },
         Target { name: "table_csv", short: 600, run: csv },
     ]

@@ -170,8 +170,7 @@ const MISTAKES: &[Mistake] = &[
     "loads of the rigid bodies: 1 given, 2 needed"),
 ("a motion over the bodies on a grid that stays on them",
     || contact()?.step_over([1, 0], 0.1, Load::force(0.1)).map(drop),
-    "a step over the bodies is not possible in the frame that Settings::frame chooses: choose the other Frame with \
-     Settings::with_frame"),
+    "a step over the bodies is not covered on a grid that is fixed to the bodies: choose the other Frame with Settings::with_frame"),
 ("too few iterations",
     || built_with(Settings::default().with_max_iterations(2).with_tolerance(1e-12))?.step(0.0, Load::force(0.1)).map(drop),
     "at t = 0 s (step of 0 s): residual 8.10e-6 after 2 iterations, above the tolerance 1e-12; too few iterations to show a \

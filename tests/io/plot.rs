@@ -1,6 +1,6 @@
 //! Pictures: what they show, and that files are whole. Fuzz targets hold that no data make them fail otherwise than by an error.
 
-use crate::common::refused::field;
+use crate::common::refused::{field, refused};
 use crate::common::{Temporary, builder_of, contact_of, maxwell, sphere};
 use approx::assert_abs_diff_eq;
 use std::fs;
@@ -234,14 +234,17 @@ fn bad_pictures_are_refused_by_name() {
         map.range = range;
         assert!(field(map.draw()).ends_with("end of the colour scale"));
     }
-    assert_eq!(field(Map::draw_row(&[])), "maps of a row");
-    assert_eq!(field(Map::draw_row(&vec![map; 40])), "pixels along a side of a picture");
-    assert_eq!(Map::new(&grid, vec![0.0; 3], "q").unwrap_err().kind(), ErrorKind::Value);
-    assert_eq!(Map::new(&grid, vec![1e101; 4], "q").unwrap_err().kind(), ErrorKind::Value);
-    let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
-    assert_eq!(field(chart.draw()), "points to draw in the chart");
-    chart.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);
-    assert_eq!(field(chart.draw()), "y of a point in a chart");
+    let empty = Chart::new("", "x", "y", Legend::UpperLeft);
+    let mut far = empty.clone();
+    far.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);
+    refused([
+        (Map::draw_row(&[]).err(), "maps of a row"),
+        (Map::draw_row(&vec![map; 40]).err(), "pixels along a side of a picture"),
+        (Map::new(&grid, vec![0.0; 3], "q").err(), "values of a map"),
+        (Map::new(&grid, vec![1e101; 4], "q").err(), "value of a map"),
+        (empty.draw().err(), "points to draw in the chart"),
+        (far.draw().err(), "y of a point in a chart"),
+    ]);
     let saved = Chart::profile(&ball(), Axis::X1, 0.0).unwrap().save(Path::new("/no/such/folder/a.png"));
     assert!(matches!(saved, Err(Error::Output(_))));
 }

@@ -148,16 +148,3 @@ fn offsets_outside_the_grid_are_refused() {
                 the grid having 12 × 9 cells";
     assert_eq!(error.to_string(), text);
 }
-
-#[test]
-fn fields_of_the_wrong_length_are_refused() {
-    let kernel = |cells: usize| InfluenceKernel::half_space(&Grid::square(cells, 1.0).unwrap()).unwrap();
-    let (eight, nine) = (kernel(8), kernel(9));
-    for (pressure, displacement, of, wrong) in
-        [(63, 64, &eight, "pressure"), (64, 60, &eight, "displacement"), (64, 64, &nine, "workspace")]
-    {
-        let mut work = of.workspace().unwrap();
-        let refused = eight.convolve(&vec![0.0; pressure], &mut vec![0.0; displacement], &mut work).unwrap_err();
-        assert!(matches!(refused, Error::WrongLength { field, .. } if field == wrong), "{refused}");
-    }
-}

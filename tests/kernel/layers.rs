@@ -1,8 +1,6 @@
 //! Kernels of layers: limits, sums over cells, waves, and invalid layers.
 
-use crate::common::builder_of;
 use std::f64::consts::{FRAC_2_PI, TAU};
-use std::sync::Arc;
 
 use super::{assert_answers_waves, convolve};
 use crate::common::refused::field;
@@ -224,50 +222,6 @@ fn layers_periodic_along_one_axis_are_lines_and_half_spaces() {
     assert!(datum(rigid, Some(7.0)) && datum(same, None));
 }
 
-#[test]
-fn invalid_layers_are_refused_by_name() {
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e301] {
-        assert_eq!(field(Layer::bonded_to_rigid(bad, 0.3)), "thickness of a layer");
-    }
-    for bad in [-1.0, 0.51, f64::NAN] {
-        assert_eq!(field(Layer::frictionless_on_rigid(1.0, bad)), "Poisson's ratio of a layer");
-        assert_eq!(field(Layer::bonded_to_half_space(1.0, 0.3, 1.0, bad)), "Poisson's ratio of the base");
-    }
-    for bad in [0.0, 1e-7, 1e7, f64::NAN] {
-        let refused = Layer::bonded_to_half_space(1.0, 0.3, bad, 0.3);
-        assert_eq!(field(refused), "shear modulus of a layer over that of its base");
-    }
-    let [bonded, _, on_half_space] = layers(1.0, 0.3);
-    let (grid, line) = (Grid::square(8, 1.0).unwrap(), Grid::new([8, 1], [1.0, 1.0]).unwrap());
-    let datum = |result: Result<InfluenceKernel, Error>| match result.unwrap_err() {
-        Error::Kernel(KernelError::LayerDatum { datum, .. }) => datum,
-        other => panic!("unexpected {other}"),
-    };
-    assert_eq!(datum(InfluenceKernel::layer_line(&line, bonded, Some(2.0))), Some(2.0));
-    assert_eq!(datum(InfluenceKernel::layer_line(&line, on_half_space, None)), None);
-    assert_eq!(field(InfluenceKernel::layer_line(&line, on_half_space, Some(0.5))), "datum of a line load");
-    assert!(matches!(InfluenceKernel::layer_line(&grid, bonded, None), Err(Error::CountOutOfRange { value: 8, .. })));
-    let thin = Layer::bonded_to_rigid(1e-5, 0.3).unwrap();
-    assert_eq!(field(InfluenceKernel::layer(&grid, thin)), "longer side of a cell over the thickness of the layer");
-    // in line contact nothing varies along the line: a metre of it is no long cell
-    let of_a_metre = Grid::new([400, 1], [4.0e-3, 1.0]).unwrap();
-    for nu in [0.3, 0.5] {
-        let sheet = Layer::bonded_to_rigid(20e-6, nu).unwrap();
-        assert!(InfluenceKernel::layer_line(&of_a_metre, sheet, None).is_ok(), "{nu}");
-        let coarse = Grid::new([4, 1], [4.0e-2, 1.0e-6]).unwrap();
-        let long = if nu == 0.5 { sheet } else { Layer::bonded_to_rigid(5e-6, nu).unwrap() };
-        let refused = field(InfluenceKernel::layer_line(&coarse, long, None));
-        assert_eq!(refused, "longer side of a cell over the thickness of the layer", "{nu}");
-    }
-    // an incompressible layer under cells that do not squeeze it out; one that slides flows from crest to trough
-    for (nu, refused) in [(0.5, true), (0.498, true), (0.49, false)] {
-        let coarse = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.06, nu).unwrap());
-        assert_eq!(coarse.is_err(), refused, "{nu}");
-        assert!(InfluenceKernel::layer(&grid, Layer::frictionless_on_rigid(0.06, nu).unwrap()).is_ok());
-        assert!(InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.063, nu).unwrap()).is_ok());
-    }
-}
-
 /// K on cells of layers thick and thin passes the check of user-defined coefficients.
 #[test]
 fn operators_of_layers_are_positive_definite() {
@@ -285,29 +239,4 @@ fn operators_of_layers_are_positive_definite() {
     }
     // two of 54 are too thin for the cells
     assert_eq!(compared, 52);
-}
-
-#[test]
-fn contacts_refuse_materials_that_are_not_the_layers() {
-    let grid = Grid::square(8, 1.0e-3).unwrap();
-    let kernel = Arc::new(InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(1.0e-3, 0.3).unwrap()).unwrap());
-    let build = |material: Material, counter: Option<Material>| {
-        let builder = builder_of(&Sphere::new(1.0e-2).unwrap(), grid.clone(), material).kernel(Arc::clone(&kernel));
-        if let Some(other) = counter { builder.counter_body(other).build() } else { builder.build() }
-    };
-    let creeping = || Maxwell::with_time(1.0e6, 1.0).unwrap();
-    let right = || Material::constant_poisson(creeping(), 0.3).unwrap();
-    assert!(build(right(), None).is_ok());
-    let steel = Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
-    let bulk = Material::elastic_bulk(creeping(), 1.0e9).unwrap();
-    for (material, counter, word) in [
-        (Material::incompressible(creeping()), None, "0.5"),
-        (bulk, None, "elastic bulk"),
-        (right(), Some(steel.clone()), "counter body"),
-        (right().against(steel), None, "counter body"),
-    ] {
-        let refused = build(material, counter).unwrap_err();
-        assert!(matches!(refused, Error::Kernel(KernelError::LayerMaterial { layer: 0.3, .. })), "{refused}");
-        assert!(refused.to_string().contains(word), "{refused}");
-    }
 }

@@ -4,6 +4,7 @@ mod coefficients;
 mod layers;
 mod love;
 mod other_bodies;
+mod refusals;
 
 use std::f64::consts::TAU;
 use viscocontact::{Grid, InfluenceKernel};

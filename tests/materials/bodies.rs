@@ -192,15 +192,11 @@ fn a_fractional_zener_body_has_its_limits() {
     assert_eq!(field(FractionalZener::new(1.0, 1e-310, 1.0, 0.5)), "compliance 1/G_K");
 }
 
-/// A fit costs the fourth power of its decades: too many are refused, by their number, and not begun.
+/// What has an exact series needs no fit.
 #[test]
-fn series_over_too_many_decades_are_refused() {
+fn series_span_forty_decades() {
     let body = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap();
-    for times in [1e-90..=1e90, 1e-26..=1e25, 1e-10..=1.1e40] {
-        assert_eq!(field(body.series(times.clone(), 1e-2)), "decades of a series", "{times:?}");
-    }
     assert!(body.series(1e-10..=1e30, 0.1).unwrap().report().max_misfit() <= 0.1);
-    // what has an exact series needs no fit
     let exact = Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap();
     assert!(exact.series(1e-90..=1e90, 1e-4).unwrap().report().is_exact());
 }

@@ -2,7 +2,7 @@
 //! the relaxation: their creep against the exact one at all measured times. `TABLE_SEEDS` (60) tables of each kind are drawn.
 
 use super::fitted;
-use crate::common::{from_environment, pairs, uniform};
+use crate::common::{Ratios, from_environment, pairs, uniform};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, Experiment, FitReport, FitWarning, RelaxationSpectrum};
 
@@ -68,7 +68,7 @@ impl Table {
 fn judge(kind: Experiment) {
     let (mut noisy, mut covered, mut off, mut late) = (0, 0, 0, 0);
     let (mut inside, mut times) = (0, 0);
-    let mut widths = Vec::new();
+    let mut widths = Ratios::default();
     for seed in 0..from_environment("TABLE_SEEDS", 60) {
         let table = Table::random(kind, seed);
         let (worst, report) = (table.worst(), &table.report);
@@ -77,7 +77,7 @@ fn judge(kind: Experiment) {
             covered += usize::from(worst <= report.uncertainty());
             let [within, of] = table.inside();
             (inside, times) = (inside + within, times + of);
-            widths.push(report.uncertainty() / worst);
+            widths.push(report.uncertainty() / worst, "");
         }
         let is_late = table.known_from > 1.001 * table.times[0];
         late += usize::from(is_late);
@@ -99,11 +99,10 @@ fn judge(kind: Experiment) {
             );
         }
     }
-    widths.sort_by(f64::total_cmp);
     println!(
         "{kind:?}: {covered} of {noisy} noisy tables within their uncertainty, {:.1} % of times, in the median {:.1} times their error; {off} tables off, {late} not known from the first time on",
         100.0 * inside as f64 / times as f64,
-        widths[widths.len() / 2]
+        widths.median()
     );
     assert!(inside as f64 >= 0.93 * times as f64, "{kind:?}: {inside} of {times}");
     // a share of 95 % less two standard deviations of its count

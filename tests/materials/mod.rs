@@ -3,6 +3,7 @@
 mod bodies;
 mod intervals;
 mod measured;
+mod refusals;
 mod sparse_tables;
 mod spectra;
 mod tension;

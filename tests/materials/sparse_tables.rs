@@ -2,7 +2,7 @@
 //! exact model at the rows and between them. `SPARSE_SEEDS` (2) times seven bodies are drawn.
 
 use super::fitted;
-use crate::common::{from_environment, noise, pairs, sphere_on, uniform};
+use crate::common::{Ratios, from_environment, noise, pairs, sphere_on, uniform};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSeries, CreepSpectrum, Experiment, FitReport, FitWarning};
@@ -87,7 +87,9 @@ fn tables(kind: Experiment, deviation: f64, mut look: impl FnMut(&str, &[(f64, F
     for (index, body) in Body::all().enumerate() {
         let truth = body.spectrum().relaxation();
         let creep = |t: f64| body.creep.creep_compliance(t);
-        let fits: Vec<(f64, Fitted)> = ROWS
+        // the longest tables without noise in long populations alone
+        let lengths = if deviation == 0.0 && from_environment("SPARSE_SEEDS", 2) <= 2 { 5 } else { 6 };
+        let fits: Vec<(f64, Fitted)> = ROWS[..lengths]
             .iter()
             .map(|&rows| {
                 let mut noise = noise(77 * (index as u64 / 7) + rows as u64);
@@ -139,13 +141,10 @@ fn clean(kind: Experiment) {
             );
         }
     });
-    for (least, mut class) in CLASSES.iter().zip(classes) {
-        class.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (least, class) in CLASSES.iter().zip(classes) {
         let terms = class.iter().map(|(_, terms)| terms).sum::<usize>() as f64 / class.len() as f64;
-        let [median, most] = [class.len() / 2, class.len() - 1].map(|k| 100.0 * class[k].0);
-        println!(
-            "{kind:?} from {least} rows a decade: {median:.3} % in the median, {most:.3} % at most, {terms:.1} terms"
-        );
+        let errors: Ratios = class.into_iter().map(|(worst, _)| 100.0 * worst).collect();
+        errors.print(&format!("{kind:?} from {least} rows a decade, {terms:.1} terms: %"), 0);
     }
 }
 

@@ -1,6 +1,5 @@
 //! Creep, relaxation, and the passage between them.
 
-use crate::common::refused::field;
 use crate::common::spectra::spectra;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
@@ -76,39 +75,6 @@ fn clustered_repeated_and_weak_terms_are_reciprocal() {
     assert_reciprocal(&repeated);
     let weak = [(1e-30, 1.0), (1.0, 1.5), (1e-20, 1.5000001), (1e-18, 7.0), (1.0, 1e4)];
     assert_reciprocal(&CreepSpectrum::new(1.0, 1e-25, &weak).unwrap());
-}
-
-#[test]
-fn bad_parameters_are_refused_by_name() {
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(field(Elastic::new(bad)), "shear modulus");
-        assert_eq!(field(Maxwell::new(bad, 1.0)), "shear modulus");
-        assert_eq!(field(Maxwell::new(1.0, bad)), "shear viscosity");
-        assert_eq!(field(KelvinVoigt::new(bad, 1.0)), "shear modulus");
-        assert_eq!(field(KelvinVoigt::new(1.0, bad)), "shear viscosity");
-        assert_eq!(field(Zener::new(1.0, bad, 1.0)), "Kelvin–Voigt modulus");
-        assert_eq!(field(Zener::new(1.0, 1.0, bad)), "Kelvin–Voigt viscosity");
-        assert_eq!(field(Burgers::new(1.0, bad, 1.0, 1.0)), "shear viscosity");
-        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, bad)])), "retardation time");
-        assert_eq!(field(GeneralizedMaxwell::new(1.0, &[(1.0, bad)])), "relaxation time");
-    }
-    for bad in [-1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(field(GeneralizedKelvin::new(bad, 0.0, &[])), "glassy compliance");
-        assert_eq!(field(GeneralizedKelvin::new(1.0, bad, &[])), "fluidity");
-        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(bad, 1.0)])), "retarded compliance");
-        assert_eq!(field(GeneralizedMaxwell::new(bad, &[(1.0, 1.0)])), "equilibrium modulus");
-        assert_eq!(field(RelaxationSpectrum::new(1.0, bad, &[])), "immediate viscosity");
-    }
-    // reciprocals and products stay numbers
-    assert_eq!(field(Maxwell::new(1e-150, 1e170)), "glassy compliance");
-    assert_eq!(field(GeneralizedMaxwell::new(1e-310, &[(1.0, 1.0)])), "equilibrium modulus");
-    assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, 1e-200)])), "retardation time");
-    assert_eq!(field(CreepSpectrum::new(0.0, 0.0, &[(0.0, 1.0)])), "creep spectrum");
-    assert_eq!(field(GeneralizedMaxwell::new(1.0, &[])), "Maxwell elements");
-    assert_eq!(field(GeneralizedMaxwell::new(0.0, &[(0.0, 1.0)])), "relaxation spectrum");
-    for nu in [-1.0, 0.51, f64::NAN] {
-        assert_eq!(field(Material::constant_poisson(Elastic::new(1.0).unwrap(), nu)), "Poisson's ratio");
-    }
 }
 
 proptest! {

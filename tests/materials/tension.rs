@@ -1,6 +1,5 @@
 //! Named constructors, and bodies measured in tension.
 
-use crate::common::refused::field;
 use approx::assert_abs_diff_eq;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -87,34 +86,6 @@ fn a_fractional_body_relaxes_in_its_time() {
         println!("ω = {omega} rad/s: {error:.1e}");
         assert!(error < 1e-4, "{error:e}");
     }
-}
-
-#[test]
-fn named_constructors_name_what_they_refuse() {
-    assert_eq!(field(Maxwell::with_time(1.0e6, 0.0)), "relaxation time");
-    assert_eq!(field(KelvinVoigt::with_time(1.0e6, f64::NAN)), "retardation time");
-    assert_eq!(field(Zener::relaxing(1.0e6, 1.0e6, 1.0)), "glassy modulus");
-    assert_eq!(field(Zener::relaxing(1.0e6, -1.0, 1.0)), "rubbery modulus");
-    assert_eq!(field(FractionalZener::relaxing(1.0e6, 2.0e6, 1.0, 0.5)), "glassy modulus");
-    assert_eq!(field(FractionalZener::relaxing(2.0e6, 1.0e6, 1.0, 1.5)), "exponent");
-    assert_eq!(field(Burgers::with_times((1.0, 1.0), (1.0, 0.0))), "retardation time");
-    assert_eq!(field(GeneralizedMaxwell::prony(1.0, &shares([(0.6, 1.0), (0.6, 2.0)]))), "sum of the shares");
-    assert_eq!(field(GeneralizedMaxwell::prony(1.0, &shares([(3.0e6, 1.0)]))), "share of the glassy modulus");
-    let rubbery = GeneralizedMaxwell::prony_long_term(0.0, &shares([(1.0, 1.0)]));
-    assert_eq!(field(rubbery), "rubbery modulus");
-    for ratio in [-0.1, 1.0, f64::NAN] {
-        let refused = Material::relaxing_bulk(Elastic::new(1.0).unwrap(), 1.0, ratio);
-        assert_eq!(field(refused), "ratio of the relaxation in bulk to that in shear");
-    }
-    let dashpot = Material::relaxing_bulk(KelvinVoigt::new(1.0e6, 1.0e6).unwrap(), 1.0e9, 0.5);
-    assert_eq!(field(dashpot), "elastic compliance of the rheology");
-    assert_eq!(field(Elastic::young(1.0, 0.6)), "Poisson's ratio");
-    assert_eq!(field(Elastic::young(0.0, 0.3)), "Young's modulus");
-    assert_eq!(field(Material::from_tension(Tension(Elastic::new(1.0).unwrap()), -1.0)), "Poisson's ratio");
-    let stiff = Material::from_tension_elastic_bulk(Tension(Elastic::new(9.0e9).unwrap()), 1.0e9);
-    assert_eq!(field(stiff), "bulk modulus");
-    let dashpot = Material::from_tension_elastic_bulk(Tension(KelvinVoigt::new(1.0e6, 1.0e6).unwrap()), 1.0e9);
-    assert_eq!(field(dashpot), "bulk modulus");
 }
 
 #[test]

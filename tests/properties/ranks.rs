@@ -1,5 +1,5 @@
 //! A contact that ranks share out is the same as in one process, bit by bit and whatever their number: its steps, its fields,
-//! its files, and the steps after a checkpoint. `RANKS_SCENES` (24) and `RANKS_SEED` (1) choose random scenes.
+//! its files, and the steps after a checkpoint. `RANKS_SCENES` (16) and `RANKS_SEED` (1) choose random scenes.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,18 +28,19 @@ fn assert_same(course: &Course, alone: &Course, rank: usize, what: &str) {
     assert!(rank > 0 || course.fields == alone.fields, "{what}: fields differ");
 }
 
-/// On fewer and on more ranks than there are bands of rows; on three, each rank evaluates the shape on the whole grid. The greatest
+/// On fewer and on more ranks than there are bands of rows, two numbers of ranks for each scene in turn; on three, each rank evaluates the shape on the whole grid. The greatest
 /// slope is found over all rows, the rows at the ends of ranks included, whatever is folded; so is flatness.
 #[test]
 fn chosen_scenes_are_the_same_on_all_ranks() {
     let sloped = chosen_scenes::sloped().map(|(scene, warning)| (scene, Some(warning)));
-    for (mut scene, warning) in chosen_scenes::all().into_iter().map(|scene| (scene, None)).chain(sloped) {
+    let scenes = chosen_scenes::all().into_iter().map(|scene| (scene, None)).chain(sloped);
+    for (number, (mut scene, warning)) in scenes.enumerate() {
         let alone = scene.course(None).unwrap();
         assert!(alone.error.is_none() && alone.reports.len() > 1, "{}: {:?}", scene.name, alone.error);
         assert!(alone.fields.iter().all(|field| field.iter().any(|&bits| bits != 0)), "{}", scene.name);
         let warned = |report: &String| warning.is_none_or(|warning| report.contains(warning));
         assert!(alone.reports.iter().all(warned), "{}: {:?}", scene.name, alone.reports);
-        for size in [2, 3, 8] {
+        for size in [[2, 3], [3, 8], [8, 2]][number % 3] {
             scene.on_own_rows = size != 3;
             assert_same_on(size, &scene, &alone);
         }
@@ -48,7 +49,7 @@ fn chosen_scenes_are_the_same_on_all_ranks() {
 
 #[test]
 fn random_scenes_are_the_same_on_all_ranks() {
-    let (scenes, first) = (from_environment("RANKS_SCENES", 24), 1000 * from_environment("RANKS_SEED", 1));
+    let (scenes, first) = (from_environment("RANKS_SCENES", 16), 1000 * from_environment("RANKS_SEED", 1));
     let (mut pressed, mut steps, mut failed) = (0, 0, 0);
     for seed in first..first + scenes {
         let scene = AnyScene::new(seed);
@@ -201,7 +202,7 @@ fn checkpoints_of_ranks_continue_on_any_other_number() {
         let sizes = if scene.name == "punch that loses symmetry" { &SIZES[..1] } else { &SIZES };
         for (place, &saved_by) in sizes.iter().enumerate() {
             on(saved_by, &scene, |mut contact| save_after(after, &scene, &mut contact, &path));
-            for ahead in [0, 1, 3] {
+            for ahead in [0, 2] {
                 assert_continues(SIZES[(place + ahead) % SIZES.len()], &scene, after, &path, &expected);
             }
         }

@@ -217,7 +217,7 @@ fn assert_contact_conditions(contact: &ViscoelasticContact, load: Load, toleranc
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), max_shrink_iters: 64, ..ProptestConfig::with_cases(500) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), max_shrink_iters: 64, ..ProptestConfig::with_cases(300) })]
 
     #[test]
     fn both_solvers_satisfy_the_conditions_and_agree(scene in scenes()) {

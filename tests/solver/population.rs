@@ -1,5 +1,5 @@
 //! The work of warm steps over a population of scenes drawn at random, on meshes finer than a dense reference could follow: no
-//! step may stall. `POPULATION_SCENES` (20) and `POPULATION_SEED` (1) choose others.
+//! step may stall. `POPULATION_SCENES` (14) and `POPULATION_SEED` (1) choose others.
 
 use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::geometry::Sum;
@@ -98,7 +98,7 @@ fn run(seed: u64, costs: &mut Ratios) {
 
 #[test]
 fn warm_steps_do_not_stall() {
-    let (scenes, first) = (from_environment("POPULATION_SCENES", 20), from_environment("POPULATION_SEED", 1));
+    let (scenes, first) = (from_environment("POPULATION_SCENES", 14), from_environment("POPULATION_SEED", 1));
     let mut costs = Ratios::default();
     (0..scenes).for_each(|k| run(first * 1_000_000 + k, &mut costs));
     println!("{} warm steps: {:.2} equivalents", costs.count(), costs.mean());

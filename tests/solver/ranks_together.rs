@@ -6,12 +6,13 @@ use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use crate::common::refused::{not_covered, refused};
 use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
 use crate::common::{builder_on, elastic, zener};
+use viscocontact::ErrorKind;
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
-use viscocontact::{ErrorKind, Special};
 
 fn sphere(cells: usize, ranks: Arc<dyn Ranks>) -> Result<ViscoelasticContact, Error> {
     let settings = Settings::default().with_symmetry(false);
@@ -339,7 +340,8 @@ fn a_loss_at_any_call_is_an_error_and_leaves_the_contact_as_it_was() {
 
 #[test]
 fn what_is_not_shared_is_refused_by_name() {
-    let refused = |settings: fn() -> Settings| {
+    const RANKS: &str = "is not covered on rows that ranks share out: compute the contact in one process";
+    let built = |settings: fn() -> Settings| {
         Threads::run(2, move |ranks| {
             builder_on(Grid::square(32, 4.0e-3).unwrap(), zener()).settings(settings()).ranks(ranks).build().err()
         })
@@ -350,30 +352,29 @@ fn what_is_not_shared_is_refused_by_name() {
         || Settings::default().with_time_rule(TimeRule::Rectangle),
         || Settings::default().with_frame(Frame::Indenter),
     ] {
-        for error in refused(settings) {
-            assert!(matches!(error, Some(Error::NotCovered { special: Special::Ranks, .. })), "{error:?}");
+        for error in built(settings) {
+            not_covered([(error, RANKS)]);
         }
     }
     let attracted = Threads::run(2, |ranks| {
         let law = ExponentialAttraction::new(0.05, 1.0e-5).unwrap();
-        builder_on(Grid::square(32, 4.0e-3).unwrap(), elastic()).ranks(ranks).attraction(law).build().unwrap_err()
+        builder_on(Grid::square(32, 4.0e-3).unwrap(), elastic()).ranks(ranks).attraction(law).build().err()
     });
     for error in attracted.unwrap() {
-        assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
-        assert!(error.to_string().contains("compute it in one process"), "{error}");
+        not_covered([(error, "where surfaces attract each other: compute it in one process")]);
     }
     Threads::run(2, |ranks| {
-        let not_shared =
-            |error: Error| assert!(matches!(error, Error::NotCovered { special: Special::Ranks, .. }), "{error}");
         let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener()).ranks(ranks).build().unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
-        not_shared(contact.patches().unwrap_err());
-        not_shared(contact.stress().unwrap_err());
-        not_shared(contact.set_geometry(&Sphere::new(1.0).unwrap()).unwrap_err());
-        not_shared(contact.pressure_distribution(10).unwrap_err());
-        not_shared(contact.mesh_error().unwrap_err());
-        // the load would have to unfold the fields
-        not_shared(contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).unwrap_err());
+        not_covered([
+            (contact.patches().err(), RANKS),
+            (contact.stress().err(), RANKS),
+            (contact.set_geometry(&Sphere::new(1.0).unwrap()).err(), RANKS),
+            (contact.pressure_distribution(10).err(), RANKS),
+            (contact.mesh_error().err(), RANKS),
+            // the load would have to unfold the fields
+            (contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).err(), RANKS),
+        ]);
         contact.step(0.1, Load::force(1.0)).unwrap();
     })
     .unwrap();
@@ -381,7 +382,5 @@ fn what_is_not_shared_is_refused_by_name() {
 
 #[test]
 fn the_number_of_threads_is_checked() {
-    for size in [0, 1025] {
-        assert!(matches!(Threads::run(size, |_| ()), Err(Error::CountOutOfRange { field: "ranks", .. })));
-    }
+    refused([0, 1025].map(|size| (Threads::run(size, |_| ()).err(), "ranks")));
 }

@@ -118,8 +118,8 @@ fn iterations_hardly_grow_with_the_mesh() {
         let scene = StepLoadedSphere::maxwell();
         let mut contact = scene.contact(cells, Settings::default()).unwrap();
         contact.step(0.0, Load::force(scene.force)).unwrap();
-        let reports = (0..24).map(|_| contact.step(0.02, Load::force(scene.force)).unwrap());
-        let warm = reports.skip(4).map(|report| report.iterations).sum::<usize>() as f64 / 20.0;
+        let reports = (0..14).map(|_| contact.step(0.02, Load::force(scene.force)).unwrap());
+        let warm = reports.skip(4).map(|report| report.iterations).sum::<usize>() as f64 / 10.0;
         let cold = |shape: &dyn Geometry, side: f64, load: Load| {
             let settings = Settings::default().with_tolerance(1e-7);
             let mut contact = contact_of(shape, Grid::square(cells, side).unwrap(), elastic(), settings);

@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::steady::Scene;
+use crate::common::refused::{not_covered, refused};
 use crate::common::steady_sliding::Time;
 use crate::common::{Draws, builder_of, from_environment};
-use viscocontact::Special;
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
 use viscocontact::rheology::TimeTemperature;
@@ -245,38 +246,43 @@ fn a_search_is_ended_by_another_thread() {
 #[test]
 fn what_is_not_steady_is_refused() {
     let grid = Grid::square(16, 1.0).unwrap();
-    let builder = || ViscoelasticContact::builder(grid.clone()).geometry(&FnGeometry::new(|x1, _| (TAU * x1).cos()));
-    let periodic = || builder().material(rubber()).kernel(InfluenceKernel::periodic(&grid).unwrap());
+    let of = |shape: &dyn Geometry| builder_of(shape, grid.clone(), rubber());
+    let on_periodic = |shape: &dyn Geometry| of(shape).kernel(InfluenceKernel::periodic(&grid).unwrap());
+    let periodic = || on_periodic(&FnGeometry::new(|x1, _| (TAU * x1).cos()));
     let fluid = Material::incompressible(Maxwell::with_time(1.0, 1.0).unwrap());
-    for refused in [
-        periodic().material(fluid).build_sliding().unwrap_err(),
-        periodic().another_body(&FnGeometry::new(|x1, _| (TAU * x1).sin())).build_sliding().unwrap_err(),
-        periodic()
-            .attraction(viscocontact::adhesion::ExponentialAttraction::new(1.0, 1.0).unwrap())
-            .build_sliding()
-            .unwrap_err(),
-    ] {
-        assert!(matches!(refused, Error::NotCovered { special: Special::SteadyMotion, .. }), "{refused}");
-    }
+    let law = ExponentialAttraction::new(1.0, 1.0).unwrap();
+    // heights that jump from one end of a period to the other, and coefficients at cells alone
+    let slope = |axis: usize| {
+        let slope = FnGeometry::new(move |x1: f64, x2: f64| 0.1 * [x1, x2][axis] + 1e-3 * (TAU * x1).cos());
+        on_periodic(&slope).build_sliding().err()
+    };
+    let kernel = InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).unwrap();
     let mut sliding = periodic().build_sliding().unwrap();
     let before = sliding.at([1.0, 0.0], Load::force(1.0)).unwrap();
     let pressure = sliding.contact().pressure().to_vec();
-    for load in [Load::eccentric_force(1.0, [0.1, 0.0]), Load::approach_and_tilt(0.0, [0.1, 0.0])] {
-        let refused = sliding.at([1.0, 0.0], load).unwrap_err();
-        assert!(matches!(refused, Error::Step(StepError::TiltOfPeriodic { .. })), "{load}: {refused}");
-    }
-    let spring = sliding.at([1.0, 0.0], Load::spring(1.0, 1.0));
-    assert!(matches!(spring, Err(Error::NotCovered { special: Special::SteadyMotion, .. })));
-    assert!(matches!(
-        sliding.at([1.0, 0.0], Load::approach(1.0)),
-        Err(Error::Step(StepError::BeyondFullContact { .. }))
-    ));
-    assert!(matches!(
-        sliding.at([f64::NAN, 0.0], Load::force(1.0)),
-        Err(Error::OutOfRange { field: "velocity along x1", .. })
-    ));
-    let pull = sliding.at([1.0, 0.0], Load::force(-1.0)).unwrap_err();
-    assert!(matches!(pull, Error::OutOfRange { .. }), "{pull}");
+    let mut at = |velocity: f64, load: Load| sliding.at([velocity, 0.0], load).err();
+    not_covered([
+        (periodic().material(fluid).build_sliding().err(), "a body that flows is not covered in steady motion"),
+        (
+            periodic().another_body(&FnGeometry::new(|x1, _| (TAU * x1).sin())).build_sliding().err(),
+            "several rigid bodies is not covered in steady motion",
+        ),
+        (periodic().attraction(law).build_sliding().err(), "attract each other is not covered in steady motion"),
+        (slope(0), "jumps"),
+        (slope(1), "jumps"),
+        (
+            of(&Sphere::new(1.0).unwrap()).kernel(kernel).build_sliding().err(),
+            "a body of coefficients is not covered in steady motion",
+        ),
+        (at(1.0, Load::eccentric_force(1.0, [0.1, 0.0])), "tilts the body along x1"),
+        (at(1.0, Load::approach_and_tilt(0.0, [0.1, 0.0])), "tilts the body along x1"),
+        (at(1.0, Load::spring(1.0, 1.0)), "a body on a spring is not covered in steady motion"),
+    ]);
+    refused([
+        (at(1.0, Load::approach(1.0)), "that of full contact"),
+        (at(f64::NAN, Load::force(1.0)), "velocity along x1"),
+        (at(1.0, Load::force(-1.0)), "normal force"),
+    ]);
     assert_eq!(sliding.contact().pressure(), pressure);
     let apart = sliding.at([1.0, 0.0], Load::force(0.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.friction() == 0.0 && before.friction() > 0.0);
@@ -284,10 +290,13 @@ fn what_is_not_steady_is_refused() {
     let apart = periodic().build_sliding().unwrap().at([1.0, 0.0], Load::approach(-2.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.force == 0.0 && apart.residual == 0.0, "{apart:?}");
     let mut stepped = sliding.contact().clone();
-    assert!(matches!(
-        stepped.step(1.0, Load::force(1.0)),
-        Err(Error::NotCovered { special: Special::SteadyMotion, .. })
-    ));
+    not_covered([(stepped.step(1.0, Load::force(1.0)).err(), "a step is not covered in steady motion")]);
+    // memory: stated before, in proportion to the cells
+    let memory = |cells: usize| {
+        let grid = Grid::square(cells, 1.0).unwrap();
+        builder_of(&Sphere::new(1.0).unwrap(), grid, rubber()).sliding_memory().unwrap() as f64
+    };
+    assert!((memory(512) / memory(256) / 4.0 - 1.0).abs() < 0.05, "{} {}", memory(256), memory(512));
 }
 
 /// A sweep has the states of single problems, at each temperature those of the shifted velocity; it ends where its progress says so, and its file can be read back.
@@ -326,26 +335,4 @@ fn a_sweep_is_its_states() {
     let mut rows = csv::Reader::from_path(&*file).unwrap();
     let friction: Vec<f64> = rows.records().map(|row| row.unwrap()[5].parse().unwrap()).collect();
     assert_eq!(friction, table.states().iter().map(|state| state.report.friction()).collect::<Vec<_>>());
-}
-
-/// Heights that jump from one end of a period to the other, and coefficients at cells alone, are refused.
-#[test]
-fn an_edge_at_the_period_is_refused() {
-    let grid = Grid::square(16, 1.0).unwrap();
-    for axis in 0..2 {
-        let slope = FnGeometry::new(move |x1: f64, x2: f64| 0.1 * [x1, x2][axis] + 1e-3 * (TAU * x1).cos());
-        let builder = builder_of(&slope, grid.clone(), rubber());
-        let refused = builder.kernel(InfluenceKernel::periodic(&grid).unwrap()).build_sliding().unwrap_err();
-        assert!(refused.to_string().contains("jumps"), "{refused}");
-    }
-    let kernel = InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).unwrap();
-    let ball = Sphere::new(1.0).unwrap();
-    let builder = builder_of(&ball, grid.clone(), rubber()).kernel(kernel);
-    assert!(matches!(builder.build_sliding(), Err(Error::NotCovered { special: Special::SteadyMotion, .. })));
-    // memory: stated before, in proportion to the cells
-    let memory = |cells: usize| {
-        let grid = Grid::square(cells, 1.0).unwrap();
-        builder_of(&ball, grid, rubber()).sliding_memory().unwrap() as f64
-    };
-    assert!((memory(512) / memory(256) / 4.0 - 1.0).abs() < 0.05, "{} {}", memory(256), memory(512));
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::gauss::points;
 use crate::common::steady_sliding::{Below, SteadySliding as Dense};
-use crate::common::{Draws, builder_of, from_environment};
+use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::Layer;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -312,6 +312,7 @@ impl Scene {
             rings.extend(points(end, next, 1));
             end = next;
         }
+        let mut waves = vec![0.0; 2 * n - 1];
         for (q, weight) in rings {
             // finer where waves pass slowly
             let mut angles: Vec<(f64, f64)> = Vec::new();
@@ -330,13 +331,13 @@ impl Scene {
                 let own = self.added(q, along)
                     * (q * weight * part / (PI * PI) * d * side)
                     * (cell(along, d) * cell(aside, side));
+                for (i, wave) in waves.iter_mut().enumerate() {
+                    let (sin, cos) = (along * (i as f64 - (n - 1) as f64) * d).sin_cos();
+                    *wave = own.re * cos - own.im * sin;
+                }
                 for (j, row) in table.iter_mut().enumerate().take(m) {
                     let cos = (aside * side * j as f64).cos();
-                    for (i, value) in row.iter_mut().enumerate() {
-                        let x = (i as f64 - (n - 1) as f64) * d;
-                        let (sin, wave) = (along * x).sin_cos();
-                        *value += cos * (own.re * wave - own.im * sin);
-                    }
+                    row.iter_mut().zip(&waves).for_each(|(value, wave)| *value += cos * wave);
                 }
             }
         }
@@ -458,7 +459,7 @@ fn strip(x: f64, side: f64, kappa: f64, datum: f64) -> f64 {
     // ∫ from 0 to s of K0(κ s)
     let from_zero = |s: f64| {
         let integrand = |t: f64| -(-kappa * s * t.cosh()).exp_m1() / t.cosh() / kappa;
-        points(0.0, 40.0, 120).map(|(t, w)| w * integrand(t)).sum::<f64>()
+        points(0.0, 40.0, 40).map(|(t, w)| w * integrand(t)).sum::<f64>()
     };
     let signed = |s: f64| s.signum() * from_zero(s.abs());
     2.0 / PI * (signed(x + half) - signed(x - half))
@@ -468,7 +469,7 @@ fn strip(x: f64, side: f64, kappa: f64, datum: f64) -> f64 {
 #[test]
 fn strips_and_layers_are_those_of_a_dense_problem() {
     let (scenes, seed) = (from_environment("SLIDING_BODIES", 16), from_environment("SLIDING_SEED", 1));
-    let (mut compared, mut worst, mut kinds, mut drags) = (0, [0.0_f64; 4], [0; 8], Vec::new());
+    let (mut compared, mut worst, mut kinds, mut drags) = (0, [0.0_f64; 4], [0; 8], Ratios::default());
     for number in 0..scenes {
         let scene = Scene::draw(&mut Draws::new(7_000_000 * seed + number), number as usize);
         let velocity = scene.by_axis(scene.velocity, 0.0);
@@ -494,7 +495,7 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
         let again = scene.build().at(velocity, Load::approach(moved)).map(|again| (again.force / force - 1.0).abs());
         let lateral = scene.velocity * contact.lateral_force(&scene.shape())[scene.axis];
         let drag = scene.velocity * report.lateral_force[scene.axis];
-        drags.push((drag - lateral).abs() / force);
+        drags.push((drag - lateral).abs() / force, "");
         let by_waves = scene.periodic == [true, false];
         assert!(!by_waves || (drag / lateral - 1.0).abs() < 0.5, "{number}: {drag:e} by energy, {lateral:e} by slope");
         let errors = [
@@ -513,8 +514,7 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
             + if matches!(scene.base, Base::Body(_)) { 4 } else { 0 }] += 1;
         (0..4).for_each(|k| worst[k] = worst[k].max(errors[k]));
     }
-    drags.sort_by(f64::total_cmp);
-    println!("by energy and by slope: {:?}", [drags[drags.len() / 2], drags[drags.len() - 1]]);
+    drags.print("by energy and by slope", 0);
     println!("{compared} scenes, {kinds:?} of each kind, worst {worst:?}");
     assert!(10 * compared >= 9 * scenes && kinds.iter().all(|count| *count > 0), "{compared} {kinds:?}");
     for (error, most) in worst.into_iter().zip([1e-6, 1e-7, 1e-7, 1e-6]) {
@@ -555,7 +555,7 @@ fn same(what: &str, found: &SlidingReport, exact: &SlidingReport) {
 #[test]
 fn bases_that_are_equal_elastic_or_rigid_are_limits() {
     let thickness = 0.1;
-    let grids = [Grid::square(24, 1.0).unwrap(), Grid::new([48, 1], [1.0, 1.0]).unwrap()];
+    let grids = [Grid::square(16, 1.0).unwrap(), Grid::new([48, 1], [1.0, 1.0]).unwrap()];
     let bodies: [(&Grid, &Kernels); 4] = [
         (&grids[0], &|grid, layer| {
             layer.map_or_else(|| InfluenceKernel::half_space(grid), |layer| InfluenceKernel::layer(grid, layer))

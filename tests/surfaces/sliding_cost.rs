@@ -3,14 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::{Draws, builder_of, figures, from_environment};
+use crate::common::{Draws, Ratios, builder_of, figures, from_environment};
 use viscocontact::geometry::{Rough, RoughSpec, Roughness};
 use viscocontact::prelude::*;
-
-fn median(mut values: Vec<usize>) -> usize {
-    values.sort_unstable();
-    values[values.len() / 2]
-}
 
 /// A rough ball on a half-space of 128² cells, or a wavy cylinder on 512, of tan δ up to 4, or up to 10: cold, and then at speeds of a quarter of a decade from
 /// one to the next.
@@ -18,7 +13,7 @@ fn median(mut values: Vec<usize>) -> usize {
 fn balls_and_cylinders_cost_few_transforms() {
     let (scenes, seed) = (from_environment("SLIDING_COSTS", 8), from_environment("SLIDING_SEED", 1));
     for (line, strongest) in [(false, 65.0), (true, 65.0), (false, 420.0), (true, 420.0)] {
-        let (mut cold, mut warm) = (Vec::new(), Vec::new());
+        let (mut cold, mut warm) = (Ratios::default(), Ratios::default());
         for number in 0..scenes {
             let mut draws = Draws::new(11_000_000 * seed + number);
             let cells = if line { [512, 1] } else { [128, 128] };
@@ -54,14 +49,13 @@ fn balls_and_cylinders_cost_few_transforms() {
                     Err(Error::Step(StepError::ContactAtEdge { .. })) => break,
                     Err(error) => panic!("{number} line {line}: {error}"),
                 };
-                if step == 0 { cold.push(report.transforms) } else { warm.push(report.transforms) }
+                if step == 0 { &mut cold } else { &mut warm }.push(report.transforms as f64, "");
             }
         }
-        println!("line {line}: cold {cold:?}, warm {warm:?}");
-        assert!(2 * cold.len() as u64 >= scenes, "{}", cold.len());
-        let [cold, warm] = [cold, warm].map(median);
+        assert!(2 * cold.count() as u64 >= scenes, "{}", cold.count());
+        let [cold, warm] = [cold.median(), warm.median()];
         println!("line {line}, {strongest}: medians {cold} cold, {warm} warm");
-        assert!(strongest > 65.0 || cold <= 150 && warm <= 60, "line {line}: {cold} {warm}");
+        assert!(strongest > 65.0 || cold <= 150.0 && warm <= 60.0, "line {line}: {cold} {warm}");
     }
 }
 
@@ -95,11 +89,11 @@ fn the_friction_of_a_road_converges_with_the_mesh() {
         println!("{cells}²: {:?}", results[results.len() - 1].1);
         cells *= 2;
     }
-    let warm = |own: &[(f64, usize)]| median(own[1..].iter().map(|(_, pairs)| *pairs).collect());
+    let warm = |own: &[(f64, usize)]| own[1..].iter().map(|(_, pairs)| *pairs as f64).collect::<Ratios>().median();
     let (first, last) = (warm(&results[0].1), warm(&results[results.len() - 1].1));
-    let most = results.iter().map(|(_, own)| warm(own)).max().unwrap();
+    let most = results.iter().map(|(_, own)| warm(own)).fold(0.0, f64::max);
     println!("pairs a speed, warm: {first} on the coarsest mesh, {last} on the finest, at most {most}");
-    assert!(most <= 300 && last <= 2 * first, "{first} {last} {most}");
+    assert!(most <= 300.0 && last <= 2.0 * first, "{first} {last} {most}");
     let changes: Vec<f64> = results
         .windows(2)
         .map(|two| {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::{Draws, builder_of, from_environment};
+use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::prelude::*;
 
 /// Waves on a period of 1 m, terms with reaches up to three periods, and a force.
@@ -83,19 +83,16 @@ impl Scene {
 fn marching_ends_where_the_problem_is_solved() {
     let scenes = from_environment("SLIDING_MARCHES", 4);
     let (cells, seed) = (from_environment("SLIDING_CELLS", 32) as usize, from_environment("SLIDING_SEED", 1));
-    let mut errors = [Vec::new(), Vec::new()];
+    let mut errors = [Ratios::default(), Ratios::default()];
     for number in 0..scenes {
         let scene = Scene::draw(&mut Draws::new(9_000_000 * seed + number));
         let own = [cells / 2, cells].map(|cells| scene.frictions(cells));
         println!("{number}: {own:?}");
         for (errors, [marched, solved]) in errors.iter_mut().zip(own) {
-            errors.push((marched / solved - 1.0).abs());
+            errors.push((marched / solved - 1.0).abs(), "");
         }
     }
-    let [coarse, fine] = errors.map(|mut errors| {
-        errors.sort_by(f64::total_cmp);
-        [errors[errors.len() / 2], errors[errors.len() - 1]]
-    });
+    let [coarse, fine] = errors.map(|errors| [errors.median(), errors.greatest()]);
     println!("{scenes} scenes, median and greatest: {coarse:?} on {}², {fine:?} on {cells}²", cells / 2);
     // steps of a cell err in the second order of the mesh: 1 % and 3 % at 128²
     let mesh = (128.0 / cells as f64).powi(2);

@@ -6,7 +6,7 @@ use viscocontact::prelude::*;
 use viscocontact::states::{Reach, Sweep};
 
 use crate::common::random_histories::{Control, FromSmallLoad};
-use crate::common::{Draws, Features, Scene, Temporary, builder_of, figures, from_environment};
+use crate::common::{Draws, Features, Ratios, Scene, Temporary, builder_of, figures, from_environment};
 
 const RADIUS: f64 = 10.0e-3;
 
@@ -70,24 +70,17 @@ fn truth(scene: &Scene, load: &dyn LoadHistory, asked: &[f64]) -> Option<(Vec<Fi
     Some((fields, greatest))
 }
 
-fn quantiles(name: &str, values: &[f64]) -> String {
-    let mut values = values.to_vec();
-    values.sort_by(f64::total_cmp);
-    let at = |share: f64| values.get((share * values.len() as f64) as usize).or(values.last()).copied().unwrap_or(0.0);
-    format!("{name}: {} values, 1/10/50/90/99/max {:.2?}", values.len(), [0.01, 0.1, 0.5, 0.9, 0.99, 1.0].map(at))
-}
-
 /// L1 over what was asked, L2 over the field and the greatest error over the greatest pressure likewise, the estimate over the truth, and
 /// elastic contacts.
 #[derive(Default)]
 struct Population {
     /// Least error over what was asked that is compared with its estimate.
     least: f64,
-    over: Vec<f64>,
-    squares: Vec<f64>,
-    most: Vec<f64>,
-    told: Vec<f64>,
-    contacts: Vec<f64>,
+    over: Ratios,
+    squares: Ratios,
+    most: Ratios,
+    told: Ratios,
+    contacts: Ratios,
     apart: usize,
 }
 
@@ -131,8 +124,8 @@ impl Population {
                 let greatest = |field: &[f64]| field.iter().copied().fold(0.0, f64::max);
                 let squares = |field: &[f64]| field.iter().map(|p| p * p).sum::<f64>().sqrt();
                 if size == exact.pressure.iter().sum::<f64>() * area {
-                    self.squares.push(squares(&off) / squares(&exact.pressure) / accuracy);
-                    self.most.push(greatest(&off) / greatest(&exact.pressure) / accuracy);
+                    self.squares.push(squares(&off) / squares(&exact.pressure) / accuracy, &scene.name);
+                    self.most.push(greatest(&off) / greatest(&exact.pressure) / accuracy, &scene.name);
                 }
                 let (told, name) = (report.error.unwrap_or(f64::NAN) / accuracy, &scene.name);
                 assert!(told >= 0.0, "{name} at {:.3e}", exact.time);
@@ -140,9 +133,11 @@ impl Population {
                 if over > 1.5 || is_low {
                     println!("{over:.2} told {told:.2} at {:.3e}: {name}", exact.time);
                 }
-                self.over.push(over);
-                self.told.extend((over > self.least).then_some(told / over));
-                self.contacts.push(report.elastic_contacts as f64);
+                self.over.push(over, name);
+                if over > self.least {
+                    self.told.push(told / over, name);
+                }
+                self.contacts.push(report.elastic_contacts as f64, name);
             }
         }
         assert!(found >= asked.len(), "{}: {found}", scene.name);
@@ -150,17 +145,17 @@ impl Population {
 
     /// Number of estimates below a third of the truth.
     fn low(&self) -> usize {
-        self.told.iter().filter(|told| **told < 1.0 / 3.0).count()
+        self.told.count() - self.told.above(1.0 / 3.0)
     }
 
     fn print(&self, what: &str) {
         println!("{what}, {} apart", self.apart);
-        println!("{}", quantiles("  L1 over asked", &self.over));
-        println!("{}", quantiles("  L2 over asked", &self.squares));
-        println!("{}", quantiles("  greatest over asked", &self.most));
-        println!("{}", quantiles("  estimate over truth", &self.told));
+        self.over.print("L1 over asked", 0);
+        self.squares.print("L2 over asked", 0);
+        self.most.print("greatest over asked", 0);
+        self.told.print("estimate over truth", 0);
         println!("  estimate below a third of the truth: {}", self.low());
-        println!("{}", quantiles("  elastic contacts", &self.contacts));
+        self.contacts.print("elastic contacts", 0);
     }
 }
 
@@ -188,14 +183,13 @@ fn fields_of_runs_are_as_exact_as_asked() {
         let all = population(from_environment("FIELD_SEED", 1), scenes, accuracy);
         for (some, creep) in all.iter().zip(["up to 100-fold", "up to 1000-fold"]) {
             some.print(&format!("accuracy {accuracy:.0e}, creep {creep}"));
-            assert!(some.over.iter().all(|over| *over <= 3.0) && 100 * some.low() <= some.told.len());
+            assert!(some.over.above(3.0) == 0 && 100 * some.low() <= some.told.count());
         }
-        let beyond = all[0].over.iter().filter(|over| **over > 2.0).count();
-        assert!(100 * beyond <= all[0].over.len(), "{beyond} fields are beyond twice what was asked");
-        let mut contacts = all[0].contacts.clone();
-        contacts.sort_by(f64::total_cmp);
+        let beyond = all[0].over.above(2.0);
+        assert!(100 * beyond <= all[0].over.count(), "{beyond} fields are beyond twice what was asked");
+        let contacts = &all[0].contacts;
         // a few scenes have no median to speak of
-        assert!(scenes < 8 || contacts.len() as u64 > scenes && contacts[contacts.len() / 2] <= most);
+        assert!(scenes < 8 || contacts.count() as u64 > scenes && contacts.median() <= most);
     }
 }
 
@@ -203,7 +197,7 @@ fn fields_of_runs_are_as_exact_as_asked() {
 #[test]
 fn fields_of_states_are_as_exact_as_asked() {
     for accuracy in [1e-2, 1e-3] {
-        let (mut few, mut kept) = (Vec::new(), Vec::new());
+        let (mut few, mut kept) = (Ratios::default(), Ratios::default());
         for number in 0..from_environment("FIELD_STATES", 4) {
             let (mut draws, grid) = (Draws::new(number), Grid::square(16, 1.0).unwrap());
             let spec = RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(draws.between(0.001, 0.01)));
@@ -234,12 +228,13 @@ fn fields_of_states_are_as_exact_as_asked() {
                     let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).abs()).sum();
                     sum / exact.iter().sum::<f64>() / accuracy
                 };
-                few.push(off(&contact.fields(accuracy).unwrap().pressure));
-                kept.push(off(&contact.pressure().unwrap()));
+                few.push(off(&contact.fields(accuracy).unwrap().pressure), "");
+                kept.push(off(&contact.pressure().unwrap()), "");
             }
         }
-        println!("{}\n{}", quantiles("few levels", &few), quantiles("kept pressures", &kept));
-        assert!(few.len() > 8 && few.iter().all(|off| *off < 1.2) && kept.iter().all(|off| *off < 2.0));
+        few.print("few levels", 0);
+        kept.print("kept pressures", 0);
+        assert!(few.count() > 8 && few.greatest() < 1.2 && kept.greatest() < 2.0);
     }
 }
 
@@ -392,7 +387,7 @@ fn fields_without_states_are_found_by_graded_steps() {
         }
         for (some, what) in all.iter().zip(["tilts that turn", "load points that move", "attraction"]) {
             some.print(&format!("accuracy {accuracy:.0e}, {what}"));
-            assert!(some.over.iter().all(|over| *over <= 2.0) && 10 * some.low() <= some.told.len().max(10));
+            assert!(some.over.above(2.0) == 0 && 10 * some.low() <= some.told.count().max(10));
         }
     }
 }
@@ -456,7 +451,7 @@ fn what_follows_a_run_has_its_fields() {
 fn histories_of_the_stress_follow_fields() {
     use viscocontact::contact::StressHistory;
 
-    let (accuracy, mut all) = (1e-3, [Vec::new(), Vec::new()]);
+    let (accuracy, mut all) = (1e-3, [Ratios::default(), Ratios::default()]);
     for number in 0..from_environment("FIELD_STRESSES", 2) {
         let mut draws = Draws::new(number);
         let shear = Zener::with_time(1.0e6, draws.scale(0.1e6, 1.0e6), draws.scale(0.2, 2.0)).unwrap();
@@ -482,11 +477,12 @@ fn histories_of_the_stress_follow_fields() {
         for (fields, all) in [true, false].into_iter().zip(&mut all) {
             let found = reduced(Stepping::adaptive(1e-2), fields);
             let off: f64 = exact.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
-            all.push(off / exact.iter().map(|r| r.abs()).sum::<f64>() / accuracy);
+            all.push(off / exact.iter().map(|r| r.abs()).sum::<f64>() / accuracy, "");
         }
     }
-    println!("{}\n{}", quantiles("with fields", &all[0]), quantiles("without", &all[1]));
-    assert!(all[0].iter().all(|off| *off < 2.0) && all[1].iter().any(|off| *off > 2.0));
+    all[0].print("with fields", 0);
+    all[1].print("without", 0);
+    assert!(all[0].greatest() < 2.0 && all[1].greatest() > 2.0);
 }
 
 /// A run on states: the pressure in the sphere against the closed form of a growing contact.

@@ -100,7 +100,7 @@ pub(super) struct Promise {
 
 const HONEST: Promise = Promise {
     features: Features::ANY,
-    chosen: [("HONEST_SCENES", 40), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)],
+    chosen: [("HONEST_SCENES", 36), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)],
     most_problems: MOST_PROBLEMS,
     tolerances: 4,
     high: [2.0; 4],
@@ -119,7 +119,7 @@ fn errors_are_honest_on_random_scenes() {
 #[test]
 fn errors_under_springs_are_honest() {
     let [_, seed, first, steps] = HONEST.chosen;
-    Promise { features: Features::SPRING, chosen: [("HONEST_SPRINGS", 20), seed, first, steps], ..HONEST }.check();
+    Promise { features: Features::SPRING, chosen: [("HONEST_SPRINGS", 15), seed, first, steps], ..HONEST }.check();
 }
 
 impl Promise {

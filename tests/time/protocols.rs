@@ -3,6 +3,7 @@
 
 use crate::common::builder_of;
 use crate::common::protocol::Protocol;
+use crate::common::refused::refused;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -174,7 +175,7 @@ fn difference(a: &ViscoelasticContact, b: &ViscoelasticContact) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7201), max_shrink_iters: 200, ..ProptestConfig::with_cases(100) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7201), max_shrink_iters: 200, ..ProptestConfig::with_cases(60) })]
 
     /// Jumps between loads that press nothing, or that the state satisfies already, change nothing: the same steps without
     /// the jumps end alike, by a rule that does not begin anew after a jump.
@@ -286,7 +287,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(16) })]
 
     /// Adaptive runs of forces that begin with any load that keeps the bodies apart agree with runs that begin without a jump.
     #[test]
@@ -386,14 +387,10 @@ fn lifted_indenters_move_at_once() {
         contact.step(DT, Load::force(0.1)).unwrap();
     }
     let cells = |x: f64| (x / grid.spacing()[0]).round() as isize;
-    assert!(matches!(
-        along.step_along(&travel, 0.0, Load::force(0.1)),
-        Err(Error::Step(StepError::NoElasticResponse { .. }))
-    ));
-    assert!(matches!(
-        over.step_over([cells(-1.0e-3), 0], 0.0, Load::force(0.1)),
-        Err(Error::Step(StepError::NoElasticResponse { .. }))
-    ));
+    refused([
+        (along.step_along(&travel, 0.0, Load::force(0.1)).err(), "needs an elastic response"),
+        (over.step_over([cells(-1.0e-3), 0], 0.0, Load::force(0.1)).err(), "needs an elastic response"),
+    ]);
     let before = along.displacement().to_vec();
     along.step_along(&travel, 0.0, lifted).unwrap();
     over.step_over([cells(-1.0e-3), 0], 0.0, lifted).unwrap();

@@ -13,7 +13,7 @@ const MOST_PROBLEMS: u64 = 20_000;
 /// The same history, never below a hundredth of its greatest load, is no more than twice as easy.
 #[test]
 fn random_protocols_run_to_their_end() {
-    let scenes = from_environment("PROTOCOLS_SCENES", 250);
+    let scenes = from_environment("PROTOCOLS_SCENES", 150);
     let seed = from_environment("PROTOCOLS_SEED", 2);
     let (mut failures, mut compared, mut total) = (Vec::new(), Ratios::default(), [0; 2]);
     for number in 0..scenes {

@@ -66,7 +66,7 @@ fn sweeps_that_end_at_their_limit_give_their_error() {
         };
         let exact = sweep(3e-6, 4000);
         assert!(exact.interpolation_error() <= 5e-6 && exact.states().len() < 4000, "{name}: {exact:?}");
-        for most in [3, 10, 25, 40, 60, 100, 200, 300] {
+        for most in [3, 10, 25, 40, 60, 100] {
             let states = sweep(3e-6, most);
             assert_eq!(states.states().len(), most);
             let (error, stated) = (error_of(&states, &exact), states.interpolation_error());

@@ -211,7 +211,7 @@ fn run(scene: &Scene) -> std::result::Result<[Points; 2], String> {
 
 #[test]
 fn adaptive_runs_on_states_err_by_what_was_asked() {
-    let (count, first) = (from_environment("STATES", 12), from_environment("STATES_SEED", 304));
+    let (count, first) = (from_environment("STATES", 9), from_environment("STATES_SEED", 304));
     let judges = from_environment("STATES_JUDGED", 1) == 1;
     let mut ratios: [[Ratios; 3]; 2] = Default::default();
     let mut steps: [Ratios; 4] = Default::default();

@@ -11,8 +11,8 @@ use std::time::Instant;
 use viscocontact::analytic::{Hertz, HertzEllipse};
 use viscocontact::prelude::*;
 
-use crate::common::ratios::Ratios;
-use crate::common::{Draws, RADIUS, builder_of, from_environment};
+use crate::common::random_bodies::{Body, random_body};
+use crate::common::{Draws, RADIUS, Ratios, builder_of, from_environment};
 
 const SLOPE: f64 = 0.05;
 const PUNCH: f64 = 1.0e-3;
@@ -113,25 +113,37 @@ pub(super) struct Scene {
     pub(super) kind: usize,
 }
 
-fn body(draws: &mut Draws, ratio: f64, until: f64) -> (&'static str, Material) {
-    let glassy = 1.0 / MODULUS;
-    let (name, creep) = match draws.below(3) {
-        0 => {
-            let viscosity = until / ((ratio - 1.0) * glassy);
-            ("Maxwell", GeneralizedKelvin::new(glassy, 1.0 / viscosity, &[]))
-        }
-        1 => {
-            let time = until * draws.power_of_ten(-2.0, 0.3);
-            ("Zener", GeneralizedKelvin::new(glassy, 0.0, &[((ratio - 1.0) * glassy, time)]))
-        }
-        _ => {
-            let count = 2 + draws.below(4);
-            let mut term = || ((ratio - 1.0) * glassy / count as f64, until * draws.power_of_ten(-3.0, 0.3));
-            let terms: Vec<_> = (0..count).map(|_| term()).collect();
-            ("several times", GeneralizedKelvin::new(glassy, 0.0, &terms))
-        }
+/// A step, a ramp, a ramp that is held or a wave over `until` seconds; its name and kind.
+pub(super) fn history(
+    draws: &mut Draws,
+    full: &dyn Fn(f64) -> Load,
+    until: f64,
+) -> (usize, String, Box<dyn LoadHistory>) {
+    let (kind, part) = (draws.below(4), draws.power_of_ten(-1.5, 0.0));
+    let (low, period) = (draws.between(0.2, 0.8), until / draws.between(0.3, 3.0));
+    let (name, history): (_, Box<dyn LoadHistory>) = match kind {
+        0 => ("step".into(), Box::new(StepLoad::new(full(1.0)).unwrap())),
+        1 => ("ramp".into(), Box::new(Ramp::new(full(0.0), full(1.0), until * 1.001).unwrap())),
+        2 => (format!("ramp and hold ({part:.2})"), Box::new(Ramp::new(full(0.0), full(1.0), part * until).unwrap())),
+        _ if low < 0.28 => ("triangle".into(), Box::new(Periodic::triangle(full(low), full(1.0), period).unwrap())),
+        _ if low < 0.35 => ("square".into(), Box::new(Periodic::square(full(1.0), full(low), period, 0.5).unwrap())),
+        _ => ("sine".into(), Box::new(Sinusoid::new(full(low), full(1.0), period.recip()).unwrap())),
     };
-    (name, Material::incompressible(creep.unwrap()))
+    (kind, name, history)
+}
+
+pub(super) fn accuracy(draws: &mut Draws) -> Accuracy {
+    if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD }
+}
+
+/// A body that answers at once and creeps up to 1000-fold.
+fn body(draws: &mut Draws) -> Body {
+    loop {
+        let body = random_body(draws);
+        if body.is_elastic_at_once() && (1.1..1e3).contains(&body.creep_ratio()) {
+            return body;
+        }
+    }
 }
 
 pub(super) fn scene(seed: u64, number: u64) -> Scene {
@@ -142,28 +154,15 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
         2 => Shape::Ellipsoid(RADIUS * draws.power_of_ten(-1.0, 1.0)),
         _ => Shape::Punch,
     };
-    let (ratio, until) = (draws.power_of_ten(0.1, 3.0), draws.power_of_ten(-2.0, 1.0));
-    let (body, material) = body(draws, ratio, until);
+    let body = body(draws);
+    let (ratio, until) = (body.creep_ratio(), body.until);
+    let (body, material) = (body.name, body.material);
     let radius = draws.power_of_ten(-4.0, -2.8);
     let by_force = draws.chance(0.5);
     let [depth, force] = shape.elastic(radius, material.contact_compliance(until));
     let full = |share: f64| if by_force { Load::force(share * force) } else { Load::approach(share * depth) };
-    let (kind, part) = (draws.below(4), draws.power_of_ten(-1.5, 0.0));
-    let (history_name, history): (&str, Box<dyn LoadHistory>) = match kind {
-        0 => ("step", Box::new(StepLoad::new(full(1.0)).unwrap())),
-        1 => ("ramp", Box::new(Ramp::new(full(0.0), full(1.0), until * 1.001).unwrap())),
-        2 => ("ramp and hold", Box::new(Ramp::new(full(0.0), full(1.0), part * until).unwrap())),
-        _ => {
-            let low = draws.between(0.2, 0.8);
-            let periods = draws.between(0.3, 3.0);
-            if low < 0.35 {
-                ("triangle", Box::new(Periodic::triangle(full(low), full(1.0), until / periods).unwrap()))
-            } else {
-                ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods / until).unwrap()))
-            }
-        }
-    };
-    let accuracy = if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD };
+    let (kind, history_name, history) = history(draws, &full, until);
+    let accuracy = accuracy(draws);
     // a punch aside of the load tilts, and sinks in as much in its middle
     let most = if matches!(shape, Shape::Punch) { 0.8 * PUNCH } else { f64::INFINITY };
     let aside = if draws.chance(0.3) { f64::min(draws.between(0.1, 2.0) * radius, most) } else { 0.0 };
@@ -179,7 +178,7 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
     };
     let by = if by_force { "force" } else { "approach" };
     let name = format!(
-        "{seed}:{number} {shape:?} {aside:.1e} m aside, {body} ×{ratio:.1}, {history_name} ({part:.2}) of {by}, {until:.1e} s, \
+        "{seed}:{number} {shape:?} {aside:.1e} m aside, {body} ×{ratio:.1}, {history_name} of {by}, {until:.1e} s, \
          {accuracy:?}, area {area}"
     );
     let other = None;
@@ -204,7 +203,8 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
 fn tilting(seed: u64, number: u64) -> Scene {
     let draws = &mut Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(1 << 40));
     let (ratio, by_force) = (draws.power_of_ten(0.1, 2.0), draws.chance(0.5));
-    let (body, material) = body(draws, ratio, 1.0);
+    let creep = [((ratio - 1.0) / MODULUS, draws.power_of_ten(-2.0, 0.3))];
+    let material = Material::incompressible(GeneralizedKelvin::new(1.0 / MODULUS, 0.0, &creep).unwrap());
     let (geometry, loads): (Box<dyn Geometry>, [Load; 3]) = if by_force {
         let [first, second] = [draws.between(0.0, 1e-3), draws.between(0.0, 5e-4)];
         let face = FlatPunch::rectangular([1.0e-3, draws.power_of_ten(-3.5, -2.5)]).unwrap();
@@ -218,15 +218,16 @@ fn tilting(seed: u64, number: u64) -> Scene {
     };
     let table: Vec<_> = [0.0, 0.45, 1.0].into_iter().zip(loads).collect();
     let (history, name) =
-        (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, {body} ×{ratio:.1}"));
+        (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, creep ×{ratio:.1}"));
     let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
     let (shape, until, area, aside, kind) = (None, 1.0, draws.chance(0.3), 0.0, 1);
     Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio, kind }
 }
 
-/// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the
-/// run; `None` where the reference does not have them.
-type Truth = (Vec<[Option<f64>; 2]>, Option<f64>);
+/// Approach (force where the approach is given) and contact radius √(area/π); `None` where they are not known.
+type State = [Option<f64>; 2];
+/// The state at each time, and the greatest pressure of the run.
+type Truth = (Vec<State>, Option<f64>);
 
 /// By the states of a shape in closed form.
 fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
@@ -234,12 +235,15 @@ fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
     let punch = matches!(shape, Shape::Punch);
     let mut contact = StatesContact::new(&elastic, &scene.material).unwrap();
     // steps are graded after the start: pressures may be greatest early
-    let mut fine: Vec<f64> = (0..240).map(|k| scene.until * 10f64.powf(-6.0 + 6.0 * f64::from(k) / 239.0)).collect();
-    fine.extend((1..=400).map(|k| scene.until * f64::from(k) / 400.0));
+    let parts = from_environment("PLANS_FINE", 1) as u32;
+    let log_spaced = |k: u32| scene.until * 10f64.powf(-6.0 + 6.0 * f64::from(k) / f64::from(240 * parts));
+    let mut fine: Vec<f64> = (0..240 * parts).map(log_spaced).collect();
+    fine.extend((1..=400 * parts).map(|k| scene.until * f64::from(k) / f64::from(400 * parts)));
     fine.extend(times.iter().copied().chain([0.0]));
     let mut breakpoint = scene.history.next_breakpoint(0.0);
     while let Some(at) = breakpoint.filter(|&at| at <= scene.until) {
-        fine.extend((0..20).map(|k| at + (scene.until - at) * 10f64.powf(-5.0 + 0.25 * f64::from(k))));
+        let since = |k: u32| (scene.until - at) * 10f64.powf(-5.0 + 0.25 * f64::from(k) / f64::from(parts));
+        fine.extend((0..20 * parts).map(|k| at + since(k)));
         fine.push(at);
         breakpoint = scene.history.next_breakpoint(at);
     }
@@ -248,13 +252,17 @@ fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
     fine.dedup();
     let (mut states, mut highest) = (Vec::new(), 0.0_f64);
     for time in fine {
-        let dt = time - contact.time();
-        match scene.history.at(time) {
-            Load::Approach { approach, .. } => contact.step(dt, Load::approach(approach / approaches)).unwrap(),
-            // an eccentric force leaves the approach of the middle as it is
-            Load::Force { normal, .. } => contact.step(dt, Load::force(normal)).unwrap(),
-            load => panic!("{load:?}"),
-        };
+        // up to a jump, and over it
+        let [before, after] = [scene.history.before(time), scene.history.at(time)];
+        for load in [before].into_iter().chain((after != before).then_some(after)) {
+            let load = match load {
+                Load::Approach { approach, .. } => Load::approach(approach / approaches),
+                // an eccentric force leaves the approach of the middle as it is
+                Load::Force { normal, .. } => Load::force(normal),
+                load => panic!("{load:?}"),
+            };
+            contact.step(time - contact.time(), load).unwrap();
+        }
         let edge = (contact.contact_area() / PI).sqrt();
         if times.contains(&time) {
             let main = if scene.by_force { approaches * contact.approach() } else { contact.force() };
@@ -290,18 +298,26 @@ fn of_finer_run(scene: &Scene, plan: &Plan, times: &[f64]) -> Result<Truth, Erro
     }
     let mut contact = builder.settings(Settings::default().with_tolerance(1e-7)).build()?;
     let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
-    let mut run = contact.follow(&scene.history, stepping, scene.until).stop_at(times)?;
-    let (mut states, mut highest) = (Vec::new(), 0.0_f64);
-    while let Some(report) = run.next_step()? {
-        highest = highest.max(run.contact().max_pressure());
-        if times.get(states.len()) == Some(&report.time) {
-            states.push(observed(scene, run.contact()));
-        }
-    }
-    Ok((states, Some(highest)))
+    let run = contact.follow(&scene.history, stepping, scene.until).stop_at(times)?;
+    let (mut states, highest) = ends_of(scene, run)?;
+    states.retain(|(time, _)| times.contains(time));
+    Ok((states.into_iter().map(|(_, state)| state).collect(), Some(highest)))
 }
 
-fn observed(scene: &Scene, contact: &ViscoelasticContact) -> [Option<f64>; 2] {
+/// The states at the ends of steps, of several at a time the last, and the greatest pressure.
+fn ends_of(scene: &Scene, mut run: Run<'_, ViscoelasticContact>) -> Result<(Vec<(f64, State)>, f64), Error> {
+    let (mut states, mut highest) = (Vec::<(f64, _)>::new(), 0.0_f64);
+    while let Some(report) = run.next_step()? {
+        states.pop_if(|(time, _)| *time == report.time);
+        let [main, radius] = observed(scene, run.contact());
+        // the radius of a few cells is not known
+        states.push((report.time, [main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]));
+        highest = highest.max(run.contact().max_pressure());
+    }
+    Ok((states, highest))
+}
+
+fn observed(scene: &Scene, contact: &ViscoelasticContact) -> State {
     let main = if scene.by_force { contact.approach() } else { contact.force() };
     // contact on other bodies is no ellipse
     [Some(main), scene.other.is_none().then(|| (contact.contact_area() / PI).sqrt())]
@@ -338,20 +354,8 @@ fn deliver(scene: &Scene, limit: usize) -> Result<Outcome, Error> {
         return Ok(Outcome { over: [None; 3], ratio, promises: plan.pressure_converges(), note });
     }
     let mut contact = plan.builder.clone().build()?;
-    let mut run = contact.follow(history, plan.stepping, *until).stop_at(&plan.stops[..])?;
-    let (mut times, mut states, mut highest) = (vec![], vec![], 0.0_f64);
-    while let Some(report) = run.next_step()? {
-        // of several states at a time, the last
-        if times.last() == Some(&report.time) {
-            states.pop();
-        } else {
-            times.push(report.time);
-        }
-        let [main, radius] = observed(scene, run.contact());
-        // the radius of a few cells is not known
-        states.push([main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]);
-        highest = highest.max(run.contact().max_pressure());
-    }
+    let (states, highest) = ends_of(scene, contact.follow(history, plan.stepping, *until).stop_at(&plan.stops[..])?)?;
+    let (times, states): (Vec<f64>, Vec<_>) = states.into_iter().unzip();
     let (truth, peak) = match scene.shape {
         Some(shape) => of_states(scene, shape, &times),
         None => of_finer_run(scene, &plan, &times)?,

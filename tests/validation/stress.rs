@@ -5,6 +5,7 @@ use crate::common::{G, builder_of, contact_of, maxwell};
 
 use super::rolling::{FINE, roll, scene};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use viscocontact::Special;
 use viscocontact::analytic::Hertz;
 use viscocontact::contact::StressHistory;
 use viscocontact::observe::{Stress, SubsurfaceStress};
@@ -281,7 +282,7 @@ fn a_changing_poisson_ratio_is_the_closed_form() {
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()
         .unwrap();
-    assert!(matches!(StressHistory::new(&moving), Err(Error::WrongFrame { .. })));
+    assert!(matches!(StressHistory::new(&moving), Err(Error::NotCovered { special: Special::FixedToIndenter, .. })));
 }
 
 /// With an elastic bulk that does not creep, and with a constant ratio, nothing is remembered.

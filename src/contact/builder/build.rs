@@ -14,7 +14,7 @@ use crate::contact::{
     Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
-use crate::error::{AdhesionError, Error, KernelError, ONE_PROCESS, Refusal, Result, Special, StepError};
+use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, coverage};
 use crate::error::{count_within, length, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
@@ -109,18 +109,23 @@ impl Builder {
     /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
-        Special::Ranks.refuses(self.special().map(|(is, what, _)| (is, what, ONE_PROCESS)))
+        self.is_covered(Special::Ranks)
     }
 
-    /// What neither ranks nor surfaces that attract each other cover, and what to do.
-    fn special(&self) -> [Refusal; 4] {
+    /// Rejects a special scene that does not cover one of its parts.
+    pub(crate) fn is_covered(&self, special: Special) -> Result<()> {
         let Settings { solver, time_rule, frame, .. } = self.settings;
-        [
-            (self.gaps.len() > 1, "a contact of several rigid bodies", "compute one body"),
-            (solver != Solver::ActiveSet, "Solver::PolonskyKeer", "take Solver::ActiveSet"),
-            (!time_rule.needs_series(), "a direct sum", "take TimeRule::Exponential"),
-            (frame != Frame::Bodies, "Frame::Indenter", "take Frame::Bodies"),
-        ]
+        let parts = [
+            (self.gaps.len() > 1, coverage::SEVERAL_BODIES),
+            (solver != Solver::ActiveSet, coverage::POLONSKY_KEER),
+            (!time_rule.needs_series(), coverage::DIRECT_SUM),
+            (frame != Frame::Bodies, coverage::FRAME_OF_INDENTER),
+            (self.ranks.is_some(), coverage::SHARED_ROWS),
+            (self.planned, coverage::PLANNED_GRID),
+            (self.attraction.is_some(), coverage::ATTRACTED),
+            (self.temperature.is_some(), coverage::TEMPERATURES),
+        ];
+        parts.into_iter().try_for_each(|(has, case)| case.unless(|other| has && other == special))
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -182,18 +187,11 @@ impl Builder {
             return Err(Error::Missing { part: "geometry" });
         }
         count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")?;
-        if self.attraction.is_some() { self.attraction_is_covered() } else { Ok(()) }
-    }
-
-    /// Rejects scenes that are not covered where surfaces attract each other.
-    fn attraction_is_covered(&self) -> Result<()> {
-        let cure =
-            "build it by ViscoelasticContact::builder, on a grid that ends where nothing acts and resolves the zone";
-        Special::Attraction.refuses(self.special())?;
-        Special::Attraction.refuses([
-            (self.ranks.is_some(), "a contact that ranks share out", "compute it in one process"),
-            (self.planned, "a grid that was planned without attraction", cure),
-        ])
+        let specials = [
+            (self.attraction.is_some(), Special::Attraction),
+            (self.settings.frame == Frame::Indenter, Special::FixedToIndenter),
+        ];
+        specials.into_iter().filter(|(is, _)| *is).try_for_each(|(_, special)| self.is_covered(special))
     }
 
     /// Material, kernel and history.
@@ -252,11 +250,9 @@ impl ViscoelasticContact {
 fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     let Some((has, gap)) = gaps.first() else { return Err(Error::Missing { part: "geometry" }) };
     let (gap, own, [n1, n2]) = (gap.as_ref().map_err(Error::clone)?, rows.own(), rows.cells());
-    match has {
-        has if *has == (0..n1) => Ok(&gap[own.start * n2..own.end * n2]),
-        has if *has == own => Ok(gap),
-        _ => Err(Error::not_shared("a geometry that was given for other ranks")),
-    }
+    let is_of_all = *has == (0..n1);
+    coverage::OTHER_ROWS.unless(|_| !is_of_all && *has != own)?;
+    Ok(if is_of_all { &gap[own.start * n2..own.end * n2] } else { gap })
 }
 
 /// The parts of a contact that do not depend on its gap.
@@ -332,7 +328,6 @@ fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> 
                 Frame::Indenter => History::moving_frame(&creep, periodic),
             })
         }
-        _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
         TimeRule::Rectangle if glassy == 0.0 => {
             Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what: "the rectangle rule" }))
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::{State, ViscoelasticContact};
-use crate::error::{Error, Result, count_within, exact_length};
+use crate::error::{Result, count_within, exact_length};
 use crate::parallel::Rows;
 use crate::{Axis, sum};
 
@@ -139,10 +139,5 @@ impl ViscoelasticContact {
     /// The local rows, with the reductions over all ranks.
     pub(crate) fn shared_rows(&self) -> Rows {
         self.computation.state.region.rows()
-    }
-
-    /// Rejects a request that needs the whole contact, where ranks share it out.
-    pub(crate) fn not_shared(&self, what: &'static str) -> Result<()> {
-        if self.computation.state.region.is_shared() { Err(Error::not_shared(what)) } else { Ok(()) }
     }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::contact::{Frame, State, Step, StepReport, ViscoelasticContact};
-use crate::error::{Error, Result, exact_length};
+use crate::contact::{State, Step, StepReport, ViscoelasticContact};
+use crate::error::{Result, coverage, exact_length};
 use crate::load::Load;
 use crate::memory;
 use crate::motion::Travel;
@@ -40,11 +40,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the
     /// grid is fixed to the indenter. The contact and its indenter are then unchanged.
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
-        self.not_shared("a step along a path")?;
-        self.not_attracted("a step along a path", "keep the indenter in place")?;
-        if self.settings().frame != Frame::Bodies {
-            return Err(Error::WrongFrame { what: "a step along a path" });
-        }
+        self.covers(coverage::STEP_ALONG_PATH)?;
         exact_length("geometries of the rigid bodies", 1, self.bodies())?;
         let loads = [load];
         let requested = self.request_next(dt, &loads)?;

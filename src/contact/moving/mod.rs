@@ -7,8 +7,8 @@ pub(crate) mod shortfall;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{Frame, Indenter, Step, StepReport, ViscoelasticContact};
-use crate::error::{Error, Result, exact_length};
+use crate::contact::{Indenter, Step, StepReport, ViscoelasticContact};
+use crate::error::{Result, coverage, exact_length};
 use crate::geometry::{Gap, Geometry, Missed, evaluate};
 use crate::load::{Load, Loads};
 
@@ -28,7 +28,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry per body.
     pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
-        self.not_shared("another geometry")?;
+        self.covers(coverage::OTHER_GEOMETRY)?;
         exact_length("geometries of the rigid bodies", geometries.len(), self.scene.bodies)?;
         let gaps =
             geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
@@ -57,7 +57,7 @@ impl ViscoelasticContact {
     /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
     /// enters at the other. Otherwise the history of material that leaves is dropped: the grid should be long enough
     /// behind the contact for the bodies to recover, or for the remaining displacement to be far away. Needs
-    /// [`Frame::Indenter`].
+    /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -92,9 +92,7 @@ impl ViscoelasticContact {
         dt: f64,
         loads: &[Load],
     ) -> Result<StepReport> {
-        if self.settings().frame != Frame::Indenter {
-            return Err(Error::WrongFrame { what: "a step over the bodies" });
-        }
+        self.covers(coverage::STEP_OVER_BODIES)?;
         let mut step = Step { cancelled, ..self.request_next(dt, loads)? };
         step.interval.stride = cells;
         self.take(step)

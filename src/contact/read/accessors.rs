@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::adhesion::Attraction;
 use crate::contact::step::attraction::PassReport;
-use crate::contact::{BodyState, Region, Scene, Settings, State, ViscoelasticContact};
-use crate::error::{Error, Result, Special, exact_length};
+use crate::contact::{BodyState, Frame, Region, Scene, Settings, State, ViscoelasticContact};
+use crate::error::{Result, Special, coverage, exact_length};
 use crate::extent::Extent;
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
@@ -224,12 +224,15 @@ impl ViscoelasticContact {
         self.computation.trial.passes.as_ref().map(|passes| passes.report)
     }
 
-    /// Refuses what is not covered where surfaces attract each other.
-    pub(crate) fn not_attracted(&self, what: &'static str, cure: &'static str) -> Result<()> {
-        match self.scene.attraction {
-            Some(_) => Err(Error::not_covered(Special::Attraction, what, cure)),
-            None => Ok(()),
-        }
+    /// Refuses what such a contact does not cover.
+    pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
+        case.unless(|special| match special {
+            Special::Attraction => self.scene.attraction.is_some(),
+            Special::SteadyMotion => self.scene.steady,
+            Special::Ranks => self.computation.state.region.is_shared(),
+            Special::FixedToBodies => self.settings().frame == Frame::Bodies,
+            Special::FixedToIndenter => self.settings().frame == Frame::Indenter,
+        })
     }
 }
 

@@ -1,8 +1,8 @@
 //! Where the work of a load goes.
 
 use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::{Frame, State, StepReport, Warnings};
-use crate::error::{Error, Result, count_within};
+use crate::contact::{State, StepReport, Warnings};
+use crate::error::{Error, Result, count_within, coverage};
 use crate::hereditary::BranchEnergies;
 use crate::load::{Load, Tilt};
 
@@ -99,21 +99,18 @@ impl EnergyBalance {
     ///
     /// # Errors
     /// If steps were taken, there are several rigid bodies, [ranks](crate::parallel) share out the rows, the bodies move under the grid
-    /// ([`Frame::Indenter`]), or their material has no exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it
+    /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), or their material has no exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it
     /// one).
     pub fn new(contact: &ViscoelasticContact) -> Result<EnergyBalance> {
-        let (what, cells) = ("an energy balance", contact.grid().len());
-        contact.not_shared(what)?;
+        contact.covers(coverage::ENERGIES)?;
+        let cells = contact.grid().len();
         count_within("rigid bodies of an energy balance", contact.bodies(), contact.bodies() == 1, "1")?;
-        if contact.settings().frame() == Frame::Indenter {
-            return Err(Error::WrongFrame { what });
-        }
         if contact.time() != 0.0 || contact.displacement().iter().any(|&u| u != 0.0) {
             let (field, value, allowed) =
                 ("time at which an energy balance begins", contact.time(), "0, before any step");
             return Err(Error::OutOfRange { field, value, allowed });
         }
-        let creep = contact.material().spectrum_for(what)?;
+        let creep = contact.material().spectrum_for("an energy balance")?;
         Ok(EnergyBalance {
             branches: BranchEnergies::new(&creep, cells),
             energies: Energies::default(),

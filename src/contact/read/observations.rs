@@ -1,7 +1,7 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
 use crate::contact::{Solver, State, ViscoelasticContact};
-use crate::error::{Convergence, Error, Result, StepError, finite};
+use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
 use crate::linalg::solve_normal_equations;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
@@ -67,8 +67,7 @@ impl ViscoelasticContact {
     /// If [ranks](crate::parallel) share out the rows. Where surfaces [attract](crate::adhesion) each other: the error of force and approach
     /// then follows from the cells in the zone of the attraction, and exceeds what the pressure at the rim tells by up to ten times.
     pub fn mesh_error(&self) -> Result<Option<MeshError>> {
-        self.not_shared("the error due to the mesh")?;
-        self.not_attracted("the error due to the mesh", "compute on a finer mesh, and compare")?;
+        self.covers(coverage::MESH_ERROR)?;
         Ok(self.pressed().mesh_error(self.contact_cells()))
     }
 
@@ -156,7 +155,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `bins` is 0 or more than a million.
     pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
-        self.not_shared("a distribution")?;
+        self.covers(coverage::DISTRIBUTION)?;
         Distribution::new(self.pressure().iter().copied().filter(|p| *p > 0.0), self.pressure().len(), bins)
     }
 
@@ -182,7 +181,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `bins` is 0 or more than a million, or there is no memory for the gap.
     pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
-        self.not_shared("a distribution")?;
+        self.covers(coverage::DISTRIBUTION)?;
         let gap = self.gap()?;
         let touchable = gap.iter().filter(|h| h.is_finite()).count();
         // a cell under pressure counts as gap 0
@@ -236,7 +235,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the force of a patch overflows `f64`.
     pub fn patches(&self) -> Result<Patches> {
-        self.not_shared("the search for patches")?;
+        self.covers(coverage::PATCHES)?;
         Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
     }
 
@@ -261,7 +260,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If a coordinate is not finite.
     pub fn asymmetry(&self, about: [f64; 2]) -> Result<Option<Asymmetry>> {
-        self.not_shared("the asymmetry")?;
+        self.covers(coverage::ASYMMETRY)?;
         let about = [finite("point along x1", about[0])?, finite("point along x2", about[1])?];
         Ok(Asymmetry::new(self.grid(), self.pressure(), self.kernel().periodic_axes(), about))
     }

@@ -1,7 +1,6 @@
 //! The stress in bodies whose Poisson's ratio changes as they creep.
 
-use crate::contact::Frame;
-use crate::error::{Error, MaterialError, Result, within};
+use crate::error::{Error, MaterialError, Result, coverage, within};
 use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
 use crate::{Grid, ViscoelasticContact, memory};
@@ -50,15 +49,12 @@ pub struct StressHistory {
     pressure: Vec<f64>,
 }
 
-/// The stress where surfaces attract each other.
-const STRESS_OF_TRACTION: &str = "make a SubsurfaceStress from ViscoelasticContact::traction_into";
-
 impl StressHistory {
     /// Begins the history of the body of [`Builder::material`](crate::contact::Builder::material), which must be
     /// undisturbed: call it before the first load.
     ///
     /// # Errors
-    /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`]), so that the bodies move under
+    /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)), so that the bodies move under
     /// it, the stress in the body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
     pub fn new(contact: &ViscoelasticContact) -> Result<StressHistory> {
         StressHistory::of_body(contact, 0)
@@ -73,11 +69,7 @@ impl StressHistory {
     }
 
     fn of_body(contact: &ViscoelasticContact, body: usize) -> Result<StressHistory> {
-        contact.not_shared("a history of the stress")?;
-        contact.not_attracted("a history of the stress", STRESS_OF_TRACTION)?;
-        if contact.settings().frame == Frame::Indenter {
-            return Err(Error::WrongFrame { what: "a history of the stress" });
-        }
+        contact.covers(coverage::STRESS_HISTORY)?;
         let law = contact.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
         SubsurfaceStress::body_of(contact.kernel(), !law.terms.is_empty())?;
         let peak = contact.max_pressure();
@@ -140,7 +132,7 @@ impl StressHistory {
     }
 
     fn check_grid(&self, contact: &ViscoelasticContact) -> Result<()> {
-        contact.not_shared("the stress below the surface")?;
+        contact.covers(coverage::STRESS)?;
         if *contact.grid() == self.grid { Ok(()) } else { Err(Error::OtherContact) }
     }
 }
@@ -166,8 +158,7 @@ impl ViscoelasticContact {
     }
 
     fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
-        self.not_shared("the stress below the surface")?;
-        self.not_attracted("the stress of the pressure of the wall", STRESS_OF_TRACTION)?;
+        self.covers(coverage::STRESS)?;
         let law = self.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
         if !law.terms.is_empty() {
             return Err(MaterialError::ChangingPoisson { body }.into());

@@ -7,7 +7,7 @@ use crate::axis::Axis;
 use crate::contact::state::net_sum;
 use crate::contact::step::edge::MOST;
 use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
-use crate::error::{AdhesionError, Convergence, Error, Result, Special, StepError, exact_length};
+use crate::error::{AdhesionError, Convergence, Error, Result, StepError, coverage, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt, load_point};
 use crate::rheology::is_known;
@@ -19,13 +19,8 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
     exact_length("loads of the rigid bodies", loads.len(), scene.bodies)?;
     for (body, load) in loads.iter().enumerate() {
         load.validate_in(scene.attraction.is_some())?;
-        let free_below_approach = scene.attraction.is_some()
-            && !load.is_force()
-            && load.tilt().iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
-        if free_below_approach {
-            let what = "a body that tilts freely under a given approach or a spring";
-            return Err(Error::not_covered(Special::Attraction, what, "give its tilts, or its force"));
-        }
+        let is_free = !load.is_force() && load.tilt().iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
+        coverage::FREE_TILT.unless(|_| is_free && scene.attraction.is_some())?;
         let Freedom { translation, tilt, point, total } = freedom(load, grid);
         let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
         let tilts_of_periodic = |axis: &Axis| tilts[axis.index()] && scene.kernel.periodic_axes()[axis.index()];

@@ -35,7 +35,7 @@ use crate::contact::{
     Computation, Edge, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial,
     ViscoelasticContact,
 };
-use crate::error::{Error, Result, Special, StepError, non_negative};
+use crate::error::{Error, Result, StepError, coverage, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
@@ -154,10 +154,7 @@ impl ViscoelasticContact {
 
     /// Computes a step. The state stays as it is.
     pub(crate) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
-        if self.scene.steady {
-            let (what, cure) = ("a step", "build a contact by Builder::build to step");
-            return Err(Error::not_covered(Special::SteadyMotion, what, cure));
-        }
+        self.covers(coverage::STEP)?;
         let (mut larger, region) = (None, &self.computation.state.region);
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::Grid;
 use crate::contact::{Indenter, Region, Scene, State, Step, Trial, Window};
-use crate::error::{Error, Result};
+use crate::error::{Result, coverage};
 use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::load::{Load, Tilt};
@@ -30,10 +30,7 @@ pub(in crate::contact) fn region_for(scene: &Scene, state: &State, step: &Step<'
     let moving = step.interval.stride;
     let even = step.indenter.keeps_folded(folded, &scene.grid);
     let still_folded = [0, 1].map(|axis| even[axis] && upright(axis) && moving[axis] == 0);
-    if still_folded != folded && state.region.is_shared() {
-        let what = "a load that breaks the symmetry of the scene (unless Settings::symmetry is false)";
-        return Err(Error::not_shared(what));
-    }
+    coverage::BROKEN_SYMMETRY.unless(|_| still_folded != folded && state.region.is_shared())?;
     let unfolded = (still_folded != folded).then(|| state.region.unfolded(still_folded));
     let region = unfolded.as_ref().unwrap_or(&state.region);
     let to_be_placed = state.is_undisturbed() && !state.region_is_for_contact && state.history.far_source().is_some();

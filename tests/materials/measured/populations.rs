@@ -7,9 +7,7 @@ use viscocontact::rheology::{
 };
 
 use super::log_spaced;
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
-use crate::common::{noise, sphere_on};
+use crate::common::{Draws, Ratios, from_environment, noise, sphere_on};
 
 /// A body with relaxation times over many decades: shares and times of a broad peak.
 fn broad(draw: &mut Draws, middle: f64) -> GeneralizedMaxwell {
@@ -89,7 +87,8 @@ fn a_pair_where_isotherms_meet_is_fitted_and_an_outlier_is_not() {
 /// stated errors.
 #[test]
 fn isotherms_are_shifted_within_their_errors() {
-    let (count, mut shifts, mut off, mut errors) = (from_environment("ISOTHERM_SETS", 12), 0, Vec::new(), Vec::new());
+    let (count, mut shifts, mut off, mut errors) =
+        (from_environment("ISOTHERM_SETS", 12), 0, Vec::new(), Ratios::default());
     for seed in 0..count {
         let mut draw = Draws::new(seed);
         let (mut number, decades, per_decade) = (3 + draw.below(10), draw.between(2.0, 4.0), draw.between(4.0, 12.0));
@@ -137,14 +136,13 @@ fn isotherms_are_shifted_within_their_errors() {
         for (k, ((_, found), (_, error))) in master.shift_factors().into_iter().zip(master.shift_errors()).enumerate() {
             let apart = (found / (factors[k] / factors[reference])).log10().abs();
             shifts += 1;
-            errors.push(apart);
+            errors.push(apart, "");
             if apart > 0.05 && apart > 3.0 * error {
                 off.push(format!("seed {seed}, {k} of {number}: {apart:.3} ± {error:.3}, noise {deviation:.3}"));
             }
         }
     }
-    errors.sort_by(f64::total_cmp);
-    println!("{shifts} shifts: median {:.4}, 90 % {:.4}", errors[shifts / 2], errors[shifts * 9 / 10]);
+    errors.print("decades of shifts", 0);
     assert!(shifts > 5 * count as usize / 2);
     assert!(off.is_empty(), "{} of {shifts}:\n{}", off.len(), off.join("\n"));
 }
@@ -176,9 +174,9 @@ fn vertical_shifts_are_found_on_request() {
     let (mut draw, mut noise) = (Draws::new(3), noise(3));
     let temperatures = [290.0, 300.0, 310.0, 320.0];
     let (mut compared, mut plain_off) = (0, 0);
-    for dynamic in [true, false, true, false, true, false] {
+    for dynamic in [true, false, true, false] {
         let body = FractionalZener::relaxing(2.0e9, 4.0e6, draw.between(0.5, 2.0), draw.between(0.5, 0.8)).unwrap();
-        let spectrum = body.series(1e-9..=1e9, 1e-5).unwrap().spectrum().relaxation();
+        let spectrum = body.series(1e-6..=1e6, 1e-4).unwrap().spectrum().relaxation();
         let factors = temperatures.map(|t| t / 300.0 * draw.between(0.8, 1.25));
         let factors = factors.map(|factor| factor / factors[1]);
         let isotherms: Vec<Isotherm> = (0..4)
@@ -222,7 +220,7 @@ fn vertical_shifts_are_found_on_request() {
             plain_off += usize::from(without > off + 0.01);
         }
     }
-    assert!(compared == 24 && plain_off > 6, "{plain_off} of {compared} shifts are worse without");
+    assert!(compared == 16 && plain_off > 4, "{plain_off} of {compared} shifts are worse without");
 }
 
 /// The approach of a sphere on the body of a file, over that on the body behind it.

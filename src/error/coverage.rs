@@ -1,0 +1,127 @@
+//! What some contacts do not cover: the table of parts and calls, and what to do in place of each.
+
+use std::fmt;
+
+use Special::{Attraction, FixedToBodies, FixedToIndenter, Ranks, SteadyMotion};
+
+use super::{Error, Result};
+
+/// What makes a scene special, so that it does not cover all that others do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Special {
+    /// Surfaces attract each other ([`crate::adhesion`]).
+    Attraction,
+    /// The contact moves steadily ([`crate::sliding`]).
+    SteadyMotion,
+    /// Ranks share out the rows of the grid ([`crate::parallel`]).
+    Ranks,
+    /// The grid is fixed to the bodies ([`Frame::Bodies`](crate::contact::Frame::Bodies)).
+    FixedToBodies,
+    /// The grid is fixed to the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)).
+    FixedToIndenter,
+}
+
+impl fmt::Display for Special {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Attraction => "where surfaces attract each other",
+            SteadyMotion => "in steady motion",
+            Ranks => "on rows that ranks share out",
+            FixedToBodies => "on a grid that is fixed to the bodies",
+            FixedToIndenter => "on a grid that is fixed to the indenter",
+        })
+    }
+}
+
+/// A part of a scene or a call, and the special scenes that do not cover it, each with its cure.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Case(&'static str, &'static [(Special, &'static str)]);
+
+const ONE_PROCESS: &str = "compute the contact in one process";
+const OTHER_FRAME: &str = "choose the other Frame with Settings::with_frame";
+const STRESS_OF_TRACTION: &str = "make a SubsurfaceStress from ViscoelasticContact::traction_into";
+const LAYER: &str = "make the layer by Layer::bonded_to_material";
+
+macro_rules! not_covered {
+    ($($(#[$attribute:meta])* $name:ident: $what:literal, $($special:ident: $cure:expr),+;)*) => {
+        $($(#[$attribute])* pub(crate) const $name: Case = Case($what, &[$(($special, $cure)),+]);)*
+    };
+}
+
+not_covered! {
+    // parts of a scene
+    SEVERAL_BODIES: "a contact of several rigid bodies",
+        Ranks: ONE_PROCESS, Attraction: "compute one body", SteadyMotion: "take one";
+    POLONSKY_KEER: "Solver::PolonskyKeer", Ranks: ONE_PROCESS, Attraction: "take Solver::ActiveSet";
+    DIRECT_SUM: "a direct sum",
+        Ranks: ONE_PROCESS, Attraction: "take TimeRule::Exponential", FixedToIndenter: OTHER_FRAME;
+    FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies";
+    SHARED_ROWS: "a contact that ranks share out",
+        Attraction: "compute it in one process", SteadyMotion: "compute it in one process";
+    PLANNED_GRID: "a grid that was planned without attraction",
+        Attraction: "build it by ViscoelasticContact::builder on a grid that ends where nothing acts and resolves the zone";
+    ATTRACTED: "a contact of surfaces that attract each other", SteadyMotion: "build it without attraction";
+    TEMPERATURES: "a history of the temperature",
+        SteadyMotion: "multiply the velocity by the shift factor of the temperature";
+    OTHER_ROWS: "a geometry that was given for other ranks", Ranks: ONE_PROCESS;
+
+    // steps and their loads
+    STEP: "a step", SteadyMotion: "build a contact by Builder::build to step";
+    STEP_ALONG_PATH: "a step along a path",
+        Ranks: ONE_PROCESS, Attraction: "keep the indenter in place", FixedToIndenter: OTHER_FRAME;
+    STEP_OVER_BODIES: "a step over the bodies", FixedToBodies: OTHER_FRAME;
+    MOTION_TO_STEADY: "a motion to its steady state", FixedToBodies: OTHER_FRAME;
+    OTHER_GEOMETRY: "another geometry", Ranks: ONE_PROCESS;
+    BROKEN_SYMMETRY: "a load that breaks the symmetry of the scene (unless Settings::symmetry is false)",
+        Ranks: ONE_PROCESS;
+    FREE_TILT: "a body that tilts freely under a given approach or a spring",
+        Attraction: "give its tilts, or its force";
+
+    // observations
+    STRESS: "the stress below the surface", Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION;
+    STRESS_HISTORY: "a history of the stress",
+        Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION, FixedToIndenter: OTHER_FRAME;
+    ENERGIES: "an energy balance", Ranks: ONE_PROCESS, FixedToIndenter: OTHER_FRAME;
+    MESH_ERROR: "the error due to the mesh", Ranks: ONE_PROCESS, Attraction: "compute on a finer mesh, and compare";
+    DISTRIBUTION: "a distribution", Ranks: ONE_PROCESS;
+    PATCHES: "the search for patches", Ranks: ONE_PROCESS;
+    ASYMMETRY: "the asymmetry", Ranks: ONE_PROCESS;
+    #[cfg(feature = "plot")]
+    PICTURE: "a picture of fields", Ranks: ONE_PROCESS;
+
+    // steady motions
+    COEFFICIENTS: "a body of coefficients", SteadyMotion: "take InfluenceKernel::from_spectrum or a layer";
+    JUMPING_SHAPE: "a shape that jumps at the period of its body",
+        SteadyMotion: "take one that repeats, or taper its ends";
+    MODULUS: "a modulus over frequency, of a body that is not periodic along both axes,",
+        SteadyMotion: "fit a series to it";
+    FLOW: "a body that flows",
+        SteadyMotion: "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
+    DRIFT: "a body that flows, under an approach or at rest,", SteadyMotion: "give a force and a velocity";
+    BASE_OF_NO_LAYER: "a base below another body than a layer", SteadyMotion: LAYER;
+    OTHER_BASE: "a base of another ratio than the layer's", SteadyMotion: LAYER;
+    THIN_LAYER: "a layer so thin on a base of its own", SteadyMotion: "take fewer cells, or a periodic body";
+    SPRING: "a body on a spring", SteadyMotion: "give the force or the approach";
+    NEAR_DATUM: "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion",
+        SteadyMotion: "give the force, or a datum farther away";
+    OBLIQUE: "a motion that follows neither x1 nor x2, over a body that is not periodic along both,",
+        SteadyMotion: "turn the shape instead";
+}
+
+impl Case {
+    fn refused(self, (special, cure): (Special, &'static str)) -> Error {
+        Error::NotCovered { special, what: self.0, cure }
+    }
+
+    /// The error in the first of its special scenes.
+    pub(crate) fn error(self) -> Error {
+        self.refused(self.1[0])
+    }
+
+    /// Fails in the first of its special scenes that `is` the case.
+    pub(crate) fn unless(self, mut is: impl FnMut(Special) -> bool) -> Result<()> {
+        let found = self.1.iter().find(|(special, _)| is(*special));
+        found.map_or(Ok(()), |special| Err(self.refused(*special)))
+    }
+}
