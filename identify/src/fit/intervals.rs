@@ -54,7 +54,7 @@ impl Fit {
                 (low, high) = (high, 1.7 * high);
             }
             // nearly a parabola
-            let found = root([low, high], ENOUGH, |distance| {
+            let found = root([low, high], high, ENOUGH, |distance| {
                 let rise = rise(distance);
                 [rise - threshold, 2.0 * rise / distance]
             });

@@ -65,8 +65,9 @@ pub(crate) struct Cycle<'a, const N: usize> {
     drive: Real<N>,
     depth: Real<N>,
     terms: Vec<Term<N>>,
-    /// Terms at another time.
+    /// Terms at another time, and what they have decayed by since.
     then: Vec<Term<N>>,
+    since: Vec<Real<N>>,
     moments: Moments<N>,
     part: Moments<N>,
     /// Greatest depth \[m\].
@@ -91,6 +92,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
             drive: zero,
             depth: zero,
             then: terms.clone(),
+            since: vec![zero; terms.len()],
             terms,
             moments: Moments::default(),
             part: Moments::default(),
@@ -123,9 +125,9 @@ impl<'a, const N: usize> Cycle<'a, N> {
     }
 
     /// Σ over the terms after the present interval.
-    fn decayed(&self, of: impl Fn(Term<N>) -> Real<N>) -> Real<N> {
+    fn decayed(&self, of: impl Fn(&Term<N>) -> Real<N>) -> Real<N> {
         let pairs = self.terms.iter().zip(&self.moments.decay);
-        pairs.fold(Real::from(0.0), |sum, (&term, &decay)| sum + decay * of(term))
+        pairs.fold(Real::from(0.0), |sum, (term, &decay)| sum + decay * of(term))
     }
 
     /// Σ Eᵢ M₀ of the present interval: the pressure of a column that the tip moves by 1 m.
@@ -156,11 +158,11 @@ impl<'a, const N: usize> Cycle<'a, N> {
         let pressure = (self.decayed(|term| term.edge) + unit * (depth - self.depth)).value();
         let scale: f64 = self.prony.moduli.iter().map(|modulus| modulus.value().abs()).sum::<f64>() * self.greatest;
         if pressure > 0.0 {
-            self.grow(sample, time, z)?;
+            self.grow(sample, time, z, depth.value())?;
         } else if pressure >= -HELD * scale {
             self.hold(depth);
         } else {
-            self.shrink(sample, time, z)?;
+            self.shrink(sample, time, z, pressure)?;
         }
         (self.time, self.drive) = (time, z);
         self.greatest = self.greatest.max(self.depth.value());
@@ -216,8 +218,9 @@ impl<'a, const N: usize> Cycle<'a, N> {
         self.is_node = false;
     }
 
-    /// The contact grows until a sample: over one free column after the other, and then over columns that have not touched.
-    fn grow(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
+    /// The contact grows until a sample: over one free column after the other, and then over columns that have not touched. The tip ends
+    /// near some depth.
+    fn grow(&mut self, sample: usize, time: Real<N>, z: Real<N>, near: f64) -> Result<()> {
         self.settle()?;
         let (zero, one) = (Real::from(0.0), Real::from(1.0));
         let (from, length) = (self.time, time - self.time);
@@ -233,8 +236,8 @@ impl<'a, const N: usize> Cycle<'a, N> {
             let start = (self.edge.extent, self.edge.elastic);
             let width = next.map(|next| (next - start.0, after - released));
             let mut sums = [[zero; 3]; 4];
-            for (i, term) in self.terms.iter().enumerate() {
-                let (modulus, moments) = (self.prony.moduli[i], self.moments.moments[i]);
+            for (i, term) in self.terms.iter().enumerate().filter(|_| self.springs()) {
+                let (modulus, moments) = (self.prony.moduli[i], &self.moments.moments[i]);
                 let free = self.moments.decay[i] * term.edge + modulus * moments[0] * (released - self.depth);
                 let reached = if next.is_some() { self.columns.state(i, one) } else { zero };
                 for (sum, factor) in sums.iter_mut().zip([modulus, term.edge, free - term.edge, reached - free]) {
@@ -300,7 +303,8 @@ impl<'a, const N: usize> Cycle<'a, N> {
                 if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
                     return Err(tip.beyond(z.value()));
                 }
-                Real::root([released, end], excess)?
+                let near = (near - released.value()) / (end - released).value();
+                Real::root([released, end], near, excess)?
             } else {
                 z
             };
@@ -331,10 +335,11 @@ impl<'a, const N: usize> Cycle<'a, N> {
             unit += self.prony.moduli[i] * self.part.moments[i][0];
             pressure += self.part.decay[i] * term.edge;
         }
+        let released = pressure / unit;
         for i in 0..self.terms.len() {
-            let (modulus, decay, moments) = (self.prony.moduli[i], self.part.decay[i], self.part.moments[i]);
-            let term = self.terms[i];
-            let free = if growth.fresh { zero } else { decay * term.edge - modulus * moments[0] * pressure / unit };
+            let (modulus, decay, moments) = (self.prony.moduli[i], self.part.decay[i], &self.part.moments[i]);
+            let term = &self.terms[i];
+            let free = if growth.fresh { zero } else { decay * term.edge - modulus * moments[0] * released };
             self.terms[i] = growth.after(term, modulus, decay, moments, edge(&self.columns, i, free));
         }
         (self.time, self.depth) = (time, depth);

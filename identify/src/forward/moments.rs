@@ -37,6 +37,16 @@ impl<const N: usize> Moments<N> {
     }
 }
 
+/// 1/5, 1/6, …
+const RECIPROCALS: [f64; 16] = {
+    let (mut all, mut k) = ([0.0; 16], 0);
+    while k < 16 {
+        all[k] = 1.0 / (k + 5) as f64;
+        k += 1;
+    }
+    all
+};
+
 /// exp(−a), and the moments of ξ⁰ … ξ³ under exp(−a (1 − ξ)).
 fn moments(a: f64) -> (f64, [f64; 4]) {
     if a > 1.0 {
@@ -46,15 +56,9 @@ fn moments(a: f64) -> (f64, [f64; 4]) {
         let second = (1.0 - 2.0 * first) / a;
         return (decay, [zeroth, first, second, (1.0 - 3.0 * second) / a]);
     }
-    // M₃ = 6 Σ (−a)^j/(j + 4)!, and downward from there, where the recursion loses no digits
-    let (mut third, mut term) = (0.0, 0.25);
-    for j in 0..16 {
-        third += term;
-        term *= -a / f64::from(j + 5);
-        if term.abs() < 1e-18 {
-            break;
-        }
-    }
+    // M₃ = 6 Σ (−a)^j/(j + 4)! = ¼ (1 − a/5 (1 − a/6 (…))), and downward from there, where the recursion loses no digits
+    let terms = if a < 0.02 { 7 } else { 16 };
+    let third = RECIPROCALS[..terms].iter().rev().fold(1.0, |sum, reciprocal| 1.0 - a * reciprocal * sum) / 4.0;
     let second = (1.0 - a * third) / 3.0;
     let first = 0.5 * (1.0 - a * second);
     let zeroth = 1.0 - a * first;

@@ -56,11 +56,12 @@ impl<const N: usize> Real<N> {
         self.mapped(value, -value)
     }
 
-    /// The root of a function that falls between two numbers, with the derivatives of its equation by the theorem of implicit functions; an end is
+    /// The root of a function that falls between two numbers, near a share of the way between them, with the derivatives of its equation by the theorem of implicit functions; an end is
     /// what it depends on.
-    pub(super) fn root([low, high]: [Self; 2], mut falling: impl FnMut(Self) -> Result<Self>) -> Result<Self> {
+    pub(super) fn root([low, high]: [Self; 2], near: f64, mut falling: impl FnMut(Self) -> Result<Self>) -> Result<Self> {
         let (mut residual, width) = (Ok(low), high - low);
-        let share = root([0.0, 1.0], CONVERGED, |share| {
+        let from = if (0.0..=1.0).contains(&near) { near } else { 1.0 };
+        let share = root([0.0, 1.0], from, CONVERGED, |share| {
             let unknown = low.with(share, |k| if k + 1 == N { 1.0 } else { 0.0 });
             residual = falling(low + unknown * width);
             residual.as_ref().map_or([f64::NAN; 2], |rest| [-rest.value, -rest.slopes[N - 1]])
@@ -154,7 +155,7 @@ mod tests {
     fn a_root_has_the_derivatives_of_its_equation() {
         // u² = x: du/dx = 1/(2u)
         let x = Real::new(4.0, [1.0, 0.0]);
-        let root = Real::root([Real::from(0.0), x], |u| Ok(x - u * u)).unwrap();
+        let root = Real::root([Real::from(0.0), x], 0.3, |u| Ok(x - u * u)).unwrap();
         assert!((root.value() - 2.0).abs() < 1e-12 && (root.slope(0) - 0.25).abs() < 1e-7, "{root:?}");
     }
 }
