@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 1e-12;
 /// Samples of a curve with which a search begins.
 const ROUGH: usize = 128;
 /// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-8, 1e-4];
+const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.

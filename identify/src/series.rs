@@ -9,6 +9,7 @@ use viscocontact::rheology::{Elastic, GeneralizedMaxwell, Material};
 use viscocontact::states::ElasticStates;
 
 use crate::error::{Error, Result, within};
+use crate::fractional::spectrum;
 use crate::model::{Model, Scale};
 
 /// Spacing of the logarithms of the rates: sums of such exponentials are within 1e-6 of smooth relaxation.
@@ -23,10 +24,6 @@ const FIRST: f64 = 0.5;
 const LAST: f64 = 10.0;
 /// Weight of the moduli, which makes those without effect small.
 const RIDGE: f64 = 1e-8;
-/// −ln of the least share of a spectrum that is summed, and the spacing of its nodes: the trapezoidal rule errs by exp(−π²/spacing), below 1e-8.
-const LEAST_SHARE: f64 = 23.0;
-const NODES: f64 = 0.5;
-
 /// E(t).
 type Relaxation = Box<dyn Fn(f64) -> f64>;
 
@@ -39,7 +36,7 @@ pub(crate) struct Prony<T = f64> {
 
 impl Prony {
     /// From pairs of modulus and rate.
-    fn of(terms: impl IntoIterator<Item = (f64, f64)>) -> Prony {
+    pub(crate) fn of(terms: impl IntoIterator<Item = (f64, f64)>) -> Prony {
         let (moduli, rates) = terms.into_iter().unzip();
         Prony { moduli, rates }
     }
@@ -125,10 +122,10 @@ impl Model {
     pub(crate) fn sums(&self, all: &[Vec<f64>], window: [f64; 2]) -> Result<Vec<Prony>> {
         self.check(&all[0])?;
         let times @ [first, _] = [FIRST * window[0], window[1]];
-        let [base, strength] = self.moduli(&all[0]);
+        let (base, strength, _) = self.parts(&all[0]);
         // parameters that differ in moduli alone have one relaxation
         let mut last: Option<(&[f64], Prony)> = None;
-        let nearest = |of: &'_ [f64], shape: &'_ [f64]| {
+        let nearest = |of: &[f64], shape: &[f64]| {
             let rates = self.rates(of, &all[0], window);
             let (relaxation, integral) = self.relaxation(shape, &rates, first);
             nearest_sum(&rates, &relaxation, integral, |relaxed| base + strength * relaxed, times)
@@ -144,10 +141,9 @@ impl Model {
                     Prony::of(std::iter::once((*einf, 0.0)).chain(relaxing))
                 }
                 _ => {
-                    let shape = self.shape(of);
+                    let (einf, relaxing, shape) = self.parts(of);
                     let kept = last.take().filter(|(before, _)| *before == shape);
                     let (_, sum) = last.insert(kept.unwrap_or_else(|| (shape, nearest(of, shape))));
-                    let [einf, relaxing] = self.moduli(of);
                     let mut moduli: Vec<f64> = sum.moduli.iter().map(|modulus| relaxing * modulus).collect();
                     moduli[0] += einf;
                     Prony { moduli, rates: sum.rates.clone() }
@@ -157,22 +153,13 @@ impl Model {
         Ok(sums)
     }
 
-    /// The equilibrium modulus of a model that is no sum of a few exponentials, and the factor of its relaxation.
-    fn moduli(&self, of: &[f64]) -> [f64; 2] {
+    /// The equilibrium modulus of a model that is no sum of a few exponentials, the factor of its relaxation, and the parameters of that.
+    fn parts<'a>(&self, of: &'a [f64]) -> (f64, f64, &'a [f64]) {
         match self {
-            Model::PowerLaw { .. } => [0.0, of[0]],
-            Model::PowerLawSolid { .. } => [of[2], of[0]],
-            Model::Stretched | Model::FractionalZener => [of[1], of[0] - of[1]],
-            _ => [0.0, 1.0],
-        }
-    }
-
-    /// The parameters of its relaxation.
-    fn shape<'a>(&self, of: &'a [f64]) -> &'a [f64] {
-        match self {
-            Model::PowerLaw { .. } | Model::PowerLawSolid { .. } => &of[1..2],
-            Model::Stretched | Model::FractionalZener => &of[2..],
-            _ => of,
+            Model::PowerLaw { .. } => (0.0, of[0], &of[1..]),
+            Model::PowerLawSolid { .. } => (of[2], of[0], &of[1..2]),
+            Model::Stretched | Model::FractionalZener => (of[1], of[0] - of[1], &of[2..]),
+            _ => (0.0, 1.0, of),
         }
     }
 
@@ -180,10 +167,11 @@ impl Model {
     fn relaxation(&self, shape: &[f64], rates: &[f64], first: f64) -> (Relaxation, f64) {
         let of = shape.to_vec();
         let law: Relaxation = match *self {
-            Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff } => Box::new(move |t| (t + cutoff).powf(-of[0])),
+            Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff } => {
+                Box::new(move |t| (t + cutoff).powf(-of[0]))
+            }
             Model::FractionalZener => {
-                let spectrum =
-                    fractional_spectrum(of[1], [rates[0], rates[rates.len() - 1]].map(|rate| rate.ln() + of[0].ln()));
+                let spectrum = spectrum(of[1], [rates[0], rates[rates.len() - 1]].map(|rate| rate.ln() + of[0].ln()));
                 let integral = of[0] * spectrum.integral(first / of[0]);
                 return (Box::new(move |t| if t == 0.0 { 1.0 } else { spectrum.modulus(t / of[0]) }), integral);
             }
@@ -253,62 +241,10 @@ fn integral(f: impl Fn(f64) -> f64, end: f64) -> f64 {
     (-40..=60).map(node).sum::<f64>() * step * end
 }
 
-/// The spectrum of E_α(−t^α) over y = ln(rate), of area 1: sin(πα)/2π/(cosh αy + cos πα) (Gorenflo & Mainardi 1997). With
-/// c = sin(π(1 − α)/2) and s = cos(π(1 − α)/2) this is s c/2π/(sinh²(αy/2) + c²).
-fn fractional_density(alpha: f64, y: f64) -> f64 {
-    let (c, s) = (0.5 * PI * (1.0 - alpha)).sin_cos();
-    s * c / (2.0 * PI * ((0.5 * alpha * y).sinh().powi(2) + c * c))
-}
-
-/// Its area below y < 0.
-fn fractional_share(alpha: f64, y: f64) -> f64 {
-    let (c, s) = (0.5 * PI * (1.0 - alpha)).sin_cos();
-    // 1/2 + atan(tanh(αy/2) s/c)/πα, free of the cancellation
-    let u = (0.5 * alpha * y).tanh();
-    let rest = 2.0 * (alpha * y).exp() / (1.0 + (alpha * y).exp());
-    // atan(s/c) + atan(u s/c) = atan of (s/c)(1 + u)/(1 − u s²/c²)
-    (s / c * rest).atan2(1.0 - u * s * s / (c * c)) / (PI * alpha)
-}
-
-/// E_α(−t^α) at times that rates between two, given by their logarithms, show: a sum by the trapezoidal rule in v = y + asinh(y/b), where ±ib are the poles: the spectrum is
-/// as smooth in v for α → 1, where the peak is narrow, as for α → 0, where it is wide. (The Mittag-Leffler function of the main crate takes a
-/// hundred times as long.)
-fn fractional_spectrum(alpha: f64, [slowest, fastest]: [f64; 2]) -> Prony {
-    let width = PI * (1.0 - alpha) / alpha;
-    let v = |y: f64| y + (y / width).asinh();
-    let reach = LEAST_SHARE / alpha;
-    let first = (slowest - LEAST_SHARE).clamp(-reach, -1.0);
-    let last = (fastest + LEAST_SHARE).clamp(1.0, reach);
-    let y = |v_k: f64| {
-        // Newton's steps from the side of 0, where v is steepest, do not pass the root
-        let mut y = v_k * width / (1.0 + width);
-        for _ in 0..60 {
-            let step = (v(y) - v_k) / (1.0 + 1.0 / y.hypot(width));
-            y -= step;
-            if step.abs() <= 1e-15 * y.abs() {
-                break;
-            }
-        }
-        y
-    };
-    let [from, to] = [first, last].map(|end| (v(end) / NODES).round() as i64);
-    let node = |k: i64| {
-        let y = y(k as f64 * NODES);
-        (y, NODES / (1.0 + 1.0 / y.hypot(width)))
-    };
-    // the sum below the first node: the midpoint rule, with its first correction h² f′/24
-    let (y, h) = node(from);
-    let [near, far] = [y.abs(), y.abs() + h].map(|y| fractional_density(alpha, y));
-    let below = fractional_share(alpha, -y.abs() - 0.5 * h) + h * (far - near) / 24.0;
-    let terms = (from..=to).map(node).map(|(y, h)| (h * fractional_density(alpha, y), y.exp()));
-    Prony::of(std::iter::once((below, 0.0)).chain(terms))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::Law;
-    use viscocontact::rheology::{FractionalZener, Rheology};
 
     #[test]
     fn powers_of_time_are_sums_of_exponentials() {
@@ -351,36 +287,6 @@ mod tests {
             let prony = model.prony(&parameters, [1e-3, 10.0]).unwrap();
             for t in [1e-3, 0.02, 0.3, 1.0, 10.0] {
                 assert!((prony.modulus(t) / exact(t) - 1.0).abs() < 1e-6, "{model:?} {t}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_fractional_solid_has_closed_forms() {
-        // E_½(−√x) = exp(x) erfc(√x)
-        let prony = Model::FractionalZener.prony(&[3.0, 1.0, 2.0, 0.5], [1e-3, 100.0]).unwrap();
-        for t in [1e-3_f64, 0.1, 2.0, 50.0] {
-            let exact = 1.0 + 2.0 * (0.5 * t).exp() * libm::erfc((0.5 * t).sqrt());
-            assert!((prony.modulus(t) / exact - 1.0).abs() < 1e-6, "t {t}: {} {exact}", prony.modulus(t));
-        }
-        // near 1 it is the standard solid
-        let near = Model::FractionalZener.prony(&[3.0, 1.0, 2.0, 0.98], [1e-3, 100.0]).unwrap();
-        assert!((near.modulus(1.0) / Model::Zener.modulus(&[3.0, 1.0, 2.0], 1.0).unwrap() - 1.0).abs() < 0.02);
-    }
-
-    /// The Mittag-Leffler function of the main crate is another algorithm: 1 + [1 − E_α(−t^α)] is the compliance of unit moduli.
-    #[test]
-    fn the_fractional_solid_is_the_mittag_leffler_function_at_any_exponent() {
-        for alpha in [1e-9, 1e-5, 1e-3, 0.01, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999, 1.0 - 1e-9] {
-            let exact = FractionalZener::new(1.0, 1.0, 1.0, alpha).unwrap();
-            for tau in [1e-4, 0.3, 50.0, 1e5] {
-                let prony = Model::FractionalZener.prony(&[2.0, 1.0, tau, alpha], [1e-3, 100.0]).unwrap();
-                assert!(prony.moduli.len() < 40, "{alpha}: {} terms", prony.moduli.len());
-                for t in [1e-3, 0.1, 2.0, 50.0, 100.0] {
-                    let exact = 3.0 - exact.creep_compliance(t / tau);
-                    let error = (prony.modulus(t) / exact - 1.0).abs();
-                    assert!(error < 1e-6, "α = {alpha}, τ = {tau}, t = {t}: {} {exact}", prony.modulus(t));
-                }
             }
         }
     }

@@ -40,31 +40,27 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
         reference = reference.max(modulus);
     }
     let unit = if reference > 0.0 { reference } else { 1.0 };
-    let mut found: Vec<(Scaling, Vec<f64>)> = Vec::new();
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut failure = Error::NoContact { curve: 0 };
     for candidate in candidates(problem.model, problem.window) {
         for ((value, parameter), size) in values.iter_mut().zip(&problem.parameters).zip(candidate) {
             *value = parameter.given.unwrap_or(if is_modulus(&parameter.name) { size * unit } else { size });
         }
-        match scaled(problem, &mut values) {
-            Ok(scaling) => found.push((scaling, values.clone())),
+        match scaled(problem, &mut values, 1) {
+            Ok(sum) if sum.is_finite() => found.push((sum, values.clone())),
+            Ok(_) => {}
             Err(error) => failure = error,
         }
     }
-    found.sort_by(|a, b| a.0.sum.total_cmp(&b.0.sum));
-    found.truncate(SCALED);
-    for (scaling, values) in &mut found {
-        for _ in 1..ROUNDS {
-            if (scaling.factor - 1.0).abs() >= ENOUGH {
-                *scaling = scaled(problem, values).unwrap_or(Scaling::NONE);
-            }
-        }
-    }
-    found.retain(|(scaling, _)| scaling.sum.is_finite());
     if found.is_empty() {
         return Err(failure);
     }
-    found.sort_by(|a, b| a.0.sum.total_cmp(&b.0.sum));
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.truncate(SCALED);
+    for (sum, values) in &mut found {
+        *sum = scaled(problem, values, ROUNDS - 1).unwrap_or(f64::INFINITY);
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(found.into_iter().take(STARTS).map(|(_, values)| problem.coordinates(&values)).collect())
 }
 
@@ -72,44 +68,39 @@ fn is_modulus(name: &str) -> bool {
     name.starts_with('E')
 }
 
-/// How moduli were scaled to the data.
-struct Scaling {
-    factor: f64,
-    /// The sum of squared deviations, if forces are proportional to the moduli.
-    sum: f64,
-}
-
-impl Scaling {
-    const NONE: Scaling = Scaling { factor: 1.0, sum: f64::INFINITY };
-}
-
-/// Scales the free moduli to the data.
-fn scaled(problem: &Problem, values: &mut [f64]) -> Result<Scaling> {
-    let prony = problem.prony(values)?;
-    let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
-    for (curve, part) in problem.parts.iter().enumerate() {
-        let samples = problem.samples(curve, values, &prony)?;
-        let rest = problem.measured(curve, values, samples.iter().map(|_| 0.0));
-        for ((sample, data), rest) in samples.iter().zip(&part.curve.force).zip(rest) {
-            let (force, data) = (part.scale * sample.force, part.scale * (data - rest));
-            product += force * data;
-            square += force * force;
-            data_square += data * data;
+/// Scales the free moduli to the data in some rounds; returns the sum of squared deviations, if forces are proportional to the moduli.
+fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
+    let mut sum = f64::INFINITY;
+    for _ in 0..rounds {
+        let prony = problem.prony(values)?;
+        let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
+        for (curve, part) in problem.parts.iter().enumerate() {
+            let samples = problem.samples(curve, values, &prony)?;
+            let rest = problem.measured(curve, values, samples.iter().map(|_| 0.0));
+            for ((sample, data), rest) in samples.iter().zip(&part.curve.force).zip(rest) {
+                let (force, data) = (part.scale * sample.force, part.scale * (data - rest));
+                product += force * data;
+                square += force * force;
+                data_square += data * data;
+            }
+        }
+        let factor = product / square;
+        if !(factor.is_finite() && factor > 0.0) {
+            return Ok(f64::INFINITY);
+        }
+        let mut reached = factor;
+        for (value, parameter) in values.iter_mut().zip(&problem.parameters).filter(|(_, of)| is_modulus(&of.name)) {
+            match parameter.given {
+                None => *value *= factor,
+                Some(_) => reached = 1.0,
+            }
+        }
+        sum = data_square - reached * (2.0 * product - reached * square);
+        if (factor - 1.0).abs() < ENOUGH {
+            break;
         }
     }
-    let factor = product / square;
-    if !(factor.is_finite() && factor > 0.0) {
-        return Ok(Scaling::NONE);
-    }
-    let mut all_free = true;
-    for (value, parameter) in values.iter_mut().zip(&problem.parameters).filter(|(_, of)| is_modulus(&of.name)) {
-        match parameter.given {
-            None => *value *= factor,
-            Some(_) => all_free = false,
-        }
-    }
-    let reached = if all_free { factor } else { 1.0 };
-    Ok(Scaling { factor, sum: data_square - reached * (2.0 * product - reached * square) })
+    Ok(sum)
 }
 
 /// Parameters of a model on a coarse grid, in units of a modulus.

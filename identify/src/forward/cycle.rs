@@ -223,13 +223,19 @@ impl<'a, const N: usize> Cycle<'a, N> {
     fn grow(&mut self, sample: usize, time: Real<N>, z: Real<N>, near: f64) -> Result<()> {
         self.settle()?;
         let (zero, one) = (Real::from(0.0), Real::from(1.0));
-        let (from, length) = (self.time, time - self.time);
         // share of the interval that has passed
         let mut passed = zero;
         loop {
             let next = self.columns.next_extent();
             let [before, after] = self.columns.next(sample);
             let before = before + passed * (after - before);
+            if let Some(extent) = next.filter(|_| !self.springs() && z.value() > after.value()) {
+                passed = self.reach(extent, before, after, z - after, time, passed)?;
+                continue;
+            }
+            if passed.value() > 0.0 {
+                self.moments.set(time - self.time, false, &self.prony.rates);
+            }
             // where the column at the edge would be, had it been free
             let unit = self.stiffness();
             let released = self.depth - self.decayed(|term| term.edge) / unit;
@@ -265,27 +271,13 @@ impl<'a, const N: usize> Cycle<'a, N> {
             let give = self.give;
             let excess = |depth: Real<N>| {
                 let (share, .., growth) = at(depth)?;
-                let change = [0, 1, 2].map(|k| sums[2][k] + share * sums[3][k]);
-                Ok(z - depth - give * (past + growth.force(sums[0], sums[1], change)))
+                let change = |k: usize| sums[2][k] + share * sums[3][k];
+                Ok(z - depth - give * (past + growth.force(&sums[0], &sums[1], &[change(0), change(1), change(2)])))
             };
-            if let Some(extent) = next {
-                let left = if self.springs() { excess(after)? } else { z - after };
+            if let Some(extent) = next.filter(|_| self.springs()) {
+                let left = excess(after)?;
                 if left.value() > 0.0 {
-                    // the column is reached within the interval: its gap is linear in time
-                    let instant = self.prony.moduli.iter().fold(zero, |sum, &modulus| sum + modulus);
-                    let gap = (self.depth - before) * (one + give * self.edge.elastic.stiffness * instant);
-                    let share = if gap.value() < 0.0 { gap / (gap - left) } else { zero };
-                    let elastic = tip.at(extent)?;
-                    let depth = before + share * (after - before);
-                    let growth = Growth::new(start, (extent, elastic), depth - self.depth, false);
-                    let all = passed + share * (one - passed);
-                    self.part.set(share * (one - passed) * length, false, &self.prony.rates);
-                    self.append(from + all * length, depth, (extent, elastic), growth, |columns, i, _| {
-                        columns.state(i, all)
-                    });
-                    self.columns.pop();
-                    passed = all;
-                    self.moments.set((one - passed) * length, false, &self.prony.rates);
+                    passed = self.reach(extent, before, after, left, time, passed)?;
                     continue;
                 }
             }
@@ -317,6 +309,31 @@ impl<'a, const N: usize> Cycle<'a, N> {
             std::mem::swap(&mut self.part, &mut self.moments);
             return Ok(());
         }
+    }
+
+    /// The contact grows to the next column, whose surface rises from `before`, where a share of the interval has passed, to `after` and leaves the
+    /// spring this excess. Returns the share that has passed then.
+    fn reach(
+        &mut self,
+        extent: Real<N>,
+        before: Real<N>,
+        after: Real<N>,
+        left: Real<N>,
+        time: Real<N>,
+        passed: Real<N>,
+    ) -> Result<Real<N>> {
+        let (zero, one, start) = (Real::from(0.0), Real::from(1.0), (self.edge.extent, self.edge.elastic));
+        // the gap is linear in time
+        let instant = self.prony.moduli.iter().fold(zero, |sum, &modulus| sum + modulus);
+        let gap = (self.depth - before) * (one + self.give * start.1.stiffness * instant);
+        let share = if gap.value() < 0.0 { gap / (gap - left) } else { zero };
+        let (elastic, depth) = (self.tip.at(extent)?, before + share * (after - before));
+        let growth = Growth::new(start, (extent, elastic), depth - self.depth, false);
+        let (length, all) = (share * (time - self.time), passed + share * (one - passed));
+        self.part.set(length, false, &self.prony.rates);
+        self.append(self.time + length, depth, (extent, elastic), growth, |columns, i, _| columns.state(i, all));
+        self.columns.pop();
+        Ok(all)
     }
 
     /// Ends an interval of growth whose moments are those of a part. `edge` is the pressure of a term at the edge, by the columns, the term and

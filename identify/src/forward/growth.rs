@@ -51,9 +51,9 @@ impl<const N: usize> Growth<N> {
     /// Force of terms whose moments have the sums `modulus` Σ Eᵢ Mₖ, `start` Σ qᵢ Mₖ and `change` Σ Δqᵢ Mₖ, where q is the pressure of a
     /// column as it touches, linear in ξ from qᵢ to qᵢ + Δqᵢ:
     /// ∫ dδ/dξ f′ exp(−a (1 − ξ)) dξ + ∫ df′/dξ q(ξ) exp(−a (1 − ξ)) dξ.
-    pub(super) fn force(&self, modulus: [Real<N>; 3], start: [Real<N>; 3], change: [Real<N>; 3]) -> Real<N> {
-        let [tip, ..] = self.factors(&modulus);
-        if self.fresh { tip } else { tip + self.factors(&start)[1] + self.factors(&change)[2] }
+    pub(super) fn force(&self, modulus: &[Real<N>; 3], start: &[Real<N>; 3], change: &[Real<N>; 3]) -> Real<N> {
+        let [tip, ..] = self.factors(modulus);
+        if self.fresh { tip } else { tip + self.factors(start)[1] + self.factors(change)[2] }
     }
 
     /// A term at the end of the interval, where the column at the edge has the pressure `edge`.

@@ -25,27 +25,25 @@ impl<const N: usize> Moments<N> {
         }
         // an interval whose length depends on parameters is never reused
         self.length = if fixed { length } else { Real::from(f64::NAN) };
-        self.decay.clear();
-        self.moments.clear();
-        for &rate in rates {
+        self.decay.resize(rates.len(), length);
+        self.moments.resize(rates.len(), [length; 3]);
+        for (&rate, (decay, own)) in rates.iter().zip(self.decay.iter_mut().zip(&mut self.moments)) {
             let a = rate * length;
-            let (decay, of_a) = moments(a.value());
-            self.decay.push(a.mapped(decay, -decay));
+            let (value, of_a) = moments(a.value());
+            *decay = a.mapped(value, -value);
             // dMₖ/da = Mₖ₊₁ − Mₖ
-            self.moments.push([0, 1, 2].map(|k| a.mapped(of_a[k], of_a[k + 1] - of_a[k])));
+            for (k, moment) in own.iter_mut().enumerate() {
+                *moment = a.mapped(of_a[k], of_a[k + 1] - of_a[k]);
+            }
         }
     }
 }
 
 /// 1/5, 1/6, …
-const RECIPROCALS: [f64; 16] = {
-    let (mut all, mut k) = ([0.0; 16], 0);
-    while k < 16 {
-        all[k] = 1.0 / (k + 5) as f64;
-        k += 1;
-    }
-    all
-};
+#[rustfmt::skip]
+const RECIPROCALS: [f64; 16] = [
+    1. / 5., 1. / 6., 1. / 7., 1. / 8., 1. / 9., 1. / 10., 1. / 11., 1. / 12., 1. / 13., 1. / 14., 1. / 15., 1. / 16., 1. / 17., 1. / 18., 1. / 19., 1. / 20.,
+];
 
 /// exp(−a), and the moments of ξ⁰ … ξ³ under exp(−a (1 − ξ)).
 fn moments(a: f64) -> (f64, [f64; 4]) {
