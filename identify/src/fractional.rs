@@ -32,7 +32,7 @@ pub(crate) fn spectrum(alpha: f64, [slowest, fastest]: [f64; 2]) -> Prony {
     let width = PI * (1.0 - alpha) / alpha;
     let v = |y: f64| y + (y / width).asinh();
     let reach = LEAST_SHARE / alpha;
-    let first = (slowest - LEAST_SHARE).clamp(-reach, -1.0);
+    let first = (slowest - LEAST_SHARE).clamp(-reach, -LEAST_SHARE);
     let last = (fastest + LEAST_SHARE).clamp(1.0, reach);
     let y = |v_k: f64| {
         // Newton's steps from the side of 0, where v is steepest, do not pass the root

@@ -121,62 +121,42 @@ impl Model {
     /// The exponentials of some parameters, of which all are near the first: as many for each.
     pub(crate) fn sums(&self, all: &[Vec<f64>], window: [f64; 2]) -> Result<Vec<Prony>> {
         self.check(&all[0])?;
-        let times @ [first, _] = [FIRST * window[0], window[1]];
-        let (base, strength, _) = self.parts(&all[0]);
-        // parameters that differ in moduli alone have one relaxation
-        let mut last: Option<(&[f64], Prony)> = None;
-        let nearest = |of: &[f64], shape: &[f64]| {
-            let rates = self.rates(of, &all[0], window);
-            let (relaxation, integral) = self.relaxation(shape, &rates, first);
-            nearest_sum(&rates, &relaxation, integral, |relaxed| base + strength * relaxed, times)
+        let times = [FIRST * window[0], window[1]];
+        let sum = |of: &Vec<f64>| match (*self, of.as_slice()) {
+            (Model::Elastic, &[e]) => Prony::of([(e, 0.0)]),
+            (Model::Maxwell, &[e0, tau]) => Prony::of([(e0, 1.0 / tau)]),
+            (Model::Zener, &[e0, einf, tau]) => Prony::of([(einf, 0.0), (e0 - einf, 1.0 / tau)]),
+            (Model::Prony(_), [einf, terms @ ..]) => {
+                let relaxing = terms.chunks_exact(2).map(|term| (term[0], 1.0 / term[1]));
+                Prony::of(std::iter::once((*einf, 0.0)).chain(relaxing))
+            }
+            _ => {
+                let rates = self.rates(of, &all[0], window);
+                let (law, integral) = self.law(of, &rates, times[0]);
+                nearest_sum(&rates, law, integral, times)
+            }
         };
-        let mut sums = Vec::with_capacity(all.len());
-        for of in all {
-            sums.push(match (*self, of.as_slice()) {
-                (Model::Elastic, &[e]) => Prony::of([(e, 0.0)]),
-                (Model::Maxwell, &[e0, tau]) => Prony::of([(e0, 1.0 / tau)]),
-                (Model::Zener, &[e0, einf, tau]) => Prony::of([(einf, 0.0), (e0 - einf, 1.0 / tau)]),
-                (Model::Prony(_), [einf, terms @ ..]) => {
-                    let relaxing = terms.chunks_exact(2).map(|term| (term[0], 1.0 / term[1]));
-                    Prony::of(std::iter::once((*einf, 0.0)).chain(relaxing))
-                }
-                _ => {
-                    let (einf, relaxing, shape) = self.parts(of);
-                    let kept = last.take().filter(|(before, _)| *before == shape);
-                    let (_, sum) = last.insert(kept.unwrap_or_else(|| (shape, nearest(of, shape))));
-                    let mut moduli: Vec<f64> = sum.moduli.iter().map(|modulus| relaxing * modulus).collect();
-                    moduli[0] += einf;
-                    Prony { moduli, rates: sum.rates.clone() }
-                }
-            });
-        }
-        Ok(sums)
+        Ok(all.iter().map(sum).collect())
     }
 
-    /// The equilibrium modulus of a model that is no sum of a few exponentials, the factor of its relaxation, and the parameters of that.
-    fn parts<'a>(&self, of: &'a [f64]) -> (f64, f64, &'a [f64]) {
-        match self {
-            Model::PowerLaw { .. } => (0.0, of[0], &of[1..]),
-            Model::PowerLawSolid { .. } => (of[2], of[0], &of[1..2]),
-            Model::Stretched | Model::FractionalZener => (of[1], of[0] - of[1], &of[2..]),
-            _ => (0.0, 1.0, of),
-        }
-    }
-
-    /// Its relaxation, between the times that some rates show, and the integral from 0 to the `first` time.
-    fn relaxation(&self, shape: &[f64], rates: &[f64], first: f64) -> (Relaxation, f64) {
-        let of = shape.to_vec();
+    /// E(t) of a model that is no sum of a few exponentials, between the times that some rates show, and its integral from 0 to the `first` time.
+    fn law(&self, parameters: &[f64], rates: &[f64], first: f64) -> (Relaxation, f64) {
+        let of = parameters.to_vec();
         let law: Relaxation = match *self {
             Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff } => {
-                Box::new(move |t| (t + cutoff).powf(-of[0]))
+                let einf = of.get(2).copied().unwrap_or_default();
+                Box::new(move |t| einf + of[0] * (t + cutoff).powf(-of[1]))
             }
+            Model::Stretched => Box::new(move |t| of[1] + (of[0] - of[1]) * (-(t / of[2]).powf(of[3])).exp()),
             Model::FractionalZener => {
-                let spectrum = spectrum(of[1], [rates[0], rates[rates.len() - 1]].map(|rate| rate.ln() + of[0].ln()));
-                let integral = of[0] * spectrum.integral(first / of[0]);
-                return (Box::new(move |t| if t == 0.0 { 1.0 } else { spectrum.modulus(t / of[0]) }), integral);
+                let shown = [rates[0], rates[rates.len() - 1]].map(|rate| rate.ln() + of[2].ln());
+                let (spectrum, relaxing) = (spectrum(of[3], shown), of[0] - of[1]);
+                let integral = of[1] * first + relaxing * (of[2] * spectrum.integral(first / of[2]));
+                let relaxed = move |t: f64| if t == 0.0 { 1.0 } else { spectrum.modulus(t) };
+                return (Box::new(move |t| of[1] + relaxing * relaxed(t / of[2])), integral);
             }
             Model::Custom(law) => Box::new(move |t| (law.modulus)(&of, t)),
-            _ => Box::new(move |t| (-(t / of[0]).powf(of[1])).exp()),
+            _ => Box::new(|_| f64::NAN),
         };
         let integral = integral(&law, first);
         (law, integral)
@@ -195,18 +175,11 @@ impl Model {
     }
 }
 
-/// The sum of exponentials of given rates and an equilibrium that is nearest to a law, relative to a `scale` of its values. Two last terms have
-/// E(0) and the integral of the law before the first time.
-fn nearest_sum(
-    rates: &[f64],
-    law: &Relaxation,
-    integral: f64,
-    scale: impl Fn(f64) -> f64,
-    [first, last]: [f64; 2],
-) -> Prony {
+/// The sum of exponentials of given rates and an equilibrium that is nearest to a law, relative to the law. Two last terms have E(0) and the
+/// integral of the law before the first time.
+fn nearest_sum(rates: &[f64], law: Relaxation, integral: f64, [first, last]: [f64; 2]) -> Prony {
     let times = times([first, last], 2 * rates.len());
-    let values: Vec<f64> = times.iter().map(|&t| law(t)).collect();
-    let weights: Vec<f64> = values.iter().map(|&value| 1.0 / scale(value)).collect();
+    let weights: Vec<f64> = times.iter().map(|&t| 1.0 / law(t)).collect();
     let columns = rates.len() + 1;
     let matrix = Mat::from_fn(times.len() + columns, columns, |row, column| match times.get(row) {
         Some(_) if column == 0 => weights[row],
@@ -214,7 +187,7 @@ fn nearest_sum(
         None if row - times.len() == column => RIDGE * weights[0],
         None => 0.0,
     });
-    let right = Mat::from_fn(matrix.nrows(), 1, |row, _| values.get(row).map_or(0.0, |value| weights[row] * value));
+    let right = Mat::from_fn(matrix.nrows(), 1, |row, _| f64::from(u8::from(row < times.len())));
     let solved = matrix.qr().solve_lstsq(&right);
     let mut sum =
         Prony::of((0..columns).map(|row| solved[(row, 0)]).zip(std::iter::once(0.0).chain(rates.iter().copied())));
@@ -222,8 +195,8 @@ fn nearest_sum(
     let slow = LAST * rates[rates.len() - 1];
     // one modulus alone has both, if its rate is fast enough
     let fast = Some(instant / integral).filter(|rate| rate.is_finite()).unwrap_or(0.0).max(2.0 * slow);
-    let modulus = (instant - slow * integral) / (1.0 - slow / fast);
-    sum.moduli.extend([instant - modulus, modulus]);
+    let rest = slow * (integral - instant / fast) / (1.0 - slow / fast);
+    sum.moduli.extend([rest, instant - rest]);
     sum.rates.extend([slow, fast]);
     sum
 }

@@ -14,11 +14,6 @@ const MAX_DAMPED: usize = 100;
 const TRIALS: usize = 4;
 const GOOD: f64 = 0.8;
 const MOST_BENT: f64 = 0.75;
-/// A step that reduces the sum by what it promised, to this fraction, may be made longer: by this factor more or less than another that paid or did
-/// not. Least cosine of steps in one direction.
-const SURE: f64 = 0.02;
-const LONGER: f64 = 5.0;
-const PARALLEL: f64 = 0.9;
 /// Least factor of the damping after a step.
 const MOST_FALL: f64 = 0.1;
 /// Least damping, and damping at the start.
@@ -48,7 +43,7 @@ impl LeastSquares {
 /// Reduces the sum of squares of `residuals` from `start` until it `is_enough`, or no step reduces it. `slopes` are the derivatives of the residuals, a
 /// column of the same length for each coordinate. Where residuals cannot be computed, a step is rejected. The damping follows the gain ratio (H. B. Nielsen, *Damping
 /// Parameter in Marquardt's Method*, 1999); a step is at most 2 in each coordinate before it is bent to
-/// follow a curved valley, so that logarithms are good ones.
+/// follow a curved valley, by at most as much, so that logarithms are good ones.
 ///
 /// ```
 /// use viscocontact::numeric::least_squares;
@@ -74,13 +69,12 @@ pub fn least_squares<E>(
 ) -> Result<LeastSquares, E> {
     let (mut damping, mut growth) = (DAMPING[1], 2.0);
     let mut at = LeastSquares { residuals: residuals(&start)?, coordinates: start, steps: 0, reductions: [1.0; 2] };
-    let (mut before, mut longest): (Option<Col<f64>>, f64) = (None, LONGER);
     while !is_enough(&at) {
         let (model, sum) = (Linear::new(slopes(&at.coordinates)?, &at.residuals), at.sum());
-        let (promised, mut coordinates, mut found) = loop {
+        let (promised, coordinates, residuals) = loop {
             let step = model.step(damping);
             let promised = model.promised(&step);
-            let next = follow(&at.coordinates, &model, &step, damping, promised, &residuals);
+            let next = follow(&at.coordinates, &model, &step, damping, &residuals);
             if let Some((moved, there)) = next.filter(|(_, there)| square(there) < sum) {
                 break (promised, moved, there);
             }
@@ -89,27 +83,12 @@ pub fn least_squares<E>(
             }
             (damping, growth) = (damping * growth, growth * 2.0);
         };
-        let gain = (sum - square(&found)) / promised;
-        let step = Col::from_fn(coordinates.len(), |j| coordinates[j] - at.coordinates[j]);
-        let factor = before
-            .filter(|_| (gain - 1.0).abs() < SURE)
-            .map_or(1.0, |before| model.stretch(&before, &step))
-            .min(longest);
-        if factor > 1.0 {
-            longest = (longest / LONGER).max(LONGER);
-            let (longer, plain) = (faer::Scale(factor) * &step, square(&found));
-            let far = follow(&at.coordinates, &model, &longer, damping, factor * (sum - plain), &residuals);
-            if let Some((moved, there)) = far.filter(|(_, there)| square(there) < plain) {
-                (coordinates, found) = (moved, there);
-                longest *= LONGER * LONGER;
-            }
-        }
-        before = Some(step);
-        let reduced = sum - square(&found);
+        let reduced = sum - square(&residuals);
+        let gain = reduced / promised;
         damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).max(MOST_FALL)).max(DAMPING[0]);
         growth = 2.0;
         let reductions = [promised.max(reduced) / sum, at.reductions[0]];
-        at = LeastSquares { coordinates, residuals: found, steps: at.steps + 1, reductions };
+        at = LeastSquares { coordinates, residuals, steps: at.steps + 1, reductions };
     }
     Ok(at)
 }
@@ -121,7 +100,6 @@ fn follow<E>(
     model: &Linear,
     step: &Col<f64>,
     damping: f64,
-    promised: f64,
     residuals: impl Fn(&[f64]) -> Result<Vec<f64>, E>,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let (before, mut least) = (model.residuals.squared_norm_l2(), f64::INFINITY);
@@ -134,8 +112,9 @@ fn follow<E>(
             break;
         }
         (least, best) = (sum, Some((moved, there)));
-        let is_good = before - sum >= GOOD * promised;
-        if is_good || model.size(&correction).is_nan() || model.size(&correction) > MOST_BENT * model.size(step) {
+        let is_good = before - sum >= GOOD * model.promised(step);
+        let (size, longest) = (model.size(&correction), correction.norm_max());
+        if is_good || size.is_nan() || size > MOST_BENT * model.size(step) || longest > LONGEST_STEP {
             break;
         }
         bent = step + correction;
@@ -189,18 +168,6 @@ impl Linear {
         let linear = &self.residuals + &self.slopes * bent;
         let difference = Col::from_fn(there.len(), |k| linear[k] - there[k]);
         self.solve(&vec![damping; bent.nrows()], &difference)
-    }
-
-    /// By what a step may be longer that follows one in the same direction: if steps fall by a factor q, all that follow have 1/(1 − q) of its length.
-    /// So they fall where the residuals bend along a valley, which the linearised ones do not know.
-    fn stretch(&self, before: &Col<f64>, step: &Col<f64>) -> f64 {
-        let scaled = |step: &Col<f64>| Col::from_fn(step.nrows(), |j| self.norms[j] * step[j]);
-        let (a, b) = (scaled(before), scaled(step));
-        let (product, longest) = (a.transpose() * &b, step.norm_max());
-        if product < PARALLEL * a.norm_l2() * b.norm_l2() || 2.0 * product < a.squared_norm_l2() {
-            return 1.0;
-        }
-        (1.0 / (1.0 - product / a.squared_norm_l2()).max(0.0)).min(LONGEST_STEP / longest)
     }
 
     /// |D s|.

@@ -39,12 +39,6 @@ impl<const N: usize> Moments<N> {
     }
 }
 
-/// 1/5, 1/6, …
-#[rustfmt::skip]
-const RECIPROCALS: [f64; 16] = [
-    1. / 5., 1. / 6., 1. / 7., 1. / 8., 1. / 9., 1. / 10., 1. / 11., 1. / 12., 1. / 13., 1. / 14., 1. / 15., 1. / 16., 1. / 17., 1. / 18., 1. / 19., 1. / 20.,
-];
-
 /// exp(−a), and the moments of ξ⁰ … ξ³ under exp(−a (1 − ξ)).
 fn moments(a: f64) -> (f64, [f64; 4]) {
     if a > 1.0 {
@@ -56,7 +50,7 @@ fn moments(a: f64) -> (f64, [f64; 4]) {
     }
     // M₃ = 6 Σ (−a)^j/(j + 4)! = ¼ (1 − a/5 (1 − a/6 (…))), and downward from there, where the recursion loses no digits
     let terms = if a < 0.02 { 7 } else { 16 };
-    let third = RECIPROCALS[..terms].iter().rev().fold(1.0, |sum, reciprocal| 1.0 - a * reciprocal * sum) / 4.0;
+    let third = (5..5 + terms).rev().fold(1.0, |sum, k| 1.0 - a / f64::from(k) * sum) / 4.0;
     let second = (1.0 - a * third) / 3.0;
     let first = 0.5 * (1.0 - a * second);
     let zeroth = 1.0 - a * first;
