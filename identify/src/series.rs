@@ -36,7 +36,7 @@ pub(crate) struct Prony<T = f64> {
 
 impl Prony {
     /// From pairs of modulus and rate.
-    pub(crate) fn of(terms: impl IntoIterator<Item = (f64, f64)>) -> Prony {
+    fn of(terms: impl IntoIterator<Item = (f64, f64)>) -> Prony {
         let (moduli, rates) = terms.into_iter().unzip();
         Prony { moduli, rates }
     }
@@ -150,7 +150,7 @@ impl Model {
             Model::Stretched => Box::new(move |t| of[1] + (of[0] - of[1]) * (-(t / of[2]).powf(of[3])).exp()),
             Model::FractionalZener => {
                 let shown = [rates[0], rates[rates.len() - 1]].map(|rate| rate.ln() + of[2].ln());
-                let (spectrum, relaxing) = (spectrum(of[3], shown), of[0] - of[1]);
+                let (spectrum, relaxing) = (Prony::of(spectrum(of[3], shown)), of[0] - of[1]);
                 let integral = of[1] * first + relaxing * (of[2] * spectrum.integral(first / of[2]));
                 let relaxed = move |t: f64| if t == 0.0 { 1.0 } else { spectrum.modulus(t) };
                 return (Box::new(move |t| of[1] + relaxing * relaxed(t / of[2])), integral);

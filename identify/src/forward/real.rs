@@ -100,6 +100,7 @@ macro_rules! operator {
     ($Operator:ident, $name:ident, |$a:ident, $b:ident| $value:expr, |$of:ident, $k:ident| $slope:expr) => {
         impl<const N: usize> $Operator for Real<N> {
             type Output = Self;
+            #[allow(clippy::suspicious_arithmetic_impl, reason = "rules of products and quotients")]
             #[inline(always)]
             fn $name(self, $b: Self) -> Self {
                 let $a = self;
