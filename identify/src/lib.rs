@@ -47,6 +47,7 @@ mod error;
 mod experiment;
 mod fit;
 mod forward;
+mod fractional;
 mod identification;
 mod model;
 mod noise;

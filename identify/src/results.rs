@@ -45,27 +45,21 @@ impl fmt::Display for Model {
 }
 
 /// A number in four digits, without an exponent where there are few zeros.
-struct Digits(f64);
-
-impl fmt::Display for Digits {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Digits(value) = *self;
-        let decade = value.abs().log10().floor();
-        if value == 0.0 || !value.is_finite() {
-            write!(f, "{value}")
-        } else if (-3.0..6.0).contains(&decade) {
-            write!(f, "{value:.*}", (3.0 - decade).max(0.0) as usize)
-        } else {
-            write!(f, "{value:.3e}")
-        }
+fn digits(value: f64) -> String {
+    let decade = value.abs().log10().floor();
+    if value == 0.0 || !value.is_finite() {
+        value.to_string()
+    } else if (-3.0..6.0).contains(&decade) {
+        format!("{value:.*}", (3.0 - decade).max(0.0) as usize)
+    } else {
+        format!("{value:.3e}")
     }
 }
 
-/// Name, value and interval in plain digits, with the unit.
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [low, high] = self.interval.map(Digits);
-        write!(f, "{} = {} {} (95 %: {low} to {high})", self.name, Digits(self.value), unit(&self.name))?;
+        let [low, high] = self.interval.map(digits);
+        write!(f, "{} = {} {} (95 %: {low} to {high})", self.name, digits(self.value), unit(&self.name))?;
         self.limit.map_or(Ok(()), |limit| write!(f, ", at its limit: {limit}"))
     }
 }
@@ -73,7 +67,7 @@ impl fmt::Display for Estimate {
 /// The model, its parameters and the warnings, each on a line.
 impl fmt::Display for Fit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: noise {} N", self.model(), Digits(self.sigma()))?;
+        write!(f, "{}: noise {} N", self.model(), digits(self.sigma()))?;
         self.estimates().iter().try_for_each(|estimate| write!(f, "\n  {estimate}"))?;
         self.warnings().iter().try_for_each(|warning| write!(f, "\n  warning: {warning}"))
     }

@@ -9,8 +9,9 @@ use crate::problem::Problem;
 const STARTS: usize = 4;
 /// Change of the moduli at which they are scaled to the data.
 const ENOUGH: f64 = 1e-3;
-/// Rounds in which moduli are scaled to the data: through a spring, forces are not proportional to them.
+/// Rounds in which moduli are scaled to the data: through a spring, forces are not proportional to them; and the candidates that have more than one.
 const ROUNDS: usize = 3;
+const SCALED: usize = 12;
 /// Values of a time, between the shortest interval and the length of the curve.
 const TIMES: usize = 6;
 
@@ -45,8 +46,8 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
         for ((value, parameter), size) in values.iter_mut().zip(&problem.parameters).zip(candidate) {
             *value = parameter.given.unwrap_or(if is_modulus(&parameter.name) { size * unit } else { size });
         }
-        match scaled(problem, &mut values) {
-            Ok(sum) if sum.is_finite() => found.push((sum, problem.coordinates(&values))),
+        match scaled(problem, &mut values, 1) {
+            Ok(sum) if sum.is_finite() => found.push((sum, values.clone())),
             Ok(_) => {}
             Err(error) => failure = error,
         }
@@ -55,17 +56,22 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
         return Err(failure);
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(found.into_iter().take(STARTS).map(|(_, coordinates)| coordinates).collect())
+    found.truncate(SCALED);
+    for (sum, values) in &mut found {
+        *sum = scaled(problem, values, ROUNDS - 1).unwrap_or(f64::INFINITY);
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(found.into_iter().take(STARTS).map(|(_, values)| problem.coordinates(&values)).collect())
 }
 
 fn is_modulus(name: &str) -> bool {
     name.starts_with('E')
 }
 
-/// Scales the free moduli to the data; returns the sum of squared deviations.
-fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
+/// Scales the free moduli to the data in some rounds; returns the sum of squared deviations, if forces are proportional to the moduli.
+fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
     let mut sum = f64::INFINITY;
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let prony = problem.prony(values)?;
         let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
         for (curve, part) in problem.parts.iter().enumerate() {
@@ -82,14 +88,16 @@ fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
         if !(factor.is_finite() && factor > 0.0) {
             return Ok(f64::INFINITY);
         }
-        sum = data_square - 2.0 * product + square;
+        let mut reached = factor;
+        for (value, parameter) in values.iter_mut().zip(&problem.parameters).filter(|(_, of)| is_modulus(&of.name)) {
+            match parameter.given {
+                None => *value *= factor,
+                Some(_) => reached = 1.0,
+            }
+        }
+        sum = data_square - reached * (2.0 * product - reached * square);
         if (factor - 1.0).abs() < ENOUGH {
             break;
-        }
-        for (value, parameter) in values.iter_mut().zip(&problem.parameters) {
-            if is_modulus(&parameter.name) && parameter.given.is_none() {
-                *value *= factor;
-            }
         }
     }
     Ok(sum)

@@ -43,7 +43,7 @@ impl LeastSquares {
 /// Reduces the sum of squares of `residuals` from `start` until it `is_enough`, or no step reduces it. `slopes` are the derivatives of the residuals, a
 /// column of the same length for each coordinate. Where residuals cannot be computed, a step is rejected. The damping follows the gain ratio (H. B. Nielsen, *Damping
 /// Parameter in Marquardt's Method*, 1999); a step is at most 2 in each coordinate before it is bent to
-/// follow a curved valley, so that logarithms are good ones.
+/// follow a curved valley, by at most as much, so that logarithms are good ones.
 ///
 /// ```
 /// use viscocontact::numeric::least_squares;
@@ -113,7 +113,8 @@ fn follow<E>(
         }
         (least, best) = (sum, Some((moved, there)));
         let is_good = before - sum >= GOOD * model.promised(step);
-        if is_good || model.size(&correction).is_nan() || model.size(&correction) > MOST_BENT * model.size(step) {
+        let (size, longest) = (model.size(&correction), correction.norm_max());
+        if is_good || size.is_nan() || size > MOST_BENT * model.size(step) || longest > LONGEST_STEP {
             break;
         }
         bent = step + correction;

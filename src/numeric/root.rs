@@ -3,15 +3,15 @@
 /// The root of a rising function between the lower and the upper end of a bracket. The function gives its value and its slope. Where it has no
 /// root there, the end at which it is nearer to zero; where its value is NaN, NaN.
 ///
-/// Newton's steps start at the upper end. The bracket is halved where a step leaves it, or where the last step did not halve the value. The
+/// Newton's steps start `from` a number of the bracket. The bracket is halved where a step leaves it, or where the last step did not halve the value. The
 /// search ends with a step shorter than `tolerance`, relative to the greater of the root and 1.
 ///
 /// ```
-/// let found = viscocontact::numeric::root([0.0, 2.0], 1e-8, |x| [x * x - 2.0, 2.0 * x]);
+/// let found = viscocontact::numeric::root([0.0, 2.0], 2.0, 1e-8, |x| [x * x - 2.0, 2.0 * x]);
 /// assert!((found - 2f64.sqrt()).abs() < 1e-15);
 /// ```
-pub fn root(bracket: [f64; 2], tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
-    let ([mut low, mut high], mut s, mut last) = (bracket, bracket[1], f64::INFINITY);
+pub fn root(bracket: [f64; 2], from: f64, tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
+    let ([mut low, mut high], mut s, mut last) = (bracket, from, f64::INFINITY);
     loop {
         let [excess, slope] = at(s);
         if excess.is_nan() {

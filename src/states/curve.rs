@@ -291,7 +291,7 @@ impl ElasticStates {
             // one of the summands is half of the sum at least
             let low = ((half - first.depth) / first.slope).min(half - give - first.level);
             let at = |s: f64| excess([first.depth + first.slope * s, first.slope, first.level + s]);
-            let level = (first.level + root([low, 0.0], ROUNDING, at)).exp();
+            let level = (first.level + root([low, 0.0], 0.0, ROUNDING, at)).exp();
             // what has no digits left is no contact
             return if level < f64::MIN_POSITIVE { 0.0 } else { level };
         }
@@ -303,7 +303,7 @@ impl ElasticStates {
                 excess([hermite(depths, slopes, s), hermite_slope(depths, slopes, s) / length, a.level + s * length]);
             [value, slope * length]
         };
-        (a.level + root([0.0, 1.0], ROUNDING, at) * length).exp()
+        (a.level + root([0.0, 1.0], 1.0, ROUNDING, at) * length).exp()
     }
 
     /// A quantity of the states that is a power of the level between two of them; below the first one, it falls as the power

@@ -5,7 +5,7 @@ use viscocontact::numeric::root;
 use crate::error::{Error, Result, within};
 use crate::fit::Fit;
 use crate::parameters::Parameter;
-use crate::statistics::fisher;
+use crate::statistics::student;
 
 /// Widest interval that is searched, in standard deviations.
 const WIDEST: f64 = 30.0;
@@ -27,7 +27,7 @@ impl Fit {
         let unknown = || Error::UnknownParameter { name: name.to_string(), names: names() };
         let deviation = self.estimate(name).ok_or_else(unknown)?.deviation;
         let mut problem = self.problem.clone();
-        let threshold = self.sigma * self.sigma * fisher(confidence, self.freedom.max(1.0));
+        let threshold = (self.sigma * student(confidence, self.freedom.max(1.0))).powi(2);
         let index = problem.parameters.iter().position(|parameter| parameter.name == name).ok_or_else(unknown)?;
         let Parameter { scale, unit, .. } = problem.parameters[index];
         // at a limit, a factor of e
@@ -54,7 +54,7 @@ impl Fit {
                 (low, high) = (high, 1.7 * high);
             }
             // nearly a parabola
-            let found = root([low, high], ENOUGH, |distance| {
+            let found = root([low, high], high, ENOUGH, |distance| {
                 let rise = rise(distance);
                 [rise - threshold, 2.0 * rise / distance]
             });

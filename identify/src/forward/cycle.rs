@@ -65,8 +65,9 @@ pub(crate) struct Cycle<'a, const N: usize> {
     drive: Real<N>,
     depth: Real<N>,
     terms: Vec<Term<N>>,
-    /// Terms at another time.
+    /// Terms at another time, and what they have decayed by since.
     then: Vec<Term<N>>,
+    since: Vec<Real<N>>,
     moments: Moments<N>,
     part: Moments<N>,
     /// Greatest depth \[m\].
@@ -91,6 +92,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
             drive: zero,
             depth: zero,
             then: terms.clone(),
+            since: vec![zero; terms.len()],
             terms,
             moments: Moments::default(),
             part: Moments::default(),
@@ -123,9 +125,9 @@ impl<'a, const N: usize> Cycle<'a, N> {
     }
 
     /// Σ over the terms after the present interval.
-    fn decayed(&self, of: impl Fn(Term<N>) -> Real<N>) -> Real<N> {
+    fn decayed(&self, of: impl Fn(&Term<N>) -> Real<N>) -> Real<N> {
         let pairs = self.terms.iter().zip(&self.moments.decay);
-        pairs.fold(Real::from(0.0), |sum, (&term, &decay)| sum + decay * of(term))
+        pairs.fold(Real::from(0.0), |sum, (term, &decay)| sum + decay * of(term))
     }
 
     /// Σ Eᵢ M₀ of the present interval: the pressure of a column that the tip moves by 1 m.
@@ -156,11 +158,11 @@ impl<'a, const N: usize> Cycle<'a, N> {
         let pressure = (self.decayed(|term| term.edge) + unit * (depth - self.depth)).value();
         let scale: f64 = self.prony.moduli.iter().map(|modulus| modulus.value().abs()).sum::<f64>() * self.greatest;
         if pressure > 0.0 {
-            self.grow(sample, time, z)?;
+            self.grow(sample, time, z, depth.value())?;
         } else if pressure >= -HELD * scale {
             self.hold(depth);
         } else {
-            self.shrink(sample, time, z)?;
+            self.shrink(sample, time, z, pressure)?;
         }
         (self.time, self.drive) = (time, z);
         self.greatest = self.greatest.max(self.depth.value());
@@ -216,25 +218,32 @@ impl<'a, const N: usize> Cycle<'a, N> {
         self.is_node = false;
     }
 
-    /// The contact grows until a sample: over one free column after the other, and then over columns that have not touched.
-    fn grow(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
+    /// The contact grows until a sample: over one free column after the other, and then over columns that have not touched. The tip ends
+    /// near some depth.
+    fn grow(&mut self, sample: usize, time: Real<N>, z: Real<N>, near: f64) -> Result<()> {
         self.settle()?;
         let (zero, one) = (Real::from(0.0), Real::from(1.0));
-        let (from, length) = (self.time, time - self.time);
         // share of the interval that has passed
         let mut passed = zero;
         loop {
             let next = self.columns.next_extent();
             let [before, after] = self.columns.next(sample);
             let before = before + passed * (after - before);
+            if let Some(extent) = next.filter(|_| !self.springs() && z.value() > after.value()) {
+                passed = self.reach(extent, before, after, z - after, time, passed)?;
+                continue;
+            }
+            if passed.value() > 0.0 {
+                self.moments.set(time - self.time, false, &self.prony.rates);
+            }
             // where the column at the edge would be, had it been free
             let unit = self.stiffness();
             let released = self.depth - self.decayed(|term| term.edge) / unit;
             let start = (self.edge.extent, self.edge.elastic);
             let width = next.map(|next| (next - start.0, after - released));
             let mut sums = [[zero; 3]; 4];
-            for (i, term) in self.terms.iter().enumerate() {
-                let (modulus, moments) = (self.prony.moduli[i], self.moments.moments[i]);
+            for (i, term) in self.terms.iter().enumerate().filter(|_| self.springs()) {
+                let (modulus, moments) = (self.prony.moduli[i], &self.moments.moments[i]);
                 let free = self.moments.decay[i] * term.edge + modulus * moments[0] * (released - self.depth);
                 let reached = if next.is_some() { self.columns.state(i, one) } else { zero };
                 for (sum, factor) in sums.iter_mut().zip([modulus, term.edge, free - term.edge, reached - free]) {
@@ -262,27 +271,13 @@ impl<'a, const N: usize> Cycle<'a, N> {
             let give = self.give;
             let excess = |depth: Real<N>| {
                 let (share, .., growth) = at(depth)?;
-                let change = [0, 1, 2].map(|k| sums[2][k] + share * sums[3][k]);
-                Ok(z - depth - give * (past + growth.force(sums[0], sums[1], change)))
+                let change = |k: usize| sums[2][k] + share * sums[3][k];
+                Ok(z - depth - give * (past + growth.force(&sums[0], &sums[1], &[change(0), change(1), change(2)])))
             };
-            if let Some(extent) = next {
-                let left = if self.springs() { excess(after)? } else { z - after };
+            if let Some(extent) = next.filter(|_| self.springs()) {
+                let left = excess(after)?;
                 if left.value() > 0.0 {
-                    // the column is reached within the interval: its gap is linear in time
-                    let instant = self.prony.moduli.iter().fold(zero, |sum, &modulus| sum + modulus);
-                    let gap = (self.depth - before) * (one + give * self.edge.elastic.stiffness * instant);
-                    let share = if gap.value() < 0.0 { gap / (gap - left) } else { zero };
-                    let elastic = tip.at(extent)?;
-                    let depth = before + share * (after - before);
-                    let growth = Growth::new(start, (extent, elastic), depth - self.depth, false);
-                    let all = passed + share * (one - passed);
-                    self.part.set(share * (one - passed) * length, false, &self.prony.rates);
-                    self.append(from + all * length, depth, (extent, elastic), growth, |columns, i, _| {
-                        columns.state(i, all)
-                    });
-                    self.columns.pop();
-                    passed = all;
-                    self.moments.set((one - passed) * length, false, &self.prony.rates);
+                    passed = self.reach(extent, before, after, left, time, passed)?;
                     continue;
                 }
             }
@@ -300,7 +295,8 @@ impl<'a, const N: usize> Cycle<'a, N> {
                 if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
                     return Err(tip.beyond(z.value()));
                 }
-                Real::root([released, end], excess)?
+                let near = (near - released.value()) / (end - released).value();
+                Real::root([released, end], near, excess)?
             } else {
                 z
             };
@@ -313,6 +309,31 @@ impl<'a, const N: usize> Cycle<'a, N> {
             std::mem::swap(&mut self.part, &mut self.moments);
             return Ok(());
         }
+    }
+
+    /// The contact grows to the next column, whose surface rises from `before`, where a share of the interval has passed, to `after` and leaves the
+    /// spring this excess. Returns the share that has passed then.
+    fn reach(
+        &mut self,
+        extent: Real<N>,
+        before: Real<N>,
+        after: Real<N>,
+        left: Real<N>,
+        time: Real<N>,
+        passed: Real<N>,
+    ) -> Result<Real<N>> {
+        let (zero, one, start) = (Real::from(0.0), Real::from(1.0), (self.edge.extent, self.edge.elastic));
+        // the gap is linear in time
+        let instant = self.prony.moduli.iter().fold(zero, |sum, &modulus| sum + modulus);
+        let gap = (self.depth - before) * (one + self.give * start.1.stiffness * instant);
+        let share = if gap.value() < 0.0 { gap / (gap - left) } else { zero };
+        let (elastic, depth) = (self.tip.at(extent)?, before + share * (after - before));
+        let growth = Growth::new(start, (extent, elastic), depth - self.depth, false);
+        let (length, all) = (share * (time - self.time), passed + share * (one - passed));
+        self.part.set(length, false, &self.prony.rates);
+        self.append(self.time + length, depth, (extent, elastic), growth, |columns, i, _| columns.state(i, all));
+        self.columns.pop();
+        Ok(all)
     }
 
     /// Ends an interval of growth whose moments are those of a part. `edge` is the pressure of a term at the edge, by the columns, the term and
@@ -331,10 +352,11 @@ impl<'a, const N: usize> Cycle<'a, N> {
             unit += self.prony.moduli[i] * self.part.moments[i][0];
             pressure += self.part.decay[i] * term.edge;
         }
+        let released = pressure / unit;
         for i in 0..self.terms.len() {
-            let (modulus, decay, moments) = (self.prony.moduli[i], self.part.decay[i], self.part.moments[i]);
-            let term = self.terms[i];
-            let free = if growth.fresh { zero } else { decay * term.edge - modulus * moments[0] * pressure / unit };
+            let (modulus, decay, moments) = (self.prony.moduli[i], self.part.decay[i], &self.part.moments[i]);
+            let term = &self.terms[i];
+            let free = if growth.fresh { zero } else { decay * term.edge - modulus * moments[0] * released };
             self.terms[i] = growth.after(term, modulus, decay, moments, edge(&self.columns, i, free));
         }
         (self.time, self.depth) = (time, depth);

@@ -40,35 +40,37 @@ impl<const N: usize> Growth<N> {
         Growth { rise, stiffness, fresh }
     }
 
+    /// The force of terms of some moments: the factors of the modulus, of the pressure with which columns touch at the start, and of its change.
+    #[inline(always)]
+    fn factors(&self, &[m0, m1, m2]: &[Real<N>; 3]) -> [Real<N>; 3] {
+        let [s0, s1, s2] = self.stiffness;
+        let twice = s2 + s2;
+        [self.rise * (s0 * m0 + s1 * m1 + s2 * m2), s1 * m0 + twice * m1, s1 * m1 + twice * m2]
+    }
+
     /// Force of terms whose moments have the sums `modulus` Σ Eᵢ Mₖ, `start` Σ qᵢ Mₖ and `change` Σ Δqᵢ Mₖ, where q is the pressure of a
     /// column as it touches, linear in ξ from qᵢ to qᵢ + Δqᵢ:
     /// ∫ dδ/dξ f′ exp(−a (1 − ξ)) dξ + ∫ df′/dξ q(ξ) exp(−a (1 − ξ)) dξ.
-    pub(super) fn force(&self, modulus: [Real<N>; 3], start: [Real<N>; 3], change: [Real<N>; 3]) -> Real<N> {
-        let [s0, s1, s2] = self.stiffness;
-        let tip = self.rise * (s0 * modulus[0] + s1 * modulus[1] + s2 * modulus[2]);
-        if self.fresh {
-            return tip;
-        }
-        let twice = s2 + s2;
-        tip + s1 * (start[0] + change[1]) + twice * (start[1] + change[2])
+    pub(super) fn force(&self, modulus: &[Real<N>; 3], start: &[Real<N>; 3], change: &[Real<N>; 3]) -> Real<N> {
+        let [tip, ..] = self.factors(modulus);
+        if self.fresh { tip } else { tip + self.factors(start)[1] + self.factors(change)[2] }
     }
 
     /// A term at the end of the interval, where the column at the edge has the pressure `edge`.
     pub(super) fn after(
         &self,
-        term: Term<N>,
+        term: &Term<N>,
         modulus: Real<N>,
         decay: Real<N>,
-        moments: [Real<N>; 3],
+        moments: &[Real<N>; 3],
         edge: Real<N>,
     ) -> Term<N> {
-        let times = |factor: Real<N>| moments.map(|moment| factor * moment);
-        let (tip, zero) = (decay * term.tip + modulus * self.rise * moments[0], Real::from(0.0));
+        let [of_modulus, of_start, of_change] = self.factors(moments);
+        let tip = decay * term.tip + modulus * self.rise * moments[0];
+        let force = decay * term.force + modulus * of_modulus;
         if self.fresh {
-            let force = decay * term.force + modulus * self.force(moments, [zero; 3], [zero; 3]);
-            return Term { tip, force, edge: zero };
+            return Term { tip, force, edge: Real::from(0.0) };
         }
-        let force = self.force(times(modulus), times(term.edge), times(edge - term.edge));
-        Term { tip, force: decay * term.force + force, edge }
+        Term { tip, force: force + of_start * term.edge + of_change * (edge - term.edge), edge }
     }
 }

@@ -25,14 +25,16 @@ impl<const N: usize> Moments<N> {
         }
         // an interval whose length depends on parameters is never reused
         self.length = if fixed { length } else { Real::from(f64::NAN) };
-        self.decay.clear();
-        self.moments.clear();
-        for &rate in rates {
+        self.decay.resize(rates.len(), length);
+        self.moments.resize(rates.len(), [length; 3]);
+        for (&rate, (decay, own)) in rates.iter().zip(self.decay.iter_mut().zip(&mut self.moments)) {
             let a = rate * length;
-            let (decay, of_a) = moments(a.value());
-            self.decay.push(a.mapped(decay, -decay));
+            let (value, of_a) = moments(a.value());
+            *decay = a.mapped(value, -value);
             // dMₖ/da = Mₖ₊₁ − Mₖ
-            self.moments.push([0, 1, 2].map(|k| a.mapped(of_a[k], of_a[k + 1] - of_a[k])));
+            for (k, moment) in own.iter_mut().enumerate() {
+                *moment = a.mapped(of_a[k], of_a[k + 1] - of_a[k]);
+            }
         }
     }
 }
@@ -46,15 +48,9 @@ fn moments(a: f64) -> (f64, [f64; 4]) {
         let second = (1.0 - 2.0 * first) / a;
         return (decay, [zeroth, first, second, (1.0 - 3.0 * second) / a]);
     }
-    // M₃ = 6 Σ (−a)^j/(j + 4)!, and downward from there, where the recursion loses no digits
-    let (mut third, mut term) = (0.0, 0.25);
-    for j in 0..16 {
-        third += term;
-        term *= -a / f64::from(j + 5);
-        if term.abs() < 1e-18 {
-            break;
-        }
-    }
+    // M₃ = 6 Σ (−a)^j/(j + 4)! = ¼ (1 − a/5 (1 − a/6 (…))), and downward from there, where the recursion loses no digits
+    let terms = if a < 0.02 { 7 } else { 16 };
+    let third = (5..5 + terms).rev().fold(1.0, |sum, k| 1.0 - a / f64::from(k) * sum) / 4.0;
     let second = (1.0 - a * third) / 3.0;
     let first = 0.5 * (1.0 - a * second);
     let zeroth = 1.0 - a * first;

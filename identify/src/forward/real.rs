@@ -56,11 +56,16 @@ impl<const N: usize> Real<N> {
         self.mapped(value, -value)
     }
 
-    /// The root of a function that falls between two numbers, with the derivatives of its equation by the theorem of implicit functions; an end is
+    /// The root of a function that falls between two numbers, near a share of the way between them, with the derivatives of its equation by the theorem of implicit functions; an end is
     /// what it depends on.
-    pub(super) fn root([low, high]: [Self; 2], mut falling: impl FnMut(Self) -> Result<Self>) -> Result<Self> {
+    pub(super) fn root(
+        [low, high]: [Self; 2],
+        near: f64,
+        mut falling: impl FnMut(Self) -> Result<Self>,
+    ) -> Result<Self> {
         let (mut residual, width) = (Ok(low), high - low);
-        let share = root([0.0, 1.0], CONVERGED, |share| {
+        let from = if (0.0..=1.0).contains(&near) { near } else { 1.0 };
+        let share = root([0.0, 1.0], from, CONVERGED, |share| {
             let unknown = low.with(share, |k| if k + 1 == N { 1.0 } else { 0.0 });
             residual = falling(low + unknown * width);
             residual.as_ref().map_or([f64::NAN; 2], |rest| [-rest.value, -rest.slopes[N - 1]])
@@ -90,46 +95,31 @@ impl<const N: usize> From<f64> for Real<N> {
     }
 }
 
-impl<const N: usize> Add for Real<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.with(self.value + other.value, |k| self.slopes[k] + other.slopes[k])
-    }
+/// An operator with the value and the slopes of its result.
+macro_rules! operator {
+    ($Operator:ident, $name:ident, |$a:ident, $b:ident| $value:expr, |$of:ident, $k:ident| $slope:expr) => {
+        impl<const N: usize> $Operator for Real<N> {
+            type Output = Self;
+            #[allow(clippy::suspicious_arithmetic_impl, reason = "rules of products and quotients")]
+            #[inline(always)]
+            fn $name(self, $b: Self) -> Self {
+                let $a = self;
+                let $of = $value;
+                $a.with($of, |$k| $slope)
+            }
+        }
+    };
 }
+
+operator!(Add, add, |a, b| a.value + b.value, |_sum, k| a.slopes[k] + b.slopes[k]);
+operator!(Sub, sub, |a, b| a.value - b.value, |_rest, k| a.slopes[k] - b.slopes[k]);
+operator!(Mul, mul, |a, b| a.value * b.value, |_product, k| a.slopes[k] * b.value + a.value * b.slopes[k]);
+operator!(Div, div, |a, b| a.value / b.value, |quotient, k| (a.slopes[k] - quotient * b.slopes[k]) / b.value);
 
 impl<const N: usize> AddAssign for Real<N> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl<const N: usize> Sub for Real<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(self.value - other.value, |k| self.slopes[k] - other.slopes[k])
-    }
-}
-
-impl<const N: usize> Mul for Real<N> {
-    type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of products")]
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let slope = |k: usize| self.slopes[k] * other.value + self.value * other.slopes[k];
-        self.with(self.value * other.value, slope)
-    }
-}
-
-impl<const N: usize> Div for Real<N> {
-    type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of quotients")]
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        self.with(value, |k| (self.slopes[k] - value * other.slopes[k]) / other.value)
     }
 }
 
@@ -154,7 +144,7 @@ mod tests {
     fn a_root_has_the_derivatives_of_its_equation() {
         // u² = x: du/dx = 1/(2u)
         let x = Real::new(4.0, [1.0, 0.0]);
-        let root = Real::root([Real::from(0.0), x], |u| Ok(x - u * u)).unwrap();
+        let root = Real::root([Real::from(0.0), x], 0.3, |u| Ok(x - u * u)).unwrap();
         assert!((root.value() - 2.0).abs() < 1e-12 && (root.slope(0) - 0.25).abs() < 1e-7, "{root:?}");
     }
 }

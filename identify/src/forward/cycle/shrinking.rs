@@ -27,9 +27,9 @@ impl<const N: usize> Cycle<'_, N> {
         let growth = Growth::new((a.extent, a.elastic), (extent, elastic), rise, a.fresh && b.fresh);
         self.part.set(length, false, &self.prony.rates);
         for i in 0..count {
-            let (start, end) = (past[i], past[count + i].edge);
+            let (start, end) = (&past[i], past[count + i].edge);
             let edge = start.edge + share * (end - start.edge);
-            let (decay, moments) = (self.part.decay[i], self.part.moments[i]);
+            let (decay, moments) = (self.part.decay[i], &self.part.moments[i]);
             self.then[i] = growth.after(start, self.prony.moduli[i], decay, moments, edge);
         }
         Ok(Node { time: a.time + length, depth: a.depth + rise, extent, elastic, fresh: false })
@@ -40,42 +40,45 @@ impl<const N: usize> Cycle<'_, N> {
     fn pressure(&mut self, node: usize, share: Real<N>, time: Real<N>, z: Real<N>) -> Result<(Node<N>, [Real<N>; 3])> {
         let at = self.look(node, share)?;
         let (mut force, mut past) = (Real::from(0.0), Real::from(0.0));
-        for (term, &rate) in self.then.iter().zip(&self.prony.rates) {
-            let decay = (rate * (time - at.time)).decay();
+        let elapsed = time - at.time;
+        for (i, term) in self.then.iter().enumerate() {
+            let decay = (self.prony.rates[i] * elapsed).decay();
             past += decay * (term.tip - term.edge);
             force += decay * (term.force - at.elastic.stiffness * term.edge);
+            self.since[i] = decay;
         }
         let depth = if self.springs() { z - self.give * force } else { z };
         let (unit, tip) = (self.stiffness(), self.decayed(|term| term.tip));
         Ok((at, [unit * (depth - self.depth) + tip - past, depth, (past - tip) / unit]))
     }
 
-    /// The contact shrinks to the column without pressure.
-    pub(super) fn shrink(&mut self, sample: usize, time: Real<N>, z: Real<N>) -> Result<()> {
+    /// The contact shrinks to the column without pressure, from the pressure at the edge.
+    pub(super) fn shrink(&mut self, sample: usize, time: Real<N>, z: Real<N>, mut outside: f64) -> Result<()> {
         let (zero, one) = (Real::from(0.0), Real::from(1.0));
         let last = Column { extent: self.edge.extent, surface: self.depth, sample: sample - 1 };
         self.columns.push(last, self.terms.iter().map(|term| term.edge));
         let (mut node, mut upper) = (self.edge.node, self.edge.share);
-        loop {
+        let inside = loop {
             let (at, [pressure, _, rise]) = self.pressure(node, zero, time, z)?;
             if upper.value() > 0.0 && pressure.value() >= 0.0 {
-                break;
+                break pressure.value();
             }
             let last = self.columns.next_extent().unwrap_or_default();
             if node == 0 || upper.value() > 0.0 && (last - at.extent).value() > NEAR * self.greatest {
-                self.release(sample, at, time, rise);
+                self.release(sample, at.extent, rise);
             }
             if node == 0 {
                 self.separate(z);
                 return Ok(());
             }
-            (node, upper) = (node - 1, one);
-        }
-        let share = Real::root([zero, upper], |share| Ok(self.pressure(node, share, time, z)?.1[0]))?;
+            (node, upper, outside) = (node - 1, one, pressure.value());
+        };
+        let near = inside / (inside - outside);
+        let share = Real::root([zero, upper], near, |share| Ok(self.pressure(node, share, time, z)?.1[0]))?;
         let (at, [_, depth, _]) = self.pressure(node, share, time, z)?;
         let rise = depth - self.depth;
         for (i, then) in self.then.iter().enumerate() {
-            let decay = (self.prony.rates[i] * (time - at.time)).decay();
+            let decay = self.since[i];
             let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
             let tip = self.moments.decay[i] * self.terms[i].tip + moved;
             let force = decay * then.force + at.elastic.stiffness * (tip - decay * then.tip);
@@ -90,13 +93,13 @@ impl<const N: usize> Cycle<'_, N> {
     }
 
     /// The column of a node leaves the tip, from the last look at it. It is free from the sample on, where it would be without pressure.
-    fn release(&mut self, sample: usize, at: Node<N>, time: Real<N>, rise: Real<N>) {
+    fn release(&mut self, sample: usize, extent: Real<N>, rise: Real<N>) {
         let state = |i: usize| {
-            let (then, decay) = (self.then[i], (self.prony.rates[i] * (time - at.time)).decay());
+            let (then, decay) = (&self.then[i], self.since[i]);
             let moved = self.prony.moduli[i] * rise * self.moments.moments[i][0];
             self.moments.decay[i] * self.terms[i].tip + moved - decay * (then.tip - then.edge)
         };
-        let column = Column { extent: at.extent, surface: self.depth + rise, sample };
+        let column = Column { extent, surface: self.depth + rise, sample };
         self.columns.push(column, (0..self.terms.len()).map(state));
     }
 
