@@ -42,16 +42,13 @@ const SMALLEST: f64 = 1e-3;
 /// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by this factor.
 const SMOOTH: f64 = 0.1;
 /// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
-/// softer than this. Where the state before was stiffer than this, and the attraction no steeper since, none is looked for.
+/// softer than this at its end. Where the state before was stiffer than this, and the attraction no steeper since, none is looked for.
 const SUSPECT: f64 = 0.85;
 const VERY_SOFT: f64 = 0.005;
 const NEAR_FOLD: f64 = 0.25;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
 const UNSTABLE: f64 = -1e-5;
-/// A fold of E lies within r over the square of the curvature: r is to be smaller by this factor, or this small.
-const FOLD: f64 = 0.05;
-const LEAST_FOLD: f64 = 1e-9;
 /// q is computed afresh after so many iterations.
 const FRESH: usize = 50;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
@@ -204,7 +201,7 @@ impl Descent<'_> {
             if gradient.greatest <= share * self.own.exactness * self.problem.tolerance(soft) {
                 let stiffness = softest.unwrap_or_else(|| self.least_stiffness());
                 let suspected = match softest {
-                    Some(_) => stiffness < VERY_SOFT,
+                    Some(_) => stiffness < VERY_SOFT && self.ends(gradient, soft, softest),
                     None => (least < SUSPECT || iteration < LEAST_MEASURED) && stiffness < NEAR_FOLD,
                 };
                 if suspected && looks < LOOKS {
@@ -218,9 +215,7 @@ impl Descent<'_> {
                     }
                 }
                 let soft = soft.min(softest.unwrap_or(1.0));
-                let fold = softest.map_or(1.0, |soft| (FOLD * soft * soft).max(LEAST_FOLD));
-                if leaves.is_none() && gradient.greatest <= fold.min(self.own.exactness * self.problem.tolerance(soft))
-                {
+                if leaves.is_none() && self.ends(gradient, soft, softest) {
                     self.own.softness = if iteration == 0 { self.own.softness } else { soft };
                     self.own.softest = softest;
                     self.trial.solution.stiffness = softest.unwrap_or(stiffness.min(recent));

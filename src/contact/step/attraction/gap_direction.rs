@@ -27,6 +27,9 @@ const PRECISE: f64 = 0.2;
 const EXHAUSTED: f64 = 1e-6;
 /// By half this power of e a direction that is softer has outgrown the one that is found.
 const GROWN: f64 = 8.0;
+/// A fold of E lies within r over the square of the curvature: r is to be smaller by this factor, or this small.
+const FOLD: f64 = 0.05;
+const LEAST_FOLD: f64 = 1e-9;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
@@ -183,6 +186,12 @@ impl Descent<'_> {
             })
         });
         attracted
+    }
+
+    /// Whether r is so small that the descent may end, at this curvature, and beside the fold that the softest direction may show.
+    pub(super) fn ends(&self, gradient: Gradient, soft: f64, softest: Option<f64>) -> bool {
+        let fold = softest.map_or(1.0, |soft| (FOLD * soft * soft).max(LEAST_FOLD));
+        gradient.greatest <= fold.min(self.own.exactness * self.problem.tolerance(soft))
     }
 
     /// What the least curvature of the state before the step was found to be, less the greatest rise of −s′ since, over its greatest value.
