@@ -3,7 +3,6 @@
 mod memory;
 mod ranks;
 mod steps;
-#[cfg(feature = "rayon")]
 mod threads;
 
 use std::alloc::System;
@@ -22,11 +21,8 @@ fn main() {
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
     println!("tilting steps allocate nothing: ok");
-    #[cfg(feature = "rayon")]
-    {
-        threads::steps_on_threads_allocate_blocks_of_a_queue();
-        println!("steps on threads allocate blocks of a queue: ok");
-    }
+    threads::steps_on_threads_allocate_blocks_of_a_queue();
+    println!("steps on threads allocate blocks of a queue: ok");
     ranks::warm_steps_of_ranks_allocate_nothing();
     println!("warm steps of ranks allocate nothing: ok");
     ranks::ranks_announce_what_is_counted();

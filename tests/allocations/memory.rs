@@ -39,10 +39,7 @@ pub fn documents_state_what_builders_announce() {
         let kernel = Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap());
         (squares, per_cell(builder_on(grid, maxwell()).kernel(kernel).settings(whole), 16384))
     };
-    #[cfg(feature = "rayon")]
     let (squares, line) = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(bytes);
-    #[cfg(not(feature = "rayon"))]
-    let (squares, line) = bytes();
     println!("{squares:?} {line}");
     let [of_the_grid, computed] = squares.map(|cells| {
         let (least, most) = (cells.into_iter().fold(f64::INFINITY, f64::min), cells.into_iter().fold(0.0, f64::max));
@@ -167,7 +164,6 @@ pub fn builders_announce_what_is_counted() {
     let warm = Scene { fitted: true, bodies: 1, settings: Settings::default(), ..scene(draws) };
     let warm = Scene { grid: Grid::square(256, 1.0e-2).unwrap(), kernel: InfluenceKernel::half_space, ..warm };
     drop(warm.builder(&Arc::new((warm.kernel)(&warm.grid).unwrap())).build().unwrap());
-    #[cfg(feature = "rayon")]
     rayon::broadcast(|_| ());
     let (mut equal, mut bounded, mut grown) = (0, 0, 0);
     for number in 0..300 {

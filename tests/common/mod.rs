@@ -24,8 +24,6 @@ pub mod random_histories;
 pub mod random_returns;
 pub mod ratios;
 pub mod refused;
-#[cfg(feature = "laws")]
-pub mod related;
 #[path = "../../examples/support/scenes/rolling.rs"]
 pub mod rolling;
 pub mod rough;

@@ -8,19 +8,16 @@
 //! with `FUZZ_TARGET=scene` for targets whose names begin so. A finding is printed with its case; `FUZZ_TARGET=scene
 //! FUZZ_CASE=123` runs that alone. docs/maintainers/fuzzing.md has the limits.
 
-#[cfg(feature = "checkpoint")]
 mod checkpoints;
 mod constructors;
 mod engine;
 mod files;
 mod maps;
 mod models;
-#[cfg(feature = "plot")]
 mod pictures;
 mod plans;
 mod scenes;
 mod source;
-#[cfg(feature = "npy")]
 mod states;
 mod tables;
 
@@ -37,11 +34,8 @@ fn targets() -> Vec<Target> {
     targets.extend(scenes::targets());
     targets.extend(plans::targets());
     targets.extend(files::targets());
-    #[cfg(feature = "npy")]
     targets.extend(states::targets());
-    #[cfg(feature = "plot")]
     targets.extend(pictures::targets());
-    #[cfg(feature = "checkpoint")]
     targets.extend(checkpoints::targets());
     targets
 }

@@ -55,11 +55,8 @@ fn no_message_repeats_its_source() {
         (false, Ramp::new(Load::force(0.0), Load::approach(0.0), 1.0).unwrap_err()),
         (true, HeightMap::read(format!("{missing}.sdf")).unwrap_err()),
         (true, Measurements::from_csv(Experiment::Creep, missing, Units::SI, TextFormat::default()).unwrap_err()),
-        #[cfg(feature = "checkpoint")]
         (true, contact().resume(missing).unwrap_err()),
-        #[cfg(feature = "checkpoint")]
         (true, contact().save(missing).unwrap_err()),
-        #[cfg(feature = "npy")]
         (true, viscocontact::output::write_npy(missing, contact().grid(), &[0.0; 256]).unwrap_err()),
     ];
     for (of_file, error) in errors {
@@ -115,7 +112,6 @@ fn references_implement_the_traits() {
     assert_eq!(corner(&Ramp::new(Load::force(0.0), Load::force(0.5), 1.0).unwrap()), Some(1.0));
 }
 
-#[cfg(feature = "npy")]
 mod outputs {
     use std::fs;
     use std::io::ErrorKind::AlreadyExists;

@@ -1,7 +1,6 @@
 //! Is what goes in checked, and what comes out whole: errors, warnings, saved states, files, pictures, documents?
 
 mod absurd_sizes;
-#[cfg(feature = "checkpoint")]
 mod checkpoint;
 mod diagnosis;
 mod documents;
@@ -10,22 +9,17 @@ mod house;
 mod interface;
 mod invalid_loads;
 mod layouts;
-#[cfg(all(feature = "checkpoint", feature = "npy", feature = "plot"))]
 mod mistakes;
 mod output;
-#[cfg(feature = "npy")]
 mod output_of_ranks;
 mod outside;
 mod paper;
-#[cfg(feature = "plot")]
 mod plot;
-#[cfg(feature = "checkpoint")]
 mod snapshot;
-#[cfg(feature = "tracing")]
 mod tracing;
 
 /// Runs an ignored test in a process of its own, in which files end at 32 KiB.
-#[cfg(all(unix, any(feature = "plot", feature = "npy")))]
+#[cfg(unix)]
 fn with_room_for_32_kib(test: &str, folder: &std::path::Path) -> std::process::Output {
     // writes beyond 64 blocks of 512 bytes fail in the child, which is not killed for them
     let limited = format!("trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact {test} --ignored --nocapture");

@@ -1,5 +1,4 @@
 //! Files of results are read back bit by bit, by readers that share no code with the writers.
-#![cfg_attr(not(feature = "npy"), allow(dead_code, reason = "not every format needs every helper"))]
 
 use crate::common::{Temporary, contact_of, maxwell, sphere_on};
 use std::fs;
@@ -68,7 +67,6 @@ fn text_of(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-#[cfg(feature = "npy")]
 mod npy {
     use std::io::Read;
 
@@ -378,7 +376,6 @@ mod csv {
 }
 
 /// Writes a run, and beside it the same values as bare numbers, for `tests/read_back.py`.
-#[cfg(feature = "npy")]
 #[test]
 #[ignore = "tests/read_back.sh runs it"]
 fn a_run_for_other_readers() {
@@ -430,7 +427,7 @@ fn a_run_for_other_readers() {
 }
 
 /// What the test below runs with room for 32 KiB in a file: rows and frames until one is refused.
-#[cfg(all(unix, feature = "npy"))]
+#[cfg(unix)]
 #[test]
 #[ignore = "full_disks_leave_whole_files_and_print_nothing runs it"]
 fn a_run_without_room() {
@@ -462,7 +459,7 @@ fn a_run_without_room() {
 
 /// On a full disk: each row that was reported as written is whole in the file and no other is there at all, no part of a frame
 /// is left, and nothing is printed.
-#[cfg(all(unix, feature = "npy"))]
+#[cfg(unix)]
 #[test]
 fn full_disks_leave_whole_files_and_print_nothing() {
     let folder = Temporary::folder("full");

@@ -120,7 +120,6 @@ fn scales_out_of_range_are_refused() {
 }
 
 /// Random laws of every kind obey the laws.
-#[cfg(feature = "laws")]
 #[test]
 fn random_attractions_obey_every_law() {
     use proptest::prelude::*;

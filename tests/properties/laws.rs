@@ -356,7 +356,6 @@ fn every_law_of_histories_can_be_broken() {
 }
 
 /// Whatever the strategies make is valid, and obeys the laws.
-#[cfg(feature = "laws")]
 mod at_random {
     use super::*;
     use viscocontact::laws::strategies::{geometries, height_maps, histories, loads, rheologies, spectra};

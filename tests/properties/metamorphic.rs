@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::related::{assert_ends_like, assert_same, difference, end, field, tight};
 use crate::common::contact_of;
-use crate::common::related::{assert_ends_like, assert_same, difference, end, field, tight};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::laws::Scenario;
@@ -148,12 +148,10 @@ fn units_do_not_matter_beyond_rounding() {
 }
 
 /// On grids that threads share, their number changes no bit.
-#[cfg(feature = "rayon")]
 mod threads {
     use super::*;
     use crate::common::bodies::zener;
     use crate::common::spheres::RADIUS;
-    #[cfg(feature = "checkpoint")]
     use crate::common::temporary::Temporary;
 
     fn on<T: Send>(threads: usize, run: impl Fn() -> T + Send + Sync) -> T {
@@ -184,7 +182,6 @@ mod threads {
         assert!([2, 3, 5].into_iter().all(|threads| on(threads, run) == one));
     }
 
-    #[cfg(feature = "checkpoint")]
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2033), max_shrink_iters: 0, ..ProptestConfig::with_cases(4) })]
 

@@ -1,6 +1,6 @@
 //! What must hold between the answers of related scenes, whatever the scene: over time, and in motion.
 
-use crate::common::related::{assert_ends_like, assert_same, difference, end, tight};
+use super::related::{assert_ends_like, assert_same, difference, end, tight};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::laws::Scenario;

@@ -2,10 +2,8 @@
 
 mod attractions;
 mod laws;
-#[cfg(feature = "laws")]
 mod metamorphic;
-#[cfg(feature = "laws")]
 mod metamorphic_time;
 mod periodic;
-#[cfg(feature = "npy")]
 mod ranks;
+mod related;

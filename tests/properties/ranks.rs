@@ -143,7 +143,6 @@ fn files_of_ranks_are_those_of_one_process() {
 }
 
 /// One process by itself, or a number of ranks, which all run `job`; what they return, in their order.
-#[cfg(feature = "checkpoint")]
 fn on<T: Send>(
     size: Option<usize>,
     scene: &AnyScene,
@@ -157,7 +156,6 @@ fn on<T: Send>(
 }
 
 /// Takes the first steps of a scene, and saves it.
-#[cfg(feature = "checkpoint")]
 fn save_after(steps: usize, scene: &AnyScene, contact: &mut ViscoelasticContact, path: &Path) -> Result<(), Error> {
     let mut taken = 0;
     let (_, error) = scene.drive(contact, 0, &mut |stepper, _| {
@@ -174,7 +172,6 @@ fn save_after(steps: usize, scene: &AnyScene, contact: &mut ViscoelasticContact,
 }
 
 /// Resumed by `size` ranks, the scene takes the steps that one process would have taken.
-#[cfg(feature = "checkpoint")]
 fn assert_continues(size: Option<usize>, scene: &AnyScene, after: usize, path: &Path, expected: &Course) {
     let courses = on(size, scene, |mut contact| {
         contact.resume(path)?;
@@ -186,7 +183,6 @@ fn assert_continues(size: Option<usize>, scene: &AnyScene, after: usize, path: &
 }
 
 /// Saved in the middle by each number of ranks, resumed by each.
-#[cfg(feature = "checkpoint")]
 #[test]
 fn checkpoints_of_ranks_continue_on_any_other_number() {
     use chosen_scenes::{adaptive, punch, punch_that_loses_symmetry, rough};

@@ -91,10 +91,7 @@ fn neither_symmetry_threads_nor_the_unit_of_time_change_a_state() {
                     all.extend(traction);
                 }
             };
-            #[cfg(feature = "rayon")]
             rayon::ThreadPoolBuilder::new().num_threads(way.threads).build().unwrap().install(steps);
-            #[cfg(not(feature = "rayon"))]
-            steps();
             all
         };
         let all = run(PLAIN);
@@ -115,7 +112,6 @@ fn neither_symmetry_threads_nor_the_unit_of_time_change_a_state() {
 }
 
 /// A grid that threads share.
-#[cfg(feature = "rayon")]
 #[test]
 fn threads_change_no_bit_on_a_large_grid() {
     let run = || {

@@ -118,6 +118,8 @@ fn the_steepest_slope_counts() {
 #[test]
 fn net_traction_is_shown_beside_the_pressure() {
     use viscocontact::output::Field;
+    use viscocontact::plot::Map;
+
     let mut contact = sphere(32, 8.0, elastic(), LAWS[0].2()).unwrap();
     contact.step(1.0, Load::approach(1.0)).unwrap();
     assert_eq!(Field::of(&contact), Field::ALL);
@@ -126,12 +128,8 @@ fn net_traction_is_shown_beside_the_pressure() {
     contact.traction_into(&mut traction).unwrap();
     assert!((0..32).all(|i| profile.traction[i] == traction[32 * i + 16]));
     assert!(profile.pressure.iter().all(|p| *p >= 0.0) && profile.traction.iter().any(|q| *q < -0.1));
-    #[cfg(feature = "plot")]
-    {
-        use viscocontact::plot::Map;
-        let [net, wall] = [Map::traction(&contact).unwrap(), Map::pressure(&contact).unwrap()];
-        assert!(net.values() == traction && net.range[0] < -0.1 && wall.range[0] == 0.0);
-    }
+    let [net, wall] = [Map::traction(&contact).unwrap(), Map::pressure(&contact).unwrap()];
+    assert!(net.values() == traction && net.range[0] < -0.1 && wall.range[0] == 0.0);
     let mut plain = ViscoelasticContact::builder(Grid::square(32, 8.0).unwrap())
         .geometry(&Sphere::new(1.0).unwrap())
         .material(elastic())

@@ -272,7 +272,6 @@ fn fields_leave_the_steps_as_they_are() {
 
 /// A run that is resumed from a file has the same fields.
 #[test]
-#[cfg(feature = "checkpoint")]
 fn fields_are_found_again_after_a_resumption() {
     let history = Ramp::new(Load::force(0.05), Load::force(0.5), 0.5).unwrap();
     let file = Temporary::file("fields");
@@ -393,7 +392,6 @@ fn fields_without_states_are_found_by_graded_steps() {
 }
 
 /// The numbers of a field in an archive of NumPy.
-#[cfg(feature = "npy")]
 fn numbers_of(path: &std::path::Path, name: &str) -> Vec<f64> {
     let (mut archive, mut bytes) = (zip::ZipArchive::new(std::fs::File::open(path).unwrap()).unwrap(), Vec::new());
     std::io::Read::read_to_end(&mut archive.by_name(&format!("{name}.npy")).unwrap(), &mut bytes).unwrap();
@@ -402,7 +400,6 @@ fn numbers_of(path: &std::path::Path, name: &str) -> Vec<f64> {
 
 /// States within steps, frames, maps and histories of random scenes have the field that was asked for, bitwise where it is written.
 #[test]
-#[cfg(all(feature = "npy", feature = "plot"))]
 fn what_follows_a_run_has_its_fields() {
     use viscocontact::output::{Earlier, Field, Format, FrameSeries, Metadata};
     use viscocontact::plot::{History, HistoryColumn, Map};

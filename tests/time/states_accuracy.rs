@@ -99,21 +99,16 @@ fn error_of(states: &ElasticStates, exact: &ElasticStates) -> f64 {
 
 /// Drawn where figures are written.
 fn picture(curves: Vec<(&str, Vec<(f64, f64)>)>) {
-    #[cfg(feature = "plot")]
-    {
-        use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
+    use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures/states_error.png");
-        if !std::env::var("FIGURES").is_ok_and(|figures| figures == "write") {
-            return;
-        }
-        let mut chart = Chart::new("Error of the depth between elastic states", "states", "error", Legend::UpperRight);
-        chart.scale = Scale::LogLog;
-        for ((name, points), color) in curves.into_iter().zip(COLORS) {
-            chart.add(name, color, Style::LineAndDots, points);
-        }
-        chart.save(path).unwrap();
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures/states_error.png");
+    if !std::env::var("FIGURES").is_ok_and(|figures| figures == "write") {
+        return;
     }
-    #[cfg(not(feature = "plot"))]
-    drop(curves);
+    let mut chart = Chart::new("Error of the depth between elastic states", "states", "error", Legend::UpperRight);
+    chart.scale = Scale::LogLog;
+    for ((name, points), color) in curves.into_iter().zip(COLORS) {
+        chart.add(name, color, Style::LineAndDots, points);
+    }
+    chart.save(path).unwrap();
 }

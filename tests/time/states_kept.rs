@@ -201,7 +201,6 @@ fn tables_that_are_no_states_are_refused() {
 }
 
 /// Tables and charts take contacts on elastic states; what these do not have is empty.
-#[cfg(feature = "plot")]
 #[test]
 fn histories_of_states_are_written_and_drawn() {
     use viscocontact::plot::{History, HistoryColumn};

@@ -7,6 +7,7 @@ use super::judge_all;
 use crate::common::{builder_of, sphere, zener};
 use viscocontact::contact::{StepReport, Warnings};
 use viscocontact::geometry::{Anisotropy, Repeated, Sum};
+use viscocontact::output::{Metadata, read_states, write_states};
 use viscocontact::prelude::*;
 use viscocontact::states::StatesContact;
 use viscocontact::{Axis, Error};
@@ -55,15 +56,11 @@ impl Pressed {
         let sweep = sweep.settings(Pressed::settings().with_tolerance(1e-8)).accuracy(1e-2).max_states(30);
         let states = sweep.run(Reach::Approach(self.approach))?;
         let report = StatesContact::new(&states, &self.material())?.step(0.0, Load::approach(0.999 * self.approach))?;
-        #[cfg(feature = "npy")]
-        {
-            use viscocontact::output::{Metadata, read_states, write_states};
-            let file = crate::common::Temporary::file("outside-states.npz");
-            write_states(&file, &states, &Metadata::new("outside"))?;
-            let read = StatesContact::new(&read_states(&file)?, &self.material())?
-                .step(0.0, Load::approach(0.999 * self.approach))?;
-            assert_eq!((read.warnings, read.figures), (report.warnings, report.figures));
-        }
+        let file = crate::common::Temporary::file("outside-states.npz");
+        write_states(&file, &states, &Metadata::new("outside"))?;
+        let read = StatesContact::new(&read_states(&file)?, &self.material())?
+            .step(0.0, Load::approach(0.999 * self.approach))?;
+        assert_eq!((read.warnings, read.figures), (report.warnings, report.figures));
         Ok(report)
     }
 }
