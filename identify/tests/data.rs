@@ -164,8 +164,9 @@ fn contacts_are_told_from_noise_white_or_correlated() -> Result<()> {
     Ok(())
 }
 
-/// Random materials, tips and protocols: all are contacts without noise; with noise of a tenth of the force at most one in 100 is refused,
-/// and at most one in 100 of noise alone passes, beyond three deviations of these counts.
+/// Random materials, tips and protocols, most of a few hundred samples: all are contacts without noise and with noise of a hundredth of
+/// the force; with a tenth at most one in 40 is refused, and at most one in 40 of noise alone passes, beyond three deviations of these
+/// counts.
 #[test]
 fn contacts_of_any_kind_are_no_noise() {
     let seeds = check_seeds();
@@ -182,11 +183,12 @@ fn contacts_of_any_kind_are_no_noise() {
             let check = |force: Vec<f64>| Curve::new(scene.experiment.clone(), force).unwrap().check();
             let is_refused = |force| matches!(check(force), Err(Error::NoContact { .. }));
             refused += u64::from(is_refused(noisy));
+            let slightly = force.iter().zip(&noise).map(|(force, noise)| force + 0.1 * noise).collect();
+            assert!(!is_refused(force) && !is_refused(slightly), "scene {seed}, φ = {correlation}");
             passed += u64::from(check(noise).is_ok());
-            assert!(correlation > 0.0 || !is_refused(force), "scene {seed}");
         }
         println!("φ = {correlation}: of {seeds} scenes, {passed} of noise pass and {refused} contacts are refused");
-        let most = 0.01 * seeds as f64;
+        let most = 0.025 * seeds as f64;
         for count in [passed, refused] {
             assert!(seeds > 0 && count as f64 <= most + 3.0 * most.sqrt(), "φ = {correlation}: {count} of {seeds}");
         }

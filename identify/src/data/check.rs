@@ -74,21 +74,21 @@ impl Curve {
             return Err(drive_flipped.unwrap_or(Error::ForceFlipped { fall }));
         }
         let squares: f64 = lowest.iter().map(|force| (force - shallow).powi(2)).sum();
-        // adhesion may be stronger than the load, but not before the deepest drive
-        let deepest = drive.iter().rposition(|z| *z == last).map_or(0, |k| k + 1);
+        // adhesion may be stronger than the load, but not in the loading
+        let shows_body = || self.shows_body() || self.loading().is_ok_and(|loading| loading.shows_body());
         let is_baseline = greatest - shallow <= ABOVE_BASELINE * (squares / lowest.len() as f64).sqrt();
-        if is_baseline || !(self.shows_body(points) || deepest >= LEAST_POINTS && self.shows_body(deepest)) {
+        if is_baseline || !shows_body() {
             return Err(Error::NoContact { curve: 0 });
         }
         let wanted = (scatter(force) / (ALLOWED_NOISE * (greatest - least))).powi(2).ceil();
         self.check_sizes(shallow, wanted.clamp(1.0, block as f64) as usize)
     }
 
-    /// Whether the first `points` are likelier the force of a Zener body under a sphere in autoregressive noise than that noise alone, both
+    /// Whether the forces are likelier those of a Zener body under a sphere in autoregressive noise than that noise alone, both
     /// above a constant force, by twice the logarithm of the ratio of their greatest likelihoods (S. S. Wilks, Ann. Math. Stat. 9, 1938).
-    fn shows_body(&self, points: usize) -> bool {
-        let (times, drive) = (&self.experiment.protocol.times()[..points], self.experiment.protocol.drive());
-        let (duration, [first, last]) = (times[points - 1] - times[0], range(drive));
+    fn shows_body(&self) -> bool {
+        let (times, drive) = (self.experiment.protocol.times(), self.experiment.protocol.drive());
+        let (points, duration, [first, last]) = (times.len(), times[times.len() - 1] - times[0], range(drive));
         let body = &|contact: f64, (relaxation, staying): (f64, f64)| -> Vec<f64> {
             let (mut force, mut time, mut level) = (0.0_f64, times[0], 0.0);
             let at = |(&t, &z): (&f64, &f64)| {
@@ -106,14 +106,16 @@ impl Curve {
             let squares = tried(2 * TRIED).map(|at| {
                 let phi = 1.0 - LEAST_CHANGE.powf(at);
                 let independent = |column: &[f64]| column.windows(2).map(|w| w[1] - phi * w[0]).collect::<Vec<_>>();
-                let [_, slope, squares] = line(&independent(body), &independent(&self.force()[..points]), true);
-                if slope >= 0.0 { squares } else { f64::INFINITY }
+                let [_, slope, squares] = line(&independent(body), &independent(self.force()), true);
+                // the likelihood of the first force knows the variance of the noise, 1/(1 − φ²) of that of its independent parts
+                if slope >= 0.0 { squares / (1.0 - phi * phi).powf(1.0 / points as f64) } else { f64::INFINITY }
             });
             squares.fold(f64::INFINITY, f64::min)
         };
         let noise = least_squares(&vec![0.0; points]);
         let mut bodies = BODIES.into_iter().flat_map(|kind| tried(TRIED).map(move |contact| body(contact, kind)));
-        bodies.any(|body| (points - 4) as f64 * (noise / least_squares(&body)).ln() > EVIDENCE)
+        points >= LEAST_POINTS
+            && bodies.any(|body| (points - 4) as f64 * (noise / least_squares(&body)).ln() > EVIDENCE)
     }
 
     /// Compares depth and force with the tip, in means of `width` points. The depth is counted from where the force has risen, so
