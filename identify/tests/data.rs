@@ -4,9 +4,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::TextFormat;
 use viscocontact::prelude::*;
-use viscocontact_identify::{Curve, Error, Experiment, Protocol, Recording, Result};
+use viscocontact_identify::{Curve, Error, Experiment, Nuisance, Protocol, Recording, Result};
 
-use crate::random::normal;
+use crate::random::{correlated, normal};
+use crate::scenes::scene;
 
 fn read(text: &str) -> Result<Recording> {
     Recording::from_csv_reader(text.as_bytes(), TextFormat::default())
@@ -130,25 +131,68 @@ fn faults_of_a_curve_are_told_apart_under_noise() -> Result<()> {
     Ok(())
 }
 
+/// Number of seeds: `CHECK_SEEDS`, or fewer.
+fn check_seeds() -> u64 {
+    std::env::var("CHECK_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(40)
+}
+
+/// Of curves of each correlation at most one in 100 of noise alone passes, beyond three deviations of that count,
+/// and every contact in noise of a tenth of the force.
 #[test]
-fn scatter_white_or_correlated_is_no_contact() -> Result<()> {
+fn contacts_are_told_from_noise_white_or_correlated() -> Result<()> {
+    let seeds = check_seeds();
     let tip = ElasticStates::sphere(5.0e-6)?;
     let (protocol, force) = force_curve(&tip)?;
-    for (seed, correlation) in (0_u64..).zip([0.0, 0.5, 0.9].into_iter().flat_map(|correlation| [correlation; 50])) {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut last = 0.0;
-        let mut noise = || {
-            last = correlation * last + (1.0_f64 - correlation * correlation).sqrt() * normal(&mut rng);
-            1.0e-9 * last
-        };
-        let noise: Vec<f64> = force.iter().map(|_| noise()).collect();
-        let outcome = curve(&protocol, &noise, &tip, [1.0; 2])?.check();
-        assert!(outcome.is_err(), "seed {seed}, correlation {correlation}");
-        if correlation == 0.0 {
-            assert!(matches!(outcome, Err(Error::NoContact { .. })), "{outcome:?}");
+    let greatest = force.iter().copied().fold(0.0, f64::max);
+    for correlation in [0.0, 0.5, 0.8, 0.9, 0.95, 0.98] {
+        let (mut passed, mut refused) = (0, 0);
+        for seed in 0..seeds {
+            let noise = correlated(force.len(), 0.1 * greatest, correlation, &mut ChaCha8Rng::seed_from_u64(seed));
+            let alone = curve(&protocol, &noise, &tip, [1.0; 2])?.check();
+            let contact: Vec<f64> = force.iter().zip(&noise).map(|(force, noise)| force + noise).collect();
+            passed += u64::from(alone.is_ok());
+            refused += u64::from(curve(&protocol, &contact, &tip, [1.0; 2])?.check().is_err());
+            if correlation == 0.0 {
+                assert!(matches!(alone, Err(Error::NoContact { .. })), "{alone:?}");
+            }
         }
+        println!("φ = {correlation}: of {seeds}, {passed} of noise pass and {refused} contacts are refused");
+        let most = 0.01 * seeds as f64;
+        assert!(seeds > 0 && passed as f64 <= most + 3.0 * most.sqrt(), "φ = {correlation}: {passed} of {seeds}");
+        assert_eq!(refused, 0, "φ = {correlation}");
     }
     Ok(())
+}
+
+/// Random materials, tips and protocols, most of a few hundred samples: all are contacts without noise and with noise of a hundredth of
+/// the force; with a tenth at most one in 40 is refused, and at most one in 40 of noise alone passes, beyond three deviations of these
+/// counts.
+#[test]
+fn contacts_of_any_kind_are_no_noise() {
+    let seeds = check_seeds();
+    for correlation in [0.0, 0.5, 0.8, 0.9, 0.95, 0.98] {
+        let (mut passed, mut refused) = (0, 0);
+        for seed in 0..seeds {
+            let scene = scene(seed);
+            let known = scene.identification.clone().contact_point(Nuisance::Fixed(scene.contact_point));
+            let samples = known.respond(&scene.experiment, &scene.named()).unwrap();
+            let force: Vec<f64> = samples.iter().map(|sample| sample.force).collect();
+            let greatest = force.iter().copied().fold(0.0, f64::max);
+            let noise = correlated(force.len(), 0.1 * greatest, correlation, &mut ChaCha8Rng::seed_from_u64(seed));
+            let noisy = force.iter().zip(&noise).map(|(force, noise)| force + noise).collect();
+            let check = |force: Vec<f64>| Curve::new(scene.experiment.clone(), force).unwrap().check();
+            let is_refused = |force| matches!(check(force), Err(Error::NoContact { .. }));
+            refused += u64::from(is_refused(noisy));
+            let slightly = force.iter().zip(&noise).map(|(force, noise)| force + 0.1 * noise).collect();
+            assert!(!is_refused(force) && !is_refused(slightly), "scene {seed}, φ = {correlation}");
+            passed += u64::from(check(noise).is_ok());
+        }
+        println!("φ = {correlation}: of {seeds} scenes, {passed} of noise pass and {refused} contacts are refused");
+        let most = 0.025 * seeds as f64;
+        for count in [passed, refused] {
+            assert!(seeds > 0 && count as f64 <= most + 3.0 * most.sqrt(), "φ = {correlation}: {count} of {seeds}");
+        }
+    }
 }
 
 #[test]

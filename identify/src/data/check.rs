@@ -4,15 +4,23 @@ use std::f64::consts::PI;
 
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
-use crate::statistics::{is_flat, mean, range, scatter};
+use crate::statistics::{is_flat, line, mean, range, scatter};
 
 /// Fewest points of a curve.
 const LEAST_POINTS: usize = 10;
 /// Blocks of points whose mean forces are compared.
 const BLOCKS: usize = 20;
-/// The greatest mean of a block rises above the scatter of the shallow end by this factor, if there is a contact: also where
-/// the noise is correlated.
+/// The greatest mean of a block rises above the scatter of the shallow end by this factor, if there is a contact.
 const ABOVE_BASELINE: f64 = 3.0;
+/// 97.5 % of χ² of four degrees of freedom: the moduli, the relaxation time and the contact point of a Zener body.
+const EVIDENCE: f64 = 11.143;
+/// Relaxation times of bodies over the duration of a curve, and moduli that do not relax over those that do.
+const BODIES: [(f64, f64); 7] =
+    [(f64::INFINITY, 0.0), (0.1, 1.0), (0.03, 1.0), (0.3, 0.0), (0.1, 0.0), (0.03, 0.0), (0.01, 0.0)];
+/// Contact points that are tried, and half the correlations.
+const TRIED: usize = 10;
+/// One minus the greatest correlation.
+const LEAST_CHANGE: f64 = 0.004;
 /// Share of the range of the force by which it differs between the ends of the drive, if the contact is at one of them.
 const OPPOSITE: f64 = 0.25;
 /// Share of the greatest force from which on the tip has certainly touched.
@@ -66,11 +74,48 @@ impl Curve {
             return Err(drive_flipped.unwrap_or(Error::ForceFlipped { fall }));
         }
         let squares: f64 = lowest.iter().map(|force| (force - shallow).powi(2)).sum();
-        if greatest - shallow <= ABOVE_BASELINE * (squares / lowest.len() as f64).sqrt() {
+        // adhesion may be stronger than the load, but not in the loading
+        let shows_body = || self.shows_body() || self.loading().is_ok_and(|loading| loading.shows_body());
+        let is_baseline = greatest - shallow <= ABOVE_BASELINE * (squares / lowest.len() as f64).sqrt();
+        if is_baseline || !shows_body() {
             return Err(Error::NoContact { curve: 0 });
         }
         let wanted = (scatter(force) / (ALLOWED_NOISE * (greatest - least))).powi(2).ceil();
         self.check_sizes(shallow, wanted.clamp(1.0, block as f64) as usize)
+    }
+
+    /// Whether the forces are likelier those of a Zener body under a sphere in autoregressive noise than that noise alone, both
+    /// above a constant force, by twice the logarithm of the ratio of their greatest likelihoods (S. S. Wilks, Ann. Math. Stat. 9, 1938).
+    fn shows_body(&self) -> bool {
+        let (times, drive) = (self.experiment.protocol.times(), self.experiment.protocol.drive());
+        let (points, duration, [first, last]) = (times.len(), times[times.len() - 1] - times[0], range(drive));
+        let body = &|contact: f64, (relaxation, staying): (f64, f64)| -> Vec<f64> {
+            let (mut force, mut time, mut level) = (0.0_f64, times[0], 0.0);
+            let at = |(&t, &z): (&f64, &f64)| {
+                let pressed = ((z - first) / (last - first) - contact).max(0.0).powf(1.5);
+                // the tip detaches and does not pull
+                force = (force + pressed - level).max(0.0) * ((time - t) / (relaxation * duration)).exp();
+                (time, level) = (t, pressed);
+                force + staying * pressed
+            };
+            times.iter().zip(drive).map(at).collect()
+        };
+        let tried = |count: usize| (0..count).map(move |k| k as f64 / count as f64);
+        // the independent parts of the noise that is left, over all correlations
+        let least_squares = |body: &[f64]| {
+            let squares = tried(2 * TRIED).map(|at| {
+                let phi = 1.0 - LEAST_CHANGE.powf(at);
+                let independent = |column: &[f64]| column.windows(2).map(|w| w[1] - phi * w[0]).collect::<Vec<_>>();
+                let [_, slope, squares] = line(&independent(body), &independent(self.force()), true);
+                // the likelihood of the first force knows the variance of the noise, 1/(1 − φ²) of that of its independent parts
+                if slope >= 0.0 { squares / (1.0 - phi * phi).powf(1.0 / points as f64) } else { f64::INFINITY }
+            });
+            squares.fold(f64::INFINITY, f64::min)
+        };
+        let noise = least_squares(&vec![0.0; points]);
+        let mut bodies = BODIES.into_iter().flat_map(|kind| tried(TRIED).map(move |contact| body(contact, kind)));
+        points >= LEAST_POINTS
+            && bodies.any(|body| (points - 4) as f64 * (noise / least_squares(&body)).ln() > EVIDENCE)
     }
 
     /// Compares depth and force with the tip, in means of `width` points. The depth is counted from where the force has risen, so
