@@ -25,7 +25,8 @@ pub fn root(bracket: [f64; 2], from: f64, tolerance: f64, mut at: impl FnMut(f64
         let (newton, middle) = (s - excess / slope, 0.5 * (low + high));
         let is_near = |next: f64| (next - s).abs() <= tolerance * s.abs().max(1.0);
         if is_near(newton) || is_near(middle) {
-            let halved = if low == bracket[0] { low } else { middle };
+            let ends = [(low, bracket[0]), (high, bracket[1])];
+            let halved = ends.iter().find(|(at, end)| at == end).map_or(middle, |(at, _)| *at);
             return if is_near(newton) { newton.clamp(low, high) } else { halved };
         }
         let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;

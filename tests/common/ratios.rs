@@ -22,6 +22,7 @@ impl Ratios {
     }
 
     pub fn push(&mut self, ratio: f64, scene: &str) {
+        assert!(!ratio.is_nan(), "{scene}: no number");
         let place = self.0.partition_point(|other| other.0 <= ratio);
         self.0.insert(place, (ratio, scene.into()));
     }

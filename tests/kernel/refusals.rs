@@ -65,15 +65,15 @@ fn influences_that_no_body_has_are_refused() {
     let grid = Grid::new([12, 8], [1.0, 1.0]).unwrap();
     let coefficient = |f: &dyn Fn(isize, isize) -> f64| InfluenceKernel::from_coefficients(&grid, f).unwrap_err();
     let wave = |f: fn(f64, f64) -> f64| InfluenceKernel::from_spectrum(&grid, f).unwrap_err();
-    for (error, cell) in [
-        (coefficient(&|_, _| f64::NAN), [0, 0]),
-        (coefficient(&|i, j| (-(i * i + j * j) as f64).exp() + 1e-3 * i as f64), [-1, 0]),
-        (coefficient(&|i, j| if i == 0 && j == 0 { 1e101 } else { 0.0 }), [0, 0]),
-        (wave(|_, _| -1.0), [0, 0]),
-        (wave(|q1, _| 7.0 - q1), [2, 0]),
-        (wave(|_, _| 1e101), [0, 0]),
+    for (error, what, cell) in [
+        (coefficient(&|_, _| f64::NAN), "coefficient", [0, 0]),
+        (coefficient(&|i, j| (-(i * i + j * j) as f64).exp() + 1e-3 * i as f64), "coefficient", [-1, 0]),
+        (coefficient(&|i, j| if i == 0 && j == 0 { 1e101 } else { 0.0 }), "coefficient", [0, 0]),
+        (wave(|_, _| -1.0), "wave", [0, 0]),
+        (wave(|q1, _| 7.0 - q1), "wave", [2, 0]),
+        (wave(|_, _| 1e101), "wave", [0, 0]),
     ] {
-        assert!(matches!(error, Error::Kernel(KernelError::InvalidInfluence { at, .. }) if at == cell), "{error}");
+        assert!(matches!(error, Error::Kernel(KernelError::InvalidInfluence { of, at, .. }) if of == what && at == cell), "{error}");
     }
     // the neighbours sink in more than the loaded cell
     let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });

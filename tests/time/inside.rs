@@ -1,6 +1,6 @@
 //! Is the state within a step as exact as one at the end of a step?
 //!
-//! The forge runs 300 scenes. By hand: `INSIDE_SCENES=300 cargo test --test suite time::inside -- --nocapture`; `INSIDE_SEED=7`
+//! The forge runs 300 scenes. By hand: `INSIDE_SCENES=300 cargo test --all-features --test suite time::inside -- --nocapture`; `INSIDE_SEED=7`
 //! draws others, `INSIDE_FIRST=17` begins with that number, `INSIDE_LINES=1` prints every scene.
 
 use std::sync::Arc;

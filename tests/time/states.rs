@@ -289,6 +289,6 @@ fn other_load_points_and_levels_beyond_the_sweep_are_refused() {
     let tilted = contact.step(1.0, Load::eccentric_force(1.0e-7, [1.0e-4, 0.0]));
     not_covered([(tilted.err(), "the states were swept for")]);
     let beyond = [Load::force(1.0e-6), Load::approach(1.0)].map(|load| contact.step(1.0, load).err());
-    refused(beyond.map(|error| (error, "beyond the last elastic state")));
+    refused(beyond.map(|error| (error, "sweep further")));
     assert_eq!(format!("{contact:?}"), before);
 }

@@ -25,9 +25,9 @@ const NEGATIVE: f64 = -1e-2;
 const PRECISE: f64 = 0.2;
 /// What rounding leaves of a direction that is exact.
 const EXHAUSTED: f64 = 1e-6;
-/// By half this power of e a direction that is softer has outgrown the one that is found.
+/// The search goes on until a direction of quotient 0 would have grown by half this power of e beyond the direction that is found.
 const GROWN: f64 = 8.0;
-/// A fold of E lies within r over the square of the curvature: r is to be smaller by this factor, or this small.
+/// At a curvature κ of its softest direction a state is about κ² short of a fold, in r: the descent ends where r is below this part of κ², or below the least.
 const FOLD: f64 = 0.05;
 const LEAST_FOLD: f64 = 1e-9;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
@@ -211,7 +211,7 @@ impl Descent<'_> {
 
     /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
     /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from a random direction: the last one has the symmetry of the state, and may have none of the one that breaks it.
-    /// Writes it, with its M d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r makes room.
+    /// Writes it, with its M d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r and q make room; q is computed afresh.
     pub(super) fn softest(&mut self, look: usize) -> f64 {
         let Descent { problem, balance, inverse, own, window, trial, counts } = self;
         let (law, rows, c) = (problem.law, window.kernel.rows().clone(), balance.compliance);
