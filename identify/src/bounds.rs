@@ -19,14 +19,10 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    pub(crate) fn new(problem: &Problem, coordinates: &[f64], sigma: f64) -> Result<Bounds> {
-        let (names, scales) = (problem.free().map(|of| of.name.clone()).collect(), problem.scales(coordinates));
-        let inverse = inverse_gram(&problem.jacobian(coordinates)?, 0.0)?;
-        Ok(Bounds::of(names, &scales * inverse * scales.transpose(), sigma))
-    }
-
-    /// From the covariance over σ².
-    pub(crate) fn of(names: Vec<String>, covariance: Mat<f64>, sigma: f64) -> Bounds {
+    /// From the covariance (JᵀJ)⁻¹ of the coordinates over σ², and the derivatives of the parameters by them.
+    pub(crate) fn new(problem: &Problem, inverse: Mat<f64>, scales: &Mat<f64>, sigma: f64) -> Bounds {
+        let names: Vec<String> = problem.free().map(|of| of.name.clone()).collect();
+        let covariance = scales * inverse * scales.transpose();
         let row = |i: usize| (0..names.len()).map(|j| sigma * sigma * covariance[(i, j)]).collect();
         Bounds { covariance: (0..names.len()).map(row).collect(), names }
     }

@@ -92,12 +92,9 @@ impl Curve {
         let spring = self.experiment.stiffness;
         let amplitude = drive - force / spring;
         let depth = positive("mean depth in the window", mean_drive - contact_point - mean_force / spring)?;
-        let swing = within(
-            "amplitude of the depth",
-            amplitude.norm(),
-            amplitude.norm() > 1e-9 * depth && amplitude.norm() < depth,
-            "above 1e-9 of the mean depth, and below it",
-        )?;
+        let swing = amplitude.norm();
+        let is_small = swing > 1e-9 * depth && swing < depth;
+        within("amplitude of the depth", swing, is_small, "above 1e-9 of the mean depth, and below it")?;
         let level = |depth: f64| self.experiment.level_within(depth);
         let stiffness = (level(depth + swing)? - level(depth - swing)?) / (2.0 * swing);
         let modulus = force / (stiffness * amplitude);

@@ -2,7 +2,7 @@
 
 use viscocontact::numeric::{LeastSquares, least_squares};
 
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, inverse_gram};
 use crate::error::{Error, Result, positive};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
@@ -172,7 +172,9 @@ impl Identification {
         }
         let problem = self.planned(experiments)?;
         let values = self.given(&problem, values)?;
-        Bounds::new(&problem, &problem.coordinates(&values), sigma)
+        let coordinates = problem.coordinates(&values);
+        let inverse = inverse_gram(&problem.jacobian(&coordinates)?, 0.0)?;
+        Ok(Bounds::new(&problem, inverse, &problem.scales(&coordinates), sigma))
     }
 
     pub(crate) fn sigma(&self) -> Option<f64> {

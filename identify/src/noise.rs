@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 
-use crate::error::{Error, Result, within};
+use crate::error::{Error, Result, same_length, within};
 
 /// Least and greatest autoregressive coefficient that is looked for.
 pub(crate) const CORRELATIONS: [f64; 2] = [-0.9, 0.995];
@@ -42,16 +42,11 @@ impl Whitening {
             }
             Noise::Covariance(matrices) => {
                 let matrix = matrices.get(curve).map_or(&[][..], |matrix| matrix);
-                if matrix.len() != len * len {
-                    let (len, expected) = (matrix.len(), len * len);
-                    return Err(Error::WrongLength { field: "covariance", len, expected });
-                }
-                let factor = Mat::from_fn(len, len, |i, j| matrix[i * len + j]).llt(Side::Lower);
-                let factor = factor.map_err(|_| Error::NotConverged {
-                    iterations: 0,
-                    reason: "the covariance of the noise is not positive definite: give variances on its diagonal",
-                })?;
-                Ok(Whitening::Factor(factor.L().to_owned()))
+                same_length("covariance", matrix.len(), len * len)?;
+                let reason = "the covariance of the noise is not positive definite: give variances on its diagonal";
+                let singular = |_| Error::NotConverged { iterations: 0, reason };
+                let matrix = Mat::from_fn(len, len, |i, j| matrix[i * len + j]);
+                Ok(Whitening::Factor(matrix.llt(Side::Lower).map_err(singular)?.L().to_owned()))
             }
         }
     }

@@ -13,6 +13,7 @@ use crate::noise::{Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Parameter, Property};
 use crate::protocol::Protocol;
 use crate::series::Prony;
+use crate::statistics::mean;
 
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
@@ -41,7 +42,8 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    fn new(index: usize, curve: Curve, whitening: Whitening) -> Part {
+    fn new(index: usize, curve: Curve, noise: &Noise) -> Result<Part> {
+        let whitening = Whitening::of(noise, index, curve.force.len())?;
         let Protocol { times, drive } = &curve.experiment.protocol;
         let last = times.len() - 1;
         let speed = |k: usize| {
@@ -50,15 +52,12 @@ impl Part {
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
         let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Part { curve, whitening, scale: 1.0, outliers, tip, speed }
+        Ok(Part { curve, whitening, scale: 1.0, outliers, tip, speed })
     }
 
     /// Means of neighbouring samples, as if their noise were white.
     fn thinned(&self) -> Part {
-        let of = |values: &[f64]| -> Vec<f64> {
-            let means = values.chunks(self.len().div_ceil(ROUGH));
-            means.map(|chunk| chunk.iter().sum::<f64>() / chunk.len() as f64).collect()
-        };
+        let of = |values: &[f64]| -> Vec<f64> { values.chunks(self.len().div_ceil(ROUGH)).map(mean).collect() };
         let Protocol { times, drive } = &self.curve.experiment.protocol;
         let protocol = Protocol { times: of(times), drive: of(drive) };
         let experiment = Experiment { protocol, ..self.curve.experiment.clone() };
@@ -117,10 +116,7 @@ impl Problem {
         let times = || curves.iter().map(|curve| curve.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
-        let part = |(k, curve): (usize, Curve)| {
-            let whitening = Whitening::of(noise, k, curve.force.len())?;
-            Ok(Part::new(k, curve, whitening))
-        };
+        let part = |(index, curve): (usize, Curve)| Part::new(index, curve, noise);
         let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
         Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }

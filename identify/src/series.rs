@@ -8,7 +8,7 @@ use viscocontact::numeric::non_negative_least_squares;
 use viscocontact::rheology::{Elastic, GeneralizedMaxwell, Material};
 use viscocontact::states::ElasticStates;
 
-use crate::error::{Error, Result, within};
+use crate::error::{Result, same_length, within};
 use crate::fractional::spectrum;
 use crate::model::{Model, Scale};
 
@@ -99,10 +99,7 @@ impl Model {
     /// Refuses parameters outside their ranges.
     fn check(&self, parameters: &[f64]) -> Result<()> {
         let names = self.parameters();
-        if names.len() != parameters.len() {
-            let (len, expected) = (parameters.len(), names.len());
-            return Err(Error::WrongLength { field: "parameters", len, expected });
-        }
+        same_length("parameters", parameters.len(), names.len())?;
         for (name, &value) in names.iter().zip(parameters) {
             match Model::scale(name) {
                 Scale::Logit => within("exponent", value, value > 0.0 && value < 1.0, "> 0 and < 1")?,

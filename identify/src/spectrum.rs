@@ -135,11 +135,9 @@ impl Fit {
         // nobody expects more in a decade than the modulus at the shortest times: a weak prior, without which decades that the data do
         // not see have no deviation
         let scaled = total * total * columns.transpose() * &columns + Mat::<f64>::identity(count + 1, count + 1);
-        let inverse = scaled.llt(Side::Lower).map_err(|_| Error::NotConverged {
-            iterations: 0,
-            reason: "the forces of the decades are not finite: check the times and the noise",
-        })?;
-        let inverse = inverse.inverse();
+        let reason = "the forces of the decades are not finite: check the times and the noise";
+        let singular = |_| Error::NotConverged { iterations: 0, reason };
+        let inverse = scaled.llt(Side::Lower).map_err(singular)?.inverse();
         let decade = |(k, times): (usize, [f64; 2])| {
             let is_inside = |rate: f64| (times[0]..times[1]).contains(&(1.0 / rate));
             let inside = prony.moduli.iter().zip(&prony.rates).filter(|(_, rate)| is_inside(**rate));

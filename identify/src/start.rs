@@ -107,7 +107,6 @@ fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
 fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
     let [low, high] = [(2.0 * shortest).ln(), longest.ln()];
     let time = |k: f64| (low + (high - low) * k).exp();
-    let times = || (0..TIMES).map(move |k| time((k as f64 + 0.5) / TIMES as f64));
     let ratios = [0.6, 0.2, 0.04];
     if let Model::Prony(terms) = model {
         // the times spread over the whole range, or over a part of it
@@ -126,7 +125,7 @@ fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
         match names[index].as_str() {
             _ if index == 0 => vec![1.0],
             name if is_modulus(name) => ratios.to_vec(),
-            name if name.starts_with("tau") => times().collect(),
+            name if name.starts_with("tau") => (0..TIMES).map(|k| time((k as f64 + 0.5) / TIMES as f64)).collect(),
             _ if has_times => vec![0.35, 0.7],
             _ => vec![0.03, 0.1, 0.2, 0.35, 0.5, 0.75],
         }

@@ -69,8 +69,8 @@ impl Curve {
                 let [low, high] = means(&half);
                 (high - low).max(0.0)
             });
-            let is_at_low_drive = shallow > 2.0 * deep;
-            let drive_flipped = is_at_low_drive.then_some(Error::DriveFlipped { shallow, deep });
+            // the contact is at the low end of the drive
+            let drive_flipped = (shallow > 2.0 * deep).then_some(Error::DriveFlipped { shallow, deep });
             return Err(drive_flipped.unwrap_or(Error::ForceFlipped { fall }));
         }
         let squares: f64 = lowest.iter().map(|force| (force - shallow).powi(2)).sum();

@@ -1,7 +1,7 @@
 //! The columns of a recording in a file.
 
-use viscocontact::TextError;
 use viscocontact::input::{Quantity, TakenColumn, TextTable, WantedColumn};
+use viscocontact::{Error as ContactError, TextError};
 
 use crate::data::Recording;
 use crate::error::{Error, Result};
@@ -27,23 +27,22 @@ impl Recording {
     /// # Errors
     /// As [`Recording::from_csv`].
     pub fn from_table(table: &TextTable) -> Result<Recording> {
-        let required = |column: &WantedColumn| text_error(table.missing(column, ""));
-        let find = |column: &WantedColumn| table.find(column).map_err(text_error);
+        let required = |column: &WantedColumn| ContactError::from(table.missing(column, ""));
+        let find = |column: &WantedColumn| table.find(column).map_err(ContactError::from);
         let time = find(&TIME)?.ok_or_else(|| required(&TIME))?;
         let [force, deflection, drive, depth] = [find(&FORCE)?, find(&DEFLECTION)?, find(&DRIVE)?, find(&DEPTH)?];
-        if force.as_ref().or(deflection.as_ref()).is_none() {
-            return Err(required(&FORCE));
-        }
-        if drive.as_ref().or(depth.as_ref()).is_none() {
-            return Err(required(&DRIVE));
+        for (one, other, wanted) in [(&force, &deflection, &FORCE), (&drive, &depth, &DRIVE)] {
+            if one.is_none() && other.is_none() {
+                return Err(required(wanted).into());
+            }
         }
         let columns: Vec<TakenColumn> = [Some(time), force, deflection, drive, depth].into_iter().flatten().collect();
-        let units = columns.iter().map(TakenColumn::unit).collect::<Result<Vec<_>, _>>().map_err(text_error)?;
-        let rows = table.rows(&columns).map_err(text_error)?;
+        let units = columns.iter().map(TakenColumn::unit).collect::<Result<Vec<_>, _>>().map_err(ContactError::from)?;
+        let rows = table.rows(&columns).map_err(ContactError::from)?;
         for row in &rows {
             if let Some(place) = row.values.iter().position(|value| !value.is_finite()) {
                 let (column, text) = (columns[place].index() + 1, row.values[place].to_string());
-                return Err(text_error(TextError::NotNumeric { line: row.line, column, text }));
+                return Err(ContactError::from(TextError::NotNumeric { line: row.line, column, text }).into());
             }
         }
         for pair in rows.windows(2) {
@@ -59,8 +58,4 @@ impl Recording {
         let [force, deflection, drive, depth] = [&FORCE, &DEFLECTION, &DRIVE, &DEPTH].map(column);
         Ok(Recording { times: column(&TIME).unwrap_or_default(), force, deflection, drive, depth, columns })
     }
-}
-
-fn text_error(error: TextError) -> crate::Error {
-    viscocontact::Error::from(error).into()
 }

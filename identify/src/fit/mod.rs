@@ -103,8 +103,7 @@ impl Fit {
             false => jacobian,
         };
         let (inverse, limits) = inverse(&free, all, sigma)?;
-        let names = free.iter().map(|parameter| parameter.name.clone()).collect();
-        let spread = Bounds::of(names, &scales * inverse * scales.transpose(), sigma);
+        let spread = Bounds::new(&problem, inverse, &scales, sigma);
         // of slow residuals so many are independent, and their standard deviation is known as that of half as many (F. E. Satterthwaite, 1946)
         let independent = |part: &Part| {
             let phi = part.whitening.correlation().unwrap_or_default();

@@ -1,5 +1,7 @@
 //! Warnings, and the ranking of models.
 
+use std::f64::consts::LN_2;
+
 use viscocontact::contact::StepReport;
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
@@ -91,8 +93,6 @@ const UNLIKELY: f64 = 0.01;
 const GREAT_CORRELATION: f64 = 0.98;
 /// Sums of squares that differ by less than this fraction are of one minimum.
 const SAME_SUM: f64 = 1e-6;
-/// ln 2.
-const FACTOR_OF_TWO: f64 = std::f64::consts::LN_2;
 
 impl Fit {
     /// What a user should know before the parameters are used.
@@ -119,7 +119,7 @@ impl Fit {
             if let Some(limit) = estimate.limit {
                 warnings.push(FitWarning::AtLimit { parameter, limit });
             } else if of_material.contains(&parameter) {
-                if estimate.deviation > FACTOR_OF_TWO {
+                if estimate.deviation > LN_2 {
                     warnings.push(FitWarning::Undetermined { parameter: parameter.clone() });
                 }
                 if parameter.starts_with("tau") && (estimate.value < 0.5 * shortest || estimate.value > 2.0 * longest) {
@@ -158,15 +158,12 @@ pub fn ranked(candidates: impl IntoIterator<Item = Result<Fit>>) -> Result<Vec<(
     let mut fits: Vec<Fit> = fitted.collect();
     fits.sort_by(|a, b| a.aicc().total_cmp(&b.aicc()));
     let Some(best) = fits.first() else { return failure.map_or(Ok(Vec::new()), Err) };
-    let of_best = best.aicc();
     let is_same = |fit: &Fit| !fit.identification.robust && fit.curves == best.curves;
     if fits.len() > 1 && !fits.iter().all(is_same) {
         return Err(Error::OtherData);
     }
-    let total: f64 = fits.iter().map(|fit| (-0.5 * (fit.aicc() - of_best)).exp()).sum();
-    let of = |fit: Fit| {
-        let difference = fit.aicc() - of_best;
-        (fit, difference, (-0.5 * difference).exp() / total)
-    };
-    Ok(fits.into_iter().map(of).collect())
+    let differences: Vec<f64> = fits.iter().map(|fit| fit.aicc() - best.aicc()).collect();
+    let weight = |difference: f64| (-0.5 * difference).exp();
+    let total: f64 = differences.iter().copied().map(weight).sum();
+    Ok(fits.into_iter().zip(differences).map(|(fit, more)| (fit, more, weight(more) / total)).collect())
 }

@@ -32,10 +32,9 @@ impl Identification {
 
     /// Sets correlation and weights of each curve by the residuals at a minimum; whether they were as good as found.
     pub(super) fn reweigh(&self, problem: &mut Problem, minimum: &LeastSquares) -> Result<bool> {
-        let mut bare = problem.clone();
+        let mut bare = problem.without_outliers();
         for part in &mut bare.parts {
             part.scale = 1.0;
-            part.outliers.fill(1.0);
             if self.fits_correlation() {
                 part.whitening = Whitening::Autoregressive(0.0);
             }

@@ -108,7 +108,6 @@ impl Identification {
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
             best = best.and_then(|minimum| self.least(problem, std::iter::once(minimum.coordinates), AGREED));
-            let sum = |found: &Result<LeastSquares>| found.as_ref().map_or(f64::INFINITY, LeastSquares::sum);
             if inside.as_ref().is_none_or(|(_, least, _)| sum(&best) > *least) {
                 let again = self.least(problem, start, AGREED);
                 best = if sum(&again) < sum(&best) { again } else { best };
@@ -122,26 +121,25 @@ impl Identification {
         let mut best: Result<LeastSquares> = Err(Error::NoContact { curve: 0 });
         let (mut least, mut steps) = (f64::INFINITY, 0);
         for start in starts {
-            let minimum = match self.minimum(problem, start) {
-                Ok(minimum) => minimum,
-                Err(error) => {
-                    best = best.map_err(|_| error);
-                    continue;
-                }
-            };
-            steps += minimum.steps;
-            let sum = minimum.sum();
+            let found = self.minimum(problem, start);
+            steps += found.as_ref().map_or(0, |minimum| minimum.steps);
+            let sum = sum(&found);
             let [less, more] = if sum < least { [sum, least] } else { [least, sum] };
             if sum < least || best.is_err() {
-                (least, best) = (least.min(sum), Ok(minimum));
+                (least, best) = (least.min(sum), found);
             }
-            if less <= problem.rounding() || more <= (1.0 + agreed) * less {
+            let is_same = more.is_finite() && more <= (1.0 + agreed) * less;
+            if is_same || less <= problem.rounding() {
                 break;
             }
         }
-        best.map(|mut minimum| {
-            minimum.steps = steps;
-            minimum
-        })
+        let mut best = best?;
+        best.steps = steps;
+        Ok(best)
     }
+}
+
+/// The sum of squares of a minimum, infinite where none is found.
+fn sum(found: &Result<LeastSquares>) -> f64 {
+    found.as_ref().map_or(f64::INFINITY, LeastSquares::sum)
 }

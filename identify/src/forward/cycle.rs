@@ -124,15 +124,15 @@ impl<'a, const N: usize> Cycle<'a, N> {
         Sample { force: self.force().value(), depth: self.depth.value(), contact_depth }
     }
 
-    /// Σ over the terms after the present interval.
-    fn decayed(&self, of: impl Fn(&Term<N>) -> Real<N>) -> Real<N> {
-        let pairs = self.terms.iter().zip(&self.moments.decay);
+    /// Σ over the terms after an interval.
+    fn decayed(&self, moments: &Moments<N>, of: impl Fn(&Term<N>) -> Real<N>) -> Real<N> {
+        let pairs = self.terms.iter().zip(&moments.decay);
         pairs.fold(Real::from(0.0), |sum, (term, &decay)| sum + decay * of(term))
     }
 
-    /// Σ Eᵢ M₀ of the present interval: the pressure of a column that the tip moves by 1 m.
-    fn stiffness(&self) -> Real<N> {
-        let pairs = self.prony.moduli.iter().zip(&self.moments.moments);
+    /// Σ Eᵢ M₀ of an interval: the pressure of a column that the tip moves by 1 m.
+    fn stiffness(&self, moments: &Moments<N>) -> Real<N> {
+        let pairs = self.prony.moduli.iter().zip(&moments.moments);
         pairs.fold(Real::from(0.0), |sum, (&modulus, moments)| sum + modulus * moments[0])
     }
 
@@ -149,13 +149,13 @@ impl<'a, const N: usize> Cycle<'a, N> {
         }
         self.moments.set(time - self.time, !is_separated, &self.prony.rates);
         // where the tip would be, and the pressure at the edge, if the contact neither grew nor shrank
-        let (unit, stiffness) = (self.stiffness(), self.edge.elastic.stiffness);
+        let (unit, stiffness) = (self.stiffness(&self.moments), self.edge.elastic.stiffness);
         let mut depth = z;
         if self.springs() {
-            let excess = z - self.depth - self.give * self.decayed(|term| term.force);
+            let excess = z - self.depth - self.give * self.decayed(&self.moments, |term| term.force);
             depth = self.depth + excess / (Real::from(1.0) + self.give * stiffness * unit);
         }
-        let pressure = (self.decayed(|term| term.edge) + unit * (depth - self.depth)).value();
+        let pressure = (self.decayed(&self.moments, |term| term.edge) + unit * (depth - self.depth)).value();
         let scale: f64 = self.prony.moduli.iter().map(|modulus| modulus.value().abs()).sum::<f64>() * self.greatest;
         if pressure > 0.0 {
             self.grow(sample, time, z, depth.value())?;
@@ -237,8 +237,8 @@ impl<'a, const N: usize> Cycle<'a, N> {
                 self.moments.set(time - self.time, false, &self.prony.rates);
             }
             // where the column at the edge would be, had it been free
-            let unit = self.stiffness();
-            let released = self.depth - self.decayed(|term| term.edge) / unit;
+            let unit = self.stiffness(&self.moments);
+            let released = self.depth - self.decayed(&self.moments, |term| term.edge) / unit;
             let start = (self.edge.extent, self.edge.elastic);
             let width = next.map(|next| (next - start.0, after - released));
             let mut sums = [[zero; 3]; 4];
@@ -250,7 +250,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
                     (0..3).for_each(|k| sum[k] += factor * moments[k]);
                 }
             }
-            let past = self.decayed(|term| term.force);
+            let past = self.decayed(&self.moments, |term| term.force);
             let is_fresh = self.nodes[self.nodes.len() - 1].fresh && next.is_none();
             let (tip, depth_before) = (self.tip, self.depth);
             // the share of the way to the next column, the edge, and the growth of a contact that ends with the tip at a depth
@@ -347,12 +347,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
         edge: impl Fn(&Columns<'a, N>, usize, Real<N>) -> Real<N>,
     ) {
         let zero = Real::from(0.0);
-        let (mut unit, mut pressure) = (zero, zero);
-        for (i, term) in self.terms.iter().enumerate() {
-            unit += self.prony.moduli[i] * self.part.moments[i][0];
-            pressure += self.part.decay[i] * term.edge;
-        }
-        let released = pressure / unit;
+        let released = self.decayed(&self.part, |term| term.edge) / self.stiffness(&self.part);
         for i in 0..self.terms.len() {
             let (modulus, decay, moments) = (self.prony.moduli[i], self.part.decay[i], &self.part.moments[i]);
             let term = &self.terms[i];

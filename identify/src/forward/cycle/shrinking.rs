@@ -48,7 +48,7 @@ impl<const N: usize> Cycle<'_, N> {
             self.since[i] = decay;
         }
         let depth = if self.springs() { z - self.give * force } else { z };
-        let (unit, tip) = (self.stiffness(), self.decayed(|term| term.tip));
+        let (unit, tip) = (self.stiffness(&self.moments), self.decayed(&self.moments, |term| term.tip));
         Ok((at, [unit * (depth - self.depth) + tip - past, depth, (past - tip) / unit]))
     }
 
@@ -68,7 +68,12 @@ impl<const N: usize> Cycle<'_, N> {
                 self.release(sample, at.extent, rise);
             }
             if node == 0 {
-                self.separate(z);
+                // the last column has left the tip
+                self.nodes.clear();
+                self.past.clear();
+                self.terms.fill(Term::default());
+                self.depth = z;
+                self.is_node = true;
                 return Ok(());
             }
             (node, upper, outside) = (node - 1, one, pressure.value());
@@ -101,14 +106,5 @@ impl<const N: usize> Cycle<'_, N> {
         };
         let column = Column { extent, surface: self.depth + rise, sample };
         self.columns.push(column, (0..self.terms.len()).map(state));
-    }
-
-    /// The last column has left the tip.
-    fn separate(&mut self, z: Real<N>) {
-        self.nodes.clear();
-        self.past.clear();
-        self.terms.fill(Term::default());
-        self.depth = z;
-        self.is_node = true;
     }
 }
