@@ -61,7 +61,7 @@ pub enum Error {
 
     /// The tip never touches the sample.
     #[error(
-        "curve {curve}: the force nowhere rises above its scatter, so the tip never touches the sample: check the sign of the force and of the drive (both grow toward the sample), or give the contact point"
+        "curve {curve}: the force nowhere rises above its scatter, or no more than correlated noise does, so the tip seems not to touch the sample: check the sign of the force and of the drive (both grow toward the sample), average curves against noise, or give the contact point"
     )]
     NoContact {
         /// Index of the curve.

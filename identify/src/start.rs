@@ -9,8 +9,9 @@ use crate::problem::Problem;
 const STARTS: usize = 4;
 /// Change of the moduli at which they are scaled to the data.
 const ENOUGH: f64 = 1e-3;
-/// Rounds in which moduli are scaled to the data: through a spring, forces are not proportional to them; and the candidates that have more than one.
+/// Rounds in which moduli are scaled to the data: through a spring, forces are not proportional to them.
 const ROUNDS: usize = 3;
+/// Candidates that are scaled in all rounds.
 const SCALED: usize = 12;
 /// Values of a time, between the shortest interval and the length of the curve.
 const TIMES: usize = 6;
@@ -40,13 +41,15 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
         reference = reference.max(modulus);
     }
     let unit = if reference > 0.0 { reference } else { 1.0 };
+    // the sum is that before the last scaling, where a modulus is given
+    let first = if problem.parameters.iter().any(|of| of.given.is_some() && is_modulus(&of.name)) { 2 } else { 1 };
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut failure = Error::NoContact { curve: 0 };
     for candidate in candidates(problem.model, problem.window) {
         for ((value, parameter), size) in values.iter_mut().zip(&problem.parameters).zip(candidate) {
             *value = parameter.given.unwrap_or(if is_modulus(&parameter.name) { size * unit } else { size });
         }
-        match scaled(problem, &mut values, 1) {
+        match scaled(problem, &mut values, first) {
             Ok(sum) if sum.is_finite() => found.push((sum, values.clone())),
             Ok(_) => {}
             Err(error) => failure = error,
@@ -58,7 +61,7 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.truncate(SCALED);
     for (sum, values) in &mut found {
-        *sum = scaled(problem, values, ROUNDS - 1).unwrap_or(f64::INFINITY);
+        *sum = scaled(problem, values, ROUNDS - first).unwrap_or(f64::INFINITY);
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(found.into_iter().take(STARTS).map(|(_, values)| problem.coordinates(&values)).collect())
@@ -68,7 +71,8 @@ fn is_modulus(name: &str) -> bool {
     name.starts_with('E')
 }
 
-/// Scales the free moduli to the data in some rounds; returns the sum of squared deviations, if forces are proportional to the moduli.
+/// Scales the free moduli to the data in some rounds; returns the sum of squared deviations: after the last scaling, if forces are
+/// proportional to the moduli, and before it where a modulus is given.
 fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
     let mut sum = f64::INFINITY;
     for _ in 0..rounds {

@@ -73,7 +73,10 @@ fn influences_that_no_body_has_are_refused() {
         (wave(|q1, _| 7.0 - q1), "wave", [2, 0]),
         (wave(|_, _| 1e101), "wave", [0, 0]),
     ] {
-        assert!(matches!(error, Error::Kernel(KernelError::InvalidInfluence { of, at, .. }) if of == what && at == cell), "{error}");
+        assert!(
+            matches!(error, Error::Kernel(KernelError::InvalidInfluence { of, at, .. }) if of == what && at == cell),
+            "{error}"
+        );
     }
     // the neighbours sink in more than the loaded cell
     let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });
