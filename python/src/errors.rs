@@ -83,13 +83,17 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 9] = [
+const NAMES: [(&str, &str); 10] = [
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
     ),
     ("Builder::times", "times="),
     ("CreepSeries::extrapolated", "extrapolated=True of Measurements.fit"),
+    (
+        "choose the other Frame with Settings::with_frame",
+        "give frame=\"indenter\" or frame=\"bodies\", whichever it is not",
+    ),
     ("set Settings::edge to Edge::Allow", "give edge=\"allow\""),
     ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
     ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),

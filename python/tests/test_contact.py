@@ -104,7 +104,7 @@ ERRORS = {
     "a file of another kind": (OSError, "line 1, column 1", lambda: vc.HeightMap.read(__file__, unit="um", lengths=1.0)),
     "memory": (MemoryError, "take fewer cells", lambda: ball(200_000)),
     "convergence": (vc.ConvergenceError, "iterations", lambda: ball(64, max_iterations=1).step(0.0, vc.Load.force(1.0))),
-    "what is not covered": (NotImplementedError, "Settings.frame", lambda: ball().step_over((1, 0), 1.0, vc.Load.force(1.0))),
+    "what is not covered": (NotImplementedError, "frame=\"indenter\"", lambda: ball().step_over((1, 0), 1.0, vc.Load.force(1.0))),
     "an option": (ValueError, "\"active_set\", \"polonsky_keer\"", lambda: ball(solver="fast")),
     "a keyword": (TypeError, "unexpected keyword argument 'toleranse'", lambda: ball(toleranse=1e-3)),
     "a run": (TypeError, "give dt or tolerance", lambda: ball().follow(vc.Load.force(1.0), 1.0, dt=1.0, tolerance=1.0)),
