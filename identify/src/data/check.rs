@@ -102,12 +102,13 @@ impl Curve {
             times.iter().zip(drive).map(at).collect()
         };
         let tried = |count: usize| (0..count).map(move |k| k as f64 / count as f64);
+        let independent = |column: &[f64], phi: f64| column.windows(2).map(|w| w[1] - phi * w[0]).collect::<Vec<_>>();
+        let correlations = tried(2 * TRIED).map(|at| 1.0 - LEAST_CHANGE.powf(at));
+        let forces: Vec<_> = correlations.map(|phi| (phi, independent(self.force(), phi))).collect();
         // the independent parts of the noise that is left, over all correlations
         let least_squares = |body: &[f64]| {
-            let squares = tried(2 * TRIED).map(|at| {
-                let phi = 1.0 - LEAST_CHANGE.powf(at);
-                let independent = |column: &[f64]| column.windows(2).map(|w| w[1] - phi * w[0]).collect::<Vec<_>>();
-                let [_, slope, squares] = line(&independent(body), &independent(self.force()), true);
+            let squares = forces.iter().map(|(phi, force)| {
+                let [_, slope, squares] = line(&independent(body, *phi), force, true);
                 // the variance of the noise is 1/(1 − φ²) of that of its independent parts, in the likelihood of the first force
                 if slope >= 0.0 { squares / (1.0 - phi * phi).powf(1.0 / points as f64) } else { f64::INFINITY }
             });

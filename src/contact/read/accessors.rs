@@ -224,7 +224,7 @@ impl ViscoelasticContact {
         self.computation.trial.passes.as_ref().map(|passes| passes.report)
     }
 
-    /// Refuses what such a contact does not cover.
+    /// Refuses what this contact does not cover.
     pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
         case.unless(|special| match special {
             Special::Attraction => self.scene.attraction.is_some(),

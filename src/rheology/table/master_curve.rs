@@ -39,7 +39,7 @@ pub struct MasterCurve {
     reference: f64,
     /// By temperature, ascending.
     isotherms: Vec<Isotherm>,
-    /// The shift of each isotherm from the reference. The disagreement is that of the shift from the neighbouring isotherm.
+    /// The shift of each isotherm from the reference. The disagreement belongs to the shift from the neighbouring isotherm.
     shifts: Vec<Shift>,
 }
 

@@ -111,8 +111,9 @@ impl Balance {
         let (mut shift, mut lifts) = (0.0, false);
         for _ in 0..SHORTENINGS * 4 {
             let [sum, free] = rows.sum_terms(|k| {
-                let (h, moves) = (gap[k] + x[k], lifts || gap[k] + x[k] > 0.0);
-                Some(if moves && h + shift > 0.0 { [x[k] + shift, 1.0] } else { [-gap[k], 0.0] })
+                let h = gap[k] + x[k];
+                let moves = (lifts || h > 0.0) && h + shift > 0.0;
+                Some(if moves { [x[k] + shift, 1.0] } else { [-gap[k], 0.0] })
             });
             if sum.abs() <= scale || free == 0.0 && sum > 0.0 {
                 break;

@@ -275,17 +275,17 @@ impl Descent<'_> {
             if !(softened > 0.0 && convex > 0.0) || 1.0 - share < NEGATIVE {
                 break;
             }
+            // (softening − share M) of a direction: the gradient of the quotient, of v, and its bend, of p
+            let left_of = |d: &[f64], image: &[f64], k: usize| softening[k] * d[k] - share * image[k];
             for_each_band([&mut *w], |first, [w]| {
-                w.iter_mut().zip(first..).for_each(|(w, k)| {
-                    *w = if is_open(k) { softening[k] * v[k] - share * image[k] } else { 0.0 };
-                });
+                w.iter_mut().zip(first..).for_each(|(w, k)| *w = if is_open(k) { left_of(v, image, k) } else { 0.0 });
             });
             smooth(window, w);
             counts.convolutions += 1;
-            // along p and w the quotient bends by (softening - share M), to which the next p is conjugate
-            let bends = |k: usize| softening[k] * p[k] - share * image_of_p[k];
+            // the next p is conjugate to p in the bend of the quotient
             let [steepest, of_p, of_w] = rows.sum_terms(|k| {
-                Some([w[k] * (softening[k] * v[k] - share * image[k]), p[k] * bends(k), w[k] * bends(k)])
+                let of_last = left_of(p, image_of_p, k);
+                Some([w[k] * left_of(v, image, k), p[k] * of_last, w[k] * of_last])
             });
             let square = (steepest / convex).max(0.0);
             let left = square.sqrt();
