@@ -91,35 +91,20 @@ pub(crate) fn softening(law: &dyn Attraction) -> f64 {
     steepest.max(work / range / range)
 }
 
-/// Implements [`Attraction`] for a wrapper by the law inside.
+/// Implements [`Attraction`] for a pointer by the law that it points to.
 macro_rules! forward_attraction {
-    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
-        impl $(<$generic: $crate::adhesion::Attraction + ?Sized>)? $crate::adhesion::Attraction for $outer {
-            fn traction(&$self, gap: f64) -> f64 {
-                $inner.traction(gap)
-            }
-
-            fn energy(&$self, gap: f64) -> f64 {
-                $inner.energy(gap)
-            }
-
-            fn work(&$self) -> f64 {
-                $inner.work()
-            }
-
-            fn range(&$self) -> f64 {
-                $inner.range()
-            }
-
-            fn failure(&$self) -> Option<$crate::UserError> {
-                $inner.failure()
-            }
-        }
+    ($($pointer:ty),*) => {
+        $(forward! {
+            Attraction, (<T> self: $pointer => **self),
+            traction(gap: f64) -> f64;
+            energy(gap: f64) -> f64;
+            work() -> f64;
+            range() -> f64;
+            failure() -> Option<UserError>;
+        })*
     };
 }
-forward_attraction!(<T> self: &T => (**self));
-forward_attraction!(<T> self: Box<T> => (**self));
-forward_attraction!(<T> self: std::sync::Arc<T> => (**self));
+forward_attraction!(&T, Box<T>, std::sync::Arc<T>);
 
 /// Work of separation and range of a law.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,6 @@
 //! What sort of failure an error is.
 
-use crate::error::{
-    AdhesionError, Error, KernelError, MapError, MaterialError, RanksError, SlidingError, StatesError, StepError,
-};
+use crate::error::{AdhesionError, Error, KernelError, MapError, MaterialError, SlidingError, StatesError, StepError};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value and cure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -33,33 +31,9 @@ impl Error {
     /// ```
     pub fn kind(&self) -> ErrorKind {
         match self {
-            Error::OutOfRange { .. }
-            | Error::CountOutOfRange { .. }
-            | Error::WrongLength { .. }
-            | Error::OutOfOrder { .. }
-            | Error::Load(_)
-            | Error::InvalidGap { .. }
-            | Error::NothingToTouch { .. }
-            | Error::Missing { .. }
-            | Error::Table(_)
-            | Error::OtherContact
-            | Error::NoDomain { .. }
-            | Error::User(_) => ErrorKind::Value,
             Error::File(_) | Error::Text(_) | Error::Output(_) => ErrorKind::File,
             #[cfg(feature = "checkpoint")]
             Error::Checkpoint { .. } => ErrorKind::File,
-            Error::OutOfMemory { .. } => ErrorKind::Memory,
-            Error::Cancelled { .. } => ErrorKind::Cancelled,
-            Error::NotCovered { .. } => ErrorKind::Unsupported,
-            Error::Kernel(error) => match error {
-                KernelError::NoStress { .. } => ErrorKind::Unsupported,
-                _ => ErrorKind::Value,
-            },
-            Error::Material(error) => match error {
-                MaterialError::ChangingPoisson { .. } => ErrorKind::Unsupported,
-                MaterialError::PoorFit { .. } => ErrorKind::Convergence,
-                _ => ErrorKind::Value,
-            },
             Error::Map(error) => match error {
                 MapError::NotFinite { .. }
                 | MapError::NothingKnown
@@ -68,30 +42,22 @@ impl Error {
                 | MapError::NotFilled { .. } => ErrorKind::Value,
                 _ => ErrorKind::File,
             },
-            Error::Ranks(error) => match error {
-                RanksError::Left { .. } | RanksError::Failed { .. } | RanksError::Apart => ErrorKind::Cancelled,
-            },
-            Error::Adhesion(error) => match error {
-                AdhesionError::NotConverged { .. } => ErrorKind::Convergence,
-                _ => ErrorKind::Value,
-            },
-            Error::Sliding(error) => match error {
-                SlidingError::NotPassive { .. } => ErrorKind::Value,
-                SlidingError::NotConverged { .. } => ErrorKind::Convergence,
-            },
-            Error::States(error) => match error {
-                StatesError::Beyond { .. } | StatesError::Below { .. } => ErrorKind::Value,
-                StatesError::OutOfOrder { .. } => ErrorKind::Convergence,
-                _ => ErrorKind::Unsupported,
-            },
-            Error::Step(error) => match error {
-                StepError::TiltOfPeriodic { .. } => ErrorKind::Unsupported,
-                StepError::HistoryFull { .. } => ErrorKind::Memory,
-                StepError::NotConverged { .. } | StepError::StepTooShort { .. } | StepError::NotSteady { .. } => {
-                    ErrorKind::Convergence
-                }
-                _ => ErrorKind::Value,
-            },
+            Error::OutOfMemory { .. } | Error::Step(StepError::HistoryFull { .. }) => ErrorKind::Memory,
+            Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
+            Error::Material(MaterialError::PoorFit { .. })
+            | Error::Adhesion(AdhesionError::NotConverged { .. })
+            | Error::Sliding(SlidingError::NotConverged { .. })
+            | Error::States(StatesError::OutOfOrder { .. })
+            | Error::Step(
+                StepError::NotConverged { .. } | StepError::StepTooShort { .. } | StepError::NotSteady { .. },
+            ) => ErrorKind::Convergence,
+            Error::States(StatesError::Beyond { .. } | StatesError::Below { .. }) => ErrorKind::Value,
+            Error::NotCovered { .. }
+            | Error::Kernel(KernelError::NoStress { .. })
+            | Error::Material(MaterialError::ChangingPoisson { .. })
+            | Error::States(_)
+            | Error::Step(StepError::TiltOfPeriodic { .. }) => ErrorKind::Unsupported,
+            _ => ErrorKind::Value,
         }
     }
 }

@@ -236,7 +236,7 @@ impl InfluenceKernel {
         let response = move |at: [usize; 2]| {
             let (i, k) = (at[1 - axis], at[axis]);
             let added = added.get(k).map_or(0.0, |remainder| remainder.on_line(i as f64 * side, side));
-            strip.coefficient(i, wave_number(k, cells, along)) + added
+            strip.at(i as f64 * side, wave_number(k, cells, along)) + added
         };
         InfluenceKernel { datum, ..InfluenceKernel::new(grid, body, [axis == 0, axis == 1], response) }
     }

@@ -153,28 +153,10 @@ impl Line {
         self.inverse.process_with_scratch(buffer, scratch);
     }
 
-    /// Multiplies the coefficients of a folded complex line by the real `spectrum` in one pass, between
+    /// Multiplies the real and the imaginary parts of the coefficients of a folded complex line by a spectrum each in one pass, between
     /// [`Line::bare_forward`] and [`Line::bare_inverse`].
     #[inline(always)]
-    pub(crate) fn multiply_folded(&self, buffer: &mut [Complex64], spectrum: &[f64]) {
-        // with X = a + b, a = w V_k, b = conj(w) V_(L−k), the same for L − k, and the inverse:
-        // V_k ← (S + S') V_k + (S − S') conj(w)² V_(L−k)
-        let last = buffer.len();
-        buffer[0] *= spectrum[0] + spectrum[0];
-        let spectra = spectrum[1..].iter().zip(spectrum.iter().rev());
-        for (((v, mirror), (s, other)), w) in pairs(buffer).zip(spectra).zip(&self.twist[1..]) {
-            let (sum, square) = (*s + *other, *w * *w * (*s - *other));
-            (*v, *mirror) = (*v * sum + *mirror * square.conj(), *mirror * sum + *v * square);
-        }
-        if last.is_multiple_of(2) {
-            let s = spectrum[last / 2];
-            buffer[last / 2] *= s + s;
-        }
-    }
-
-    /// [`Line::multiply_folded`] with separate spectra for the real and imaginary parts.
-    #[inline(always)]
-    pub(crate) fn multiply_folded_apart(&self, buffer: &mut [Complex64], first: &[f64], second: &[f64]) {
+    pub(crate) fn multiply_folded(&self, buffer: &mut [Complex64], first: &[f64], second: &[f64]) {
         let last = buffer.len();
         let (start, middle) = (buffer[0] + buffer[0], buffer[last / 2] + buffer[last / 2]);
         buffer[0] = Complex64::new(start.re * first[0], start.im * second[0]);

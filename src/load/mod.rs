@@ -15,7 +15,6 @@
 mod function;
 mod history;
 pub mod laws;
-mod loads;
 mod periodic;
 mod piecewise_linear;
 mod ramp;
@@ -24,7 +23,6 @@ mod step;
 
 pub use crate::error::LoadError;
 pub use function::FnHistory;
-pub use loads::Loads;
 pub use periodic::Periodic;
 pub use piecewise_linear::PiecewiseLinear;
 pub use ramp::Ramp;
@@ -123,6 +121,13 @@ impl fmt::Display for Load {
 const VALUES: usize = 4;
 
 const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];
+
+/// The load of one rigid body, where a method takes a load for each.
+impl AsRef<[Load]> for Load {
+    fn as_ref(&self) -> &[Load] {
+        std::slice::from_ref(self)
+    }
+}
 
 impl Load {
     /// A normal force \[N\] on a body that cannot tilt (Eq. 4 of the [paper](crate::paper)); 0 unloads.

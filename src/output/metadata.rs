@@ -2,7 +2,7 @@
 
 use crate::contact::{Contact, Settings};
 use crate::output::Field;
-use crate::rheology::{Material, TemperatureHistory};
+use crate::rheology::{Material, TemperatureHistory, Volume};
 
 /// Units of the values written besides the fields.
 const UNITS: [(&str, &str); 7] = [
@@ -145,17 +145,17 @@ fn settings(settings: &Settings) -> String {
 }
 
 fn material(material: &Material) -> String {
-    let bodies = material.descriptions().map(|body| {
+    let bodies = material.bodies.iter().map(|body| {
         let volume = match body.volume {
-            Ok(poisson) => ("poisson", number(poisson)),
-            Err(bulk_modulus) => ("bulk_modulus", number(bulk_modulus)),
+            Volume::Proportional { poisson, .. } => ("poisson", number(poisson)),
+            Volume::Bulk(at_once, ..) => ("bulk_modulus", number(at_once)),
         };
-        let creep = match body.contact_creep() {
-            Some(creep) => {
+        let creep = match body.contact_spectrum() {
+            Ok(Some(creep)) => {
                 let ends = [("glassy", number(creep.glassy())), ("fluidity", number(creep.fluidity()))];
                 ("contact_creep", object(ends.into_iter().chain([("terms", pairs(creep.terms()))])))
             }
-            None => ("rheology", text(&body.rheology())),
+            _ => ("rheology", text(&format!("{:?}", body.rheology))),
         };
         object([volume, creep])
     });

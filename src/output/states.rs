@@ -13,7 +13,8 @@ use crate::file::{npy, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
 use crate::output::npz::Archive;
-use crate::states::{ElasticState, ElasticStates, Pressed, Rest};
+use crate::solver::RigidMotion;
+use crate::states::{ElasticState, ElasticStates, Pressed};
 use crate::{Grid, input};
 
 /// An array with a number for each state: its name, and how the number is read from the state and put into it.
@@ -73,7 +74,7 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
     let count = table.len();
     let [tilts, tilt_rates] = [|state: &ElasticState| state.tilt, |state: &ElasticState| state.tilt_rate]
         .map(|of| table.iter().flat_map(of).collect::<Vec<f64>>());
-    let Rest { approach, tilt: [tilt1, tilt2] } = states.rest;
+    let RigidMotion { approach, tilt: [tilt1, tilt2] } = states.rest;
     let given = states.tilt.map(|tilt| match tilt {
         Tilt::Fixed(angle) => [0.0, angle],
         Tilt::Free { at } => [1.0, at],
@@ -134,7 +135,7 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
         state.tilt_rate.copy_from_slice(&tilt_rates[2 * k..][..2]);
     }
     let rest = array("rest", 3)?;
-    let rest = Rest { approach: rest[0], tilt: [rest[1], rest[2]] };
+    let rest = RigidMotion { approach: rest[0], tilt: [rest[1], rest[2]] };
     let given = array("given_tilt", 4)?;
     let tilt =
         [0, 2].map(|k| if given[k] == 1.0 { Tilt::Free { at: given[k + 1] } } else { Tilt::Fixed(given[k + 1]) });

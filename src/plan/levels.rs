@@ -13,7 +13,8 @@ use crate::plan::difference::{Differences, relative};
 use crate::plan::error_law::ErrorLaw;
 use crate::plan::rings::Rings;
 use crate::plan::scene::{Run, StepState, TrialScene};
-use crate::states::{ElasticStates, Rest, StatesContact};
+use crate::solver::RigidMotion;
+use crate::states::{ElasticStates, StatesContact};
 
 /// Number of parts of a step of the run that is taken as exact, fewer where all parts would be more than so many: their
 /// groups of levels are as many.
@@ -90,7 +91,7 @@ impl Curve {
             // dl/dδ of a power l ∝ δ^(1/n)
             (level, elastic.rest + depth, level / (depth * power(around, 1)), area)
         };
-        let at_rest = Rest { approach: elastic.rest, tilt: [0.0; 2] };
+        let at_rest = RigidMotion { approach: elastic.rest, tilt: [0.0; 2] };
         let states = ElasticStates::from_rows(points.iter().enumerate().map(row), at_rest, tilt)?;
         Ok(Curve { states, line })
     }

@@ -2,41 +2,7 @@
 
 use std::fmt;
 
-use crate::rheology::material::{Body, Volume};
-use crate::rheology::{CreepSpectrum, Material};
-
-/// What a material says of one of its bodies.
-#[derive(Debug)]
-pub(crate) struct BodyDescription<'a> {
-    /// Poisson's ratio, if constant by definition; else the bulk modulus at t = 0 \[Pa\].
-    pub(crate) volume: Result<f64, f64>,
-    body: &'a Body,
-}
-
-impl BodyDescription<'_> {
-    /// The contact creep compliance, if it has an exact series.
-    pub(crate) fn contact_creep(&self) -> Option<CreepSpectrum> {
-        self.body.contact_spectrum().ok()?
-    }
-
-    /// The rheology as Rust prints it.
-    pub(crate) fn rheology(&self) -> String {
-        format!("{:?}", self.body.rheology)
-    }
-}
-
-impl Material {
-    /// The bodies, in the order in which they were joined.
-    pub(crate) fn descriptions(&self) -> impl Iterator<Item = BodyDescription<'_>> {
-        self.bodies.iter().map(|body| {
-            let volume = match body.volume {
-                Volume::Proportional { poisson, .. } => Ok(poisson),
-                Volume::Bulk(bulk_modulus, ..) => Err(bulk_modulus),
-            };
-            BodyDescription { volume, body }
-        })
-    }
-}
+use crate::rheology::{Material, Volume};
 
 /// The line that `Display` prints. A rheology may be a closure, so that a material is not read back: save the arguments of its models, or
 /// its [`CreepSpectrum`](crate::rheology::CreepSpectrum), which is.
@@ -60,17 +26,17 @@ impl serde::Serialize for Material {
 /// ```
 impl fmt::Display for Material {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (k, body) in self.descriptions().enumerate() {
+        for (k, body) in self.bodies.iter().enumerate() {
             if k > 0 {
                 f.write_str(" against ")?;
             }
             match body.volume {
-                Ok(0.5) => f.write_str("incompressible")?,
-                Ok(poisson) => write!(f, "Poisson's ratio {poisson}")?,
-                Err(bulk) => write!(f, "bulk modulus {bulk:.3e} Pa")?,
+                Volume::Proportional { poisson: 0.5, .. } => f.write_str("incompressible")?,
+                Volume::Proportional { poisson, .. } => write!(f, "Poisson's ratio {poisson}")?,
+                Volume::Bulk(at_once, ..) => write!(f, "bulk modulus {at_once:.3e} Pa")?,
             }
-            let Some(creep) = body.contact_creep() else {
-                let glassy = body.body.contact_compliance(0.0);
+            let Ok(Some(creep)) = body.contact_spectrum() else {
+                let glassy = body.contact_compliance(0.0);
                 if glassy > 0.0 {
                     write!(f, ", 1/C {:.3e} Pa at t = 0", 1.0 / glassy)?;
                 } else {

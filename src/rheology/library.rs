@@ -42,7 +42,8 @@ pub struct PublishedMaterial {
     /// Modulus \[Pa\] of which the strengths of the terms are fractions.
     scale: f64,
     equilibrium: f64,
-    terms: Terms,
+    /// Strength and relaxation time \[s\] of a term in each line.
+    terms: &'static str,
     /// Temperature of the measurement \[K\], if published.
     pub temperature: Option<f64>,
     /// Poisson's ratio, if published.
@@ -62,8 +63,11 @@ impl PublishedMaterial {
 
     /// (Modulus \[Pa\], relaxation time \[s\]) of each term, as published.
     pub fn terms(&self) -> Vec<(f64, f64)> {
-        let [strengths, times] = self.terms;
-        strengths.iter().zip(times).map(|(strength, &time)| (strength * self.scale, time)).collect()
+        let term = |line: &str| {
+            let (strength, time) = line.split_once(' ')?;
+            Some((strength.parse::<f64>().ok()? * self.scale, time.parse().ok()?))
+        };
+        self.terms.lines().filter_map(term).collect()
     }
 
     /// The time–temperature law, if published.
@@ -109,14 +113,6 @@ pub fn find(name: &str) -> Result<&'static PublishedMaterial> {
     })
 }
 
-/// Strengths and relaxation times \[s\] of the terms, one for one.
-type Terms = [&'static [f64]; 2];
-
-/// The columns of a published table, of the same length.
-const fn columns<const N: usize>(strengths: &'static [f64; N], times: &'static [f64; N]) -> Terms {
-    [strengths, times]
-}
-
 static MATERIALS: [PublishedMaterial; 5] = [PMMA, EPOXY, ADHESIVE, POLYISOBUTYLENE, POLYSTYRENE_RINGS];
 
 const PMMA: PublishedMaterial = PublishedMaterial {
@@ -125,10 +121,7 @@ const PMMA: PublishedMaterial = PublishedMaterial {
     measured: Measured::Tension,
     scale: 1.0e6,
     equilibrium: 2.24,
-    terms: columns(
-        &[1.94e2, 2.83e2, 5.54e2, 6.02e2, 3.88e2, 1.56e2, 4.1e1, 1.38e1, 3.68e0, 7.9e-1, 9.6e-1],
-        &[2.0e-2, 2.0e-1, 2.0e0, 2.0e1, 2.0e2, 2.0e3, 2.0e4, 2.0e5, 2.0e6, 2.0e7, 2.0e8],
-    ),
+    terms: include_str!("library/pmma.txt"),
     temperature: None,
     poisson: None,
     wlf: None,
@@ -145,17 +138,7 @@ const EPOXY: PublishedMaterial = PublishedMaterial {
     // the printed weights are fractions of the drop from 891 MPa to 4.9 MPa
     scale: 886.1e6,
     equilibrium: 4.9 / 886.1,
-    terms: columns(
-        &[
-            2.15e-2, 2.15e-2, 2.15e-2, 2.15e-2, 2.67e-2, 2.67e-2, 3.75e-2, 4.05e-2, 6.3e-2, 6.3e-2, 1.054e-1, 1.16e-1,
-            1.16e-1, 1.653e-1, 5.61e-2, 5.61e-2, 1.99e-2, 1.19e-2, 5.5e-3, 2.8e-3, 8.0e-4, 2.0e-4, 3.0e-4, 3.0e-4,
-        ],
-        &[
-            1.0e-7, 3.1623e-7, 1.0e-6, 3.1623e-6, 1.0e-5, 3.1623e-5, 1.0e-4, 3.1623e-4, 1.0e-3, 3.1623e-3, 1.0e-2,
-            3.1623e-2, 1.0e-1, 3.1623e-1, 1.0e0, 3.1623e0, 1.0e1, 3.1623e1, 1.0e2, 3.1623e2, 1.0e3, 3.1623e3, 1.0e4,
-            1.0e5,
-        ],
-    ),
+    terms: include_str!("library/epoxy.txt"),
     temperature: None,
     poisson: None,
     wlf: None,
@@ -171,45 +154,7 @@ const ADHESIVE: PublishedMaterial = PublishedMaterial {
     // E(0) = 9115.8 MPa and nu = 0.35 as published: G(0) = E/(2 (1 + nu))
     scale: 9115.80e6 / 2.7,
     equilibrium: 1.7463879e-2,
-    terms: columns(
-        &[
-            4.117658e-2,
-            1.553623e-2,
-            1.842653e-2,
-            1.777279e-2,
-            1.66776e-2,
-            1.41939e-2,
-            1.394684e-2,
-            1.669666e-2,
-            1.403274e-2,
-            2.121446e-2,
-            2.113702e-2,
-            2.585145e-2,
-            3.07685e-2,
-            3.03654e-2,
-            3.333614e-2,
-            3.694363e-2,
-            4.254108e-2,
-            4.613635e-2,
-            5.217609e-2,
-            5.58741e-2,
-            6.258372e-2,
-            6.662379e-2,
-            7.106892e-2,
-            6.725932e-2,
-            5.814158e-2,
-            4.188188e-2,
-            2.436555e-2,
-            1.059265e-2,
-            4.097021e-3,
-            1.11176e-2,
-        ],
-        &[
-            1.0e-10, 1.0e-9, 1.0e-8, 1.0e-7, 1.0e-6, 1.0e-5, 1.0e-4, 1.0e-3, 1.0e-2, 1.0e-1, 1.0e0, 1.0e1, 1.0e2,
-            1.0e3, 1.0e4, 1.0e5, 1.0e6, 1.0e7, 1.0e8, 1.0e9, 1.0e10, 1.0e11, 1.0e12, 1.0e13, 1.0e14, 1.0e15, 1.0e16,
-            1.0e17, 1.0e18, 1.0e19,
-        ],
-    ),
+    terms: include_str!("library/adhesive.txt"),
     temperature: Some(268.0),
     poisson: Some(0.35),
     wlf: Some([199.73, 933.5]),
@@ -224,18 +169,7 @@ const POLYISOBUTYLENE: PublishedMaterial = PublishedMaterial {
     measured: Measured::Tension,
     scale: 1.0,
     equilibrium: 0.0,
-    terms: columns(
-        &[
-            1.86e6, 5.62e7, 1.29e8, 3.21e8, 4.13e8, 8.23e8, 6.31e8, 3.61e8, 1.53e8, 4.52e7, 2.23e7, 6.1e6, 2.61e6,
-            1.11e6, 2.82e5, 1.29e5, 6.35e4, 7.21e3, 1.34e4, 9.28e4, 4.57e4, 1.31e5, 8.11e4, 1.39e5, 1.07e5, 1.28e5,
-            6.26e4, 3.09e4,
-        ],
-        &[
-            3.22e-12, 1.36e-11, 5.65e-11, 2.34e-10, 1.17e-9, 4.85e-9, 2.25e-8, 9.65e-8, 3.83e-7, 1.67e-6, 7.2e-6,
-            2.89e-5, 1.48e-4, 5.87e-4, 2.36e-3, 9.36e-3, 4.03e-2, 1.8e-1, 8.16e-1, 3.29e0, 1.3e1, 5.85e1, 2.97e2,
-            1.05e3, 5.28e3, 2.64e4, 8.8e4, 4.12e5,
-        ],
-    ),
+    terms: include_str!("library/polyisobutylene.txt"),
     temperature: Some(298.15),
     poisson: None,
     wlf: None,
@@ -251,10 +185,7 @@ const POLYSTYRENE_RINGS: PublishedMaterial = PublishedMaterial {
     measured: Measured::Shear,
     scale: 1.0,
     equilibrium: 0.0,
-    terms: columns(
-        &[3.814512e5, 5.154208e5, 2.180057e5, 7.856716e4, 3.546649e4, 1.822482e4, 1.133953e4, 5.671307e3],
-        &[6.92318e-6, 2.943798e-5, 2.080151e-4, 1.486046e-3, 8.315544e-3, 5.212831e-2, 2.093194e-1, 1.109871e0],
-    ),
+    terms: include_str!("library/polystyrene_rings.txt"),
     temperature: None,
     poisson: None,
     wlf: None,

@@ -28,17 +28,17 @@ use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Te
 #[derive(Debug, Clone)]
 pub struct Material {
     /// One body, or the two of a contact.
-    pub(super) bodies: Vec<Body>,
+    pub(crate) bodies: Vec<Body>,
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Body {
-    pub(super) rheology: Arc<dyn Rheology>,
-    pub(super) volume: Volume,
+pub(crate) struct Body {
+    pub(crate) rheology: Arc<dyn Rheology>,
+    pub(crate) volume: Volume,
 }
 
 #[derive(Debug, Clone)]
-pub(super) enum Volume {
+pub(crate) enum Volume {
     /// C(t) over the creep compliance of the rheology, the same at all times, and Poisson's ratio.
     Proportional { factor: f64, poisson: f64 },
     /// A bulk of this modulus at t = 0: the exact series of C(t), and 1 − 2ν.
@@ -371,7 +371,7 @@ impl Body {
         }
     }
 
-    pub(super) fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
+    pub(crate) fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
         match &self.volume {
             Volume::Proportional { factor, .. } => {
                 self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(*factor)).transpose()

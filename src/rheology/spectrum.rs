@@ -61,43 +61,33 @@ pub(crate) struct SavedRelaxation {
     terms: Vec<(f64, f64)>,
 }
 
-/// What a series is made of, before it is checked.
+/// Declares what a file holds of a series, which is checked when it is read.
 #[cfg(feature = "serde")]
-mod parts {
-    #[derive(serde::Deserialize)]
-    pub(super) struct CreepSpectrumParts {
-        pub(super) glassy: f64,
-        pub(super) fluidity: f64,
-        pub(super) terms: Vec<(f64, f64)>,
-    }
+macro_rules! checked_parts {
+    ($parts:ident of $series:ident: $first:ident, $second:ident) => {
+        #[derive(serde::Deserialize)]
+        struct $parts {
+            $first: f64,
+            $second: f64,
+            terms: Vec<(f64, f64)>,
+        }
 
-    #[derive(serde::Deserialize)]
-    pub(super) struct RelaxationSpectrumParts {
-        pub(super) equilibrium: f64,
-        pub(super) viscosity: f64,
-        pub(super) terms: Vec<(f64, f64)>,
-    }
+        impl TryFrom<$parts> for $series {
+            type Error = crate::Error;
+
+            fn try_from(parts: $parts) -> Result<$series> {
+                $series::new(parts.$first, parts.$second, &parts.terms)
+            }
+        }
+    };
 }
 #[cfg(feature = "serde")]
-use parts::{CreepSpectrumParts, RelaxationSpectrumParts};
-
+checked_parts!(CreepSpectrumParts of CreepSpectrum: glassy, fluidity);
 #[cfg(feature = "serde")]
-impl TryFrom<CreepSpectrumParts> for CreepSpectrum {
-    type Error = crate::Error;
+checked_parts!(RelaxationSpectrumParts of RelaxationSpectrum: equilibrium, viscosity);
 
-    fn try_from(parts: CreepSpectrumParts) -> Result<CreepSpectrum> {
-        CreepSpectrum::new(parts.glassy, parts.fluidity, &parts.terms)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RelaxationSpectrumParts> for RelaxationSpectrum {
-    type Error = crate::Error;
-
-    fn try_from(parts: RelaxationSpectrumParts) -> Result<RelaxationSpectrum> {
-        RelaxationSpectrum::new(parts.equilibrium, parts.viscosity, &parts.terms)
-    }
-}
+/// A spring, a dashpot and any number of Kelvin–Voigt elements in series: J = J_g + φ t + Σ J_k (1 − e^(−t/λ_k)), the series itself.
+pub type GeneralizedKelvin = CreepSpectrum;
 
 impl CreepSpectrum {
     /// A series with `glassy` compliance \[1/Pa\], `fluidity` \[1/(Pa·s)\] and `terms` of (compliance

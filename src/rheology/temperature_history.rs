@@ -3,6 +3,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::ascending::{Ascending, TimeTable};
 use crate::error::{MaterialError, Result, finite, positive, within};
+use crate::numeric::root;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
 
@@ -84,10 +85,8 @@ const LEAST_AGREEMENT: f64 = 1e-5;
 /// more than the part `NOISE` of the difference.
 const NOISY_PIECES: usize = 512;
 const NOISE: f64 = 0.75;
-/// Relative tolerance, and upper limit of trials, for a length in t that belongs to a length in ξ. Only the order of
-/// magnitude matters.
+/// Relative tolerance of a length in t that belongs to a length in ξ. Only the order of magnitude matters.
 const LENGTH_TOLERANCE: f64 = 1e-3;
-const MAX_TRIALS: usize = 100;
 /// Relative change of the temperature within the resolution of a time, beyond which it jumps.
 const CONTINUOUS: f64 = 1e-9;
 
@@ -211,27 +210,17 @@ impl TemperatureHistory {
 
     /// Approximate time after `from` in which the reduced time grows by `reduced`; at most `most`.
     pub(crate) fn length_of(&self, from: f64, reduced: f64, most: f64) -> Result<f64> {
-        let (mut low, mut high) = (0.0, most);
-        let mut length = (reduced / self.rate(from)?).min(most);
-        for _ in 0..MAX_TRIALS {
-            // temperatures beyond the range of the law are too far
-            let [grown, rate] = match (self.reduced_time(from, from + length), self.rate(from + length)) {
-                (Ok(grown), Ok(rate)) => [grown, rate],
-                _ => [f64::INFINITY, 0.0],
-            };
-            let missing = reduced - grown;
-            if missing.abs() <= LENGTH_TOLERANCE * reduced || missing > 0.0 && length >= most {
-                return Ok(length);
-            }
-            if missing > 0.0 {
-                low = length
-            } else {
-                high = length
-            }
-            let next = length + missing / rate;
-            length = if next > low && next < high { next } else { 0.5 * (low + high) };
+        let guess = (reduced / self.rate(from)?).min(most);
+        if guess == 0.0 {
+            return Ok(guess);
         }
-        Ok(length)
+        let excess = |share: f64| match (self.reduced_time(from, from + share * guess), self.rate(from + share * guess))
+        {
+            (Ok(grown), Ok(rate)) => [grown - reduced, rate * guess],
+            // temperatures beyond the range of the law are too far
+            _ => [f64::INFINITY, 0.0],
+        };
+        Ok(guess * root([0.0, (most / guess).min(f64::MAX)], 1.0, LENGTH_TOLERANCE, excess))
     }
 
     /// ξ over a piece without corners inside.

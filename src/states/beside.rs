@@ -10,9 +10,9 @@ use crate::contact::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
+use crate::solver::RigidMotion;
 use crate::states::contact::StatesContact;
-use crate::states::curve::{ElasticStates, Rest};
-use crate::states::elastic::ElasticContact;
+use crate::states::curve::ElasticStates;
 use crate::states::pressed::Pressed;
 use crate::states::reach::{Loading, MARGIN, greatest};
 use crate::states::repeated::{Found, NEAREST, Repeated, undisturbed};
@@ -57,7 +57,7 @@ const MOST_OVERSTATED: f64 = 3.0;
 #[derive(Debug)]
 pub(super) struct Beside {
     repeated: Repeated,
-    elastic: ElasticContact,
+    elastic: ViscoelasticContact,
     tilt: [Tilt; 2],
     /// Level, depth and area of the elastic contacts that the curve goes through, and whether it matters.
     rows: Vec<[f64; 3]>,
@@ -99,8 +99,9 @@ impl Beside {
         }
         let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
         let tolerance = (OF_SOLVER * accuracy / (creep / MODERATE).clamp(1.0, MOST_TIGHTENED)).max(1e-9);
-        let mut elastic = ElasticContact::of(contact.of_unit_compliance(tolerance)?);
-        let rest = elastic.under(Load::Force { normal: 0.0, tilt })?.approach();
+        let mut elastic = contact.of_unit_compliance(tolerance)?;
+        elastic.step(0.0, Load::Force { normal: 0.0, tilt })?;
+        let rest = elastic.approach();
         let mut top = 0.0_f64;
         if by_force {
             let mut states = ElasticStates::sphere(1.0)?;
@@ -109,7 +110,8 @@ impl Beside {
             top = MARGIN * Repeated::new(origin, course.history, course.until, accuracy)?.1;
         } else {
             for load in greatest(&all, course.softest_compliance()?) {
-                top = top.max(MARGIN * elastic.under(load)?.force());
+                elastic.step(0.0, load)?;
+                top = top.max(MARGIN * elastic.force());
             }
         }
         if top == 0.0 {
@@ -143,17 +145,16 @@ impl Beside {
 
     /// Solves an elastic contact, and adds it to the curve.
     fn solve(&mut self, level: f64) -> Result<Solved> {
-        let load = Load::Force { normal: level, tilt: self.tilt };
-        let (pressure, approach, area, convolutions) = self.elastic.pressed(load)?;
-        self.spent = [self.spent[0] + 1, self.spent[1] + convolutions];
-        let depth = if self.by_force { level.powf(2.0 / 3.0) } else { approach - self.rest };
+        let report = self.elastic.step(0.0, Load::Force { normal: level, tilt: self.tilt })?;
+        self.spent = [self.spent[0] + 1, self.spent[1] + report.convolutions];
+        let depth = if self.by_force { level.powf(2.0 / 3.0) } else { self.elastic.approach() - self.rest };
         let at = self.rows.partition_point(|row| row[0] < level);
         let is_new = |row: &[f64; 3]| (row[0] / level - 1.0).abs() > NEAREST && (row[1] > depth) == (row[0] > level);
         let fits = self.rows[at.saturating_sub(1)..].iter().take(2).all(is_new);
         if fits && depth > 0.0 {
-            self.rows.insert(at, [level, depth, area]);
+            self.rows.insert(at, [level, depth, self.elastic.contact_area()]);
         }
-        Ok(Solved { level, pressure })
+        Ok(Solved { level, pressure: Pressed::new(self.elastic.pressure()) })
     }
 
     /// Nowhere may the pressure fall while the load grows.
@@ -182,7 +183,7 @@ impl Beside {
         let (ratio, beyond) = (BEYOND.powf(power), BEYOND * level);
         let end = (beyond, self.rest + depth * ratio, beyond / (depth * ratio * power), area * ratio);
         let rows = (0..=last).map(row).chain([end]);
-        let rest = Rest { approach: self.rest, tilt: [0.0; 2] };
+        let rest = RigidMotion { approach: self.rest, tilt: [0.0; 2] };
         let mut states = ElasticStates::from_rows(rows, rest, [Tilt::Fixed(0.0); 2])?;
         Arc::make_mut(&mut states).tilt = self.tilt;
         Ok(states)

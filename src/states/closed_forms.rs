@@ -6,7 +6,8 @@ use std::sync::Arc;
 use crate::contact::depth_of_power;
 use crate::error::{Result, positive, within};
 use crate::load::Tilt;
-use crate::states::curve::{ElasticState, ElasticStates, Rest};
+use crate::solver::RigidMotion;
+use crate::states::curve::{ElasticState, ElasticStates};
 
 /// Greatest number of a closed form. Products and quotients of such numbers do not overflow.
 const GREATEST: f64 = 1e100;
@@ -117,14 +118,14 @@ impl ElasticStates {
     /// # Errors
     /// If there are fewer than two states, a number is not finite and positive, or levels and approaches do not ascend.
     pub fn from_table(table: &[(f64, f64, f64, f64)]) -> Result<Arc<ElasticStates>> {
-        let rest = Rest { approach: 0.0, tilt: [0.0; 2] };
+        let rest = RigidMotion { approach: 0.0, tilt: [0.0; 2] };
         ElasticStates::from_rows(table.iter().copied(), rest, [Tilt::Fixed(0.0); 2])
     }
 
     /// States of a body that does not turn, from rows of level, approach, stiffness and area.
     pub(crate) fn from_rows(
         rows: impl Iterator<Item = (f64, f64, f64, f64)>,
-        rest: Rest,
+        rest: RigidMotion,
         tilt: [Tilt; 2],
     ) -> Result<Arc<ElasticStates>> {
         let states = rows.map(|(level, approach, stiffness, area)| ElasticState {

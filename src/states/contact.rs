@@ -2,14 +2,15 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings, impl_contact};
+use crate::contact::{Estimated, Figures, Limits, StepReport, ViscoelasticContact, Warnings, impl_contact};
 use crate::error::{Error, Result, StatesError, StepError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory, is_known};
-use crate::states::curve::{ElasticStates, approach_at};
-use crate::states::elastic::ElasticContact;
+use crate::solver::RigidMotion;
+use crate::states::curve::ElasticStates;
+use crate::states::elastic::state_under;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
@@ -36,7 +37,7 @@ pub(super) struct Scene {
     /// The states of the sweep, without those added in steps.
     pub(super) swept: Arc<ElasticStates>,
     /// Solves the state of each step.
-    elastic: Option<Arc<Mutex<ElasticContact>>>,
+    elastic: Option<Arc<Mutex<ViscoelasticContact>>>,
     pub(super) temperature: Option<TemperatureHistory>,
     limits: Limits,
     pub(super) interpolant: Interpolant,
@@ -238,7 +239,7 @@ impl StatesContact {
         } else {
             Load::Spring { stiffness: 1.0 / give, drive, tilt }
         };
-        let solved = elastic.lock().unwrap_or_else(PoisonError::into_inner).solve(load)?;
+        let solved = state_under(&mut elastic.lock().unwrap_or_else(PoisonError::into_inner), load)?;
         Arc::make_mut(&mut self.states).insert(solved.state, solved.pressure);
         Ok(())
     }
@@ -330,7 +331,7 @@ impl StatesContact {
     /// Approach of the origin \[m\].
     pub fn approach(&self) -> f64 {
         let depth = self.levels.motions.depth + self.states.rest.approach;
-        depth - approach_at(self.states.load_point(), 0.0, self.tilt())
+        depth - RigidMotion { approach: 0.0, tilt: self.tilt() }.at(self.states.load_point())
     }
 
     /// Tilt along x1 and x2 \[rad\].

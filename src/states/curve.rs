@@ -7,6 +7,7 @@ use crate::contact::{Builder, Figures, Warnings};
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::{Tilt, load_point};
 use crate::numeric::{hermite, hermite_slope, root};
+use crate::solver::RigidMotion;
 use crate::states::pressed::Pressed;
 
 /// States nearer than this factor of the level are one.
@@ -46,6 +47,12 @@ pub struct ElasticState {
     pub figures: Figures,
 }
 
+impl ElasticState {
+    pub(super) fn motion(&self) -> RigidMotion {
+        RigidMotion { approach: self.approach, tilt: self.tilt }
+    }
+}
+
 /// The elastic states of one contact, by ascending level, from a [`Sweep`](crate::states::Sweep).
 ///
 /// Between states the logarithm of the approach is a cubic of the logarithm of the level, area and stiffness are powers
@@ -53,7 +60,8 @@ pub struct ElasticState {
 #[derive(Clone)]
 pub struct ElasticStates {
     pub(crate) states: Vec<ElasticState>,
-    pub(crate) rest: Rest,
+    /// Motion of the elastic contact in the limit of no load: where the body rests.
+    pub(crate) rest: RigidMotion,
     /// Tilts, or load points, along x1 and x2.
     pub(crate) tilt: [Tilt; 2],
     /// Poisson's ratio of a layer, on which its elastic states depend.
@@ -69,14 +77,6 @@ pub struct ElasticStates {
     /// What they were swept with, for states between them.
     pub(super) scene: Option<Builder>,
     nodes: Vec<Node>,
-}
-
-/// Motions of the elastic contact in the limit of no load: where the body rests.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Rest {
-    /// Approach of the load point \[m\].
-    pub(crate) approach: f64,
-    pub(crate) tilt: [f64; 2],
 }
 
 /// ln l, ln δ and its slope, with δ the depth of the load point.
@@ -107,7 +107,7 @@ impl Motions {
 }
 
 impl ElasticStates {
-    pub(crate) fn new(states: Vec<ElasticState>, rest: Rest, tilt: [Tilt; 2]) -> ElasticStates {
+    pub(crate) fn new(states: Vec<ElasticState>, rest: RigidMotion, tilt: [Tilt; 2]) -> ElasticStates {
         let (poisson, grid, scene) = (None, None, None);
         let (error, first_level, pressures, nodes) = (0.0, 0.0, Vec::new(), Vec::new());
         let mut elastic =
@@ -198,7 +198,7 @@ impl ElasticStates {
 
     /// Depth of the load point at a state.
     pub(super) fn depth_of(&self, state: &ElasticState) -> f64 {
-        approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach
+        state.motion().at(self.load_point()) - self.rest.approach
     }
 
     /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times the slopes of the chords beside them, so that
@@ -372,11 +372,6 @@ impl ElasticStates {
     pub fn conductance(&self, level: f64, resistivities: [f64; 2]) -> f64 {
         2.0 * self.stiffness(level) / resistivities.iter().sum::<f64>()
     }
-}
-
-/// Approach of a point of the body.
-pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64 {
-    approach + tilt[0] * point[0] + tilt[1] * point[1]
 }
 
 debug_by!(self: ElasticStates => states: self.states.len(), last_level: self.last_level(), error: self.error);

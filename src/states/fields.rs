@@ -55,11 +55,11 @@ impl StatesContact {
         within("accuracy of the fields", accuracy, (0.0..=0.1).contains(&accuracy), "in [0, 0.1]")?;
         let states = self.states();
         let mut elastic = states.elastic_contact()?;
-        let apart = elastic.under(Load::Force { normal: 0.0, tilt: states.tilt })?;
-        let cells = apart.grid().len();
+        elastic.step(0.0, Load::Force { normal: 0.0, tilt: states.tilt })?;
+        let cells = elastic.grid().len();
         let mut fields =
             StatesFields { pressure: vec![0.0; cells], displacement: vec![0.0; cells], gap: vec![0.0; cells] };
-        apart.gap_into(&mut fields.gap)?;
+        elastic.gap_into(&mut fields.gap)?;
         let (mut before, mut gap) = (fields.clone(), vec![0.0; cells]);
         let (tractions, displacements) =
             (Profile::new(self.tractions()), Profile::new(self.levels.groups().map(|(top, _, w)| (top, w))));
@@ -69,7 +69,7 @@ impl StatesContact {
         levels.dedup();
         let shares = tractions.means(&levels).zip(displacements.means(&levels));
         for ((level, traction), (_, displacement)) in shares {
-            let elastic = elastic.under(Load::Force { normal: level, tilt: states.tilt })?;
+            elastic.step(0.0, Load::Force { normal: level, tilt: states.tilt })?;
             elastic.gap_into(&mut gap)?;
             let parts = [
                 (traction, &mut fields.pressure, &mut before.pressure, elastic.pressure()),

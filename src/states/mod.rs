@@ -60,7 +60,6 @@ mod twin;
 
 pub use crate::error::StatesError;
 pub use contact::StatesContact;
-pub(crate) use curve::Rest;
 pub use curve::{ElasticState, ElasticStates};
 pub use fields::StatesFields;
 pub(crate) use pressed::Pressed;

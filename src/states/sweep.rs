@@ -12,8 +12,9 @@ use crate::geometry::Geometry;
 use crate::kernel::{InfluenceKernel, Layer};
 use crate::load::{Load, Tilt, load_point};
 use crate::rheology::{Elastic, Material};
-use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at};
-use crate::states::elastic::{ElasticContact, Solved};
+use crate::solver::RigidMotion;
+use crate::states::curve::{ElasticState, ElasticStates};
+use crate::states::elastic::{Solved, state_under};
 use crate::states::pressed::Pressed;
 use crate::states::reach::{MARGIN, Reach};
 
@@ -137,7 +138,7 @@ impl Sweep {
         // C = (1 − ν) J/2 = 1 Pa⁻¹
         let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
         let scene = self.builder.clone().material(unit).settings(self.settings);
-        let elastic = ElasticContact::new(&scene)?;
+        let elastic = scene.clone().build()?;
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
         let at = load_point(self.tilt);
         let grid = elastic.grid().clone();
@@ -145,7 +146,7 @@ impl Sweep {
             asked: &self,
             elastic,
             at,
-            rest: Rest { approach: 0.0, tilt },
+            rest: RigidMotion { approach: 0.0, tilt },
             last_depth: 0.0,
             last_level: 0.0,
             first_level: 0.0,
@@ -188,10 +189,10 @@ impl Pair {
 /// The elastic contact that finds states.
 struct Solver<'a, P> {
     asked: &'a Sweep,
-    elastic: ElasticContact,
+    elastic: ViscoelasticContact,
     /// The load point.
     at: [f64; 2],
-    rest: Rest,
+    rest: RigidMotion,
     last_depth: f64,
     last_level: f64,
     /// The level from which the contact only grows.
@@ -213,7 +214,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
                 let swept = Load::Force { normal: 0.0, tilt: self.asked.tilt }.to_string();
                 return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
             }
-            largest = largest.max(self.elastic.solve(load)?.state.level);
+            largest = largest.max(state_under(&mut self.elastic, load)?.state.level);
         }
         let allowed = "beyond the first touch";
         if largest > 0.0 {
@@ -224,7 +225,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
     }
 
     fn solve(&mut self, level: f64) -> Result<Solved> {
-        self.elastic.solve(Load::Force { normal: level, tilt: self.asked.tilt })
+        state_under(&mut self.elastic, Load::Force { normal: level, tilt: self.asked.tilt })
     }
 
     /// Adds a state. Breaks if the sweep is to end with it.
@@ -285,17 +286,14 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
 
     /// Depth of the load point at a state.
     fn depth(&self, state: &ElasticState) -> f64 {
-        approach_at(self.at, state.approach, state.tilt) - self.rest.approach
+        state.motion().at(self.at) - self.rest.approach
     }
 
     /// Where the body rests: the line through a state and one of half its level, continued to no load.
-    fn rest_below(&self, upper: &ElasticState, lower: &ElasticState) -> Rest {
-        let [upper, lower] = [upper, lower].map(|state| {
-            let approach = approach_at(self.at, state.approach, state.tilt);
-            [approach, state.tilt[0], state.tilt[1]]
-        });
+    fn rest_below(&self, upper: &ElasticState, lower: &ElasticState) -> RigidMotion {
+        let [upper, lower] = [upper, lower].map(|state| [state.motion().at(self.at), state.tilt[0], state.tilt[1]]);
         let [approach, first, second] = [0, 1, 2].map(|k| 2.0 * lower[k] - upper[k]);
-        Rest { approach, tilt: [first, second] }
+        RigidMotion { approach, tilt: [first, second] }
     }
 
     /// Adds the state in the middle of a pair, and both halves to the pairs unless the pair is accurate. A sweep that ends leaves the

@@ -138,7 +138,7 @@ fn items_of_the_page_exist() {
     let known = items!(
         import
             analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
-            contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle, load::Loads,
+            contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle,
             geometry::Geometry, load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
         functions
             InfluenceKernel::coefficient, InfluenceKernel::convolve, InfluenceKernel::half_space,

@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use crate::contact::{Indenter, Step, StepReport, ViscoelasticContact};
 use crate::error::{Result, coverage, exact_length};
 use crate::geometry::{Gap, Geometry, Missed, evaluate};
-use crate::load::{Load, Loads};
+use crate::load::Load;
 
 impl ViscoelasticContact {
     /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
@@ -80,8 +80,8 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
-    pub fn step_over<'a>(&mut self, cells: [isize; 2], dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
-        self.step_over_unless(None, cells, dt, loads.into().as_slice())
+    pub fn step_over(&mut self, cells: [isize; 2], dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
+        self.step_over_unless(None, cells, dt, loads.as_ref())
     }
 
     /// [`ViscoelasticContact::step_over`], unless another thread sets a flag.

@@ -39,7 +39,7 @@ use crate::error::{Error, Result, StepError, coverage, non_negative};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
-use crate::load::{Load, Loads};
+use crate::load::Load;
 use crate::parallel::in_pool;
 use crate::solver::{Freedom, RigidMotion, Solution, Stop};
 use accept::{COARSE_ZONE, collect_warnings};
@@ -64,10 +64,24 @@ pub(crate) struct Attempt {
 
 impl ViscoelasticContact {
     /// Advances by `dt` \[s\] to a state that carries `loads`: one [`Load`], or a load for each rigid body in the order in which
-    /// the builder was given them ([`Loads`]). `dt` = 0 is a jump of the load: the bodies respond
+    /// the builder was given them. `dt` = 0 is a jump of the load: the bodies respond
     /// elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump. It accepts jumps to zero
     /// pressure, and jumps to a load that the present pressure satisfies to within
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present approach in place of the force.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let ball = |at: f64| Shifted::new(Sphere::new(5.0e-3)?, [at, 0.0]);
+    /// let mut contact = ViscoelasticContact::builder(Grid::new([64, 32], [8.0e-3, 4.0e-3])?)
+    ///     .geometry(&ball(-2.0e-3)?)
+    ///     .another_body(&ball(2.0e-3)?)
+    ///     .material(Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// contact.step(0.1, [Load::force(0.2), Load::approach(10.0e-6)])?;
+    /// assert!((contact.body(0).expect("the first").force - 0.2).abs() < 1.0e-12);
+    /// # Ok::<(), Error>(())
+    /// ```
     ///
     /// # Errors
     /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the body
@@ -76,21 +90,16 @@ impl ViscoelasticContact {
     /// value, the material is not known for so long a time, a direct sum has filled its memory, there is no memory for the
     /// cells that the contact reaches ([`Error::OutOfMemory`]), or there is not one load per body. The contact is then
     /// unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last step.
-    pub fn step<'a>(&mut self, dt: f64, loads: impl Into<Loads<'a>>) -> Result<StepReport> {
-        self.next(None, dt, loads.into().as_slice())
+    pub fn step(&mut self, dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
+        self.next(None, dt, loads.as_ref())
     }
 
     /// [`ViscoelasticContact::step`], ended within an iteration where another thread sets `cancelled`.
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step`], and [`Error::Cancelled`].
-    pub fn step_unless<'a>(
-        &mut self,
-        cancelled: &AtomicBool,
-        dt: f64,
-        loads: impl Into<Loads<'a>>,
-    ) -> Result<StepReport> {
-        self.next(Some(cancelled), dt, loads.into().as_slice())
+    pub fn step_unless(&mut self, cancelled: &AtomicBool, dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
+        self.next(Some(cancelled), dt, loads.as_ref())
     }
 
     fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {

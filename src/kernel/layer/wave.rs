@@ -20,9 +20,9 @@
 //! with α = 2μ² k₂ + μ (k₁ − 1)(k₂ − 1) + 2 k₁, β = a μ (1 + k₂), γ = 4μ² k₂ + μ (k₁ − 3)(k₂ − 1) + 2 (k₁ − 1): nothing
 //! cancels in D, and in N only as far as γ may be negative, which is less than β makes up for.
 
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::Mul;
 
-use num_complex::Complex64;
+use num_complex::ComplexFloat;
 
 /// Beyond this t the layer responds like a half-space, and e^(−2t) is zero.
 const DEEP: f64 = 380.0;
@@ -51,21 +51,6 @@ pub(crate) struct Bonded<T> {
     /// (N − D)/θ = `difference[0]` + `difference[1]` t (1 + t) + `difference[2]` (1 − θ).
     difference: [T; 3],
 }
-
-/// A real or a complex number.
-pub(crate) trait Number:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Mul<f64, Output = Self>
-    + Div<Output = Self>
-    + From<f64>
-{
-}
-
-impl Number for f64 {}
-impl Number for Complex64 {}
 
 impl Response {
     pub(super) fn bonded(poisson: f64, base_poisson: f64, mu: f64) -> Response {
@@ -114,12 +99,12 @@ impl Response {
     }
 }
 
-impl<T: Number> Bonded<T> {
+impl<T: ComplexFloat + Mul<f64, Output = T> + From<f64>> Bonded<T> {
     pub(super) fn new(poisson: f64, base_poisson: f64, mu: T) -> Bonded<T> {
         let [k1, k2] = [poisson, base_poisson].map(|nu| 3.0 - 4.0 * nu);
         let a = 4.0 * (1.0 - poisson);
         // (1 + μ)², divided by factor by factor so that no product overflows
-        let one = T::from(1.0);
+        let one = T::one();
         let (unit, ratio) = (one / (one + mu), mu / (one + mu));
         let [first1, first2] = [2.0 * (1.0 - 2.0 * poisson), 2.0 * (1.0 - 2.0 * base_poisson)];
         let q = unit + ratio * k2;
@@ -140,7 +125,7 @@ impl<T: Number> Bonded<T> {
     /// L(t).
     pub(crate) fn at(&self, t: f64) -> T {
         if t > DEEP {
-            return T::from(1.0);
+            return T::one();
         }
         let theta = (-2.0 * t).exp();
         self.numerator(t, theta) / self.denominator(t, theta)

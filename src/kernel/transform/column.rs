@@ -73,7 +73,7 @@ impl SpectralOperator {
                 line.pad(waves, input.len());
                 line.fill(waves, input.iter().map(Complex64::from));
                 line.bare_forward(waves, scratch);
-                line.multiply_folded(waves, &self.spectrum);
+                line.multiply_folded(waves, &self.spectrum, &self.spectrum);
                 line.bare_inverse(waves, scratch);
             }
         }

@@ -166,7 +166,6 @@ impl SpectralOperator {
             line.pad(column, self.layout.cells[0]);
             line.bare_forward(column, scratch);
             match (self.rows.is_folded(), line.is_folded()) {
-                (false, true) => line.multiply_folded(column, spectrum),
                 (false, false) => {
                     // wave numbers above P/2 mirror those below
                     let (rising, falling) = column.split_at_mut(values);
@@ -177,11 +176,11 @@ impl SpectralOperator {
                         *z *= *s;
                     }
                 }
-                (true, folded) => {
+                (_, folded) => {
                     let (first, second) = spectrum.split_at(values);
                     let second = if second.is_empty() { first } else { second };
                     if folded {
-                        line.multiply_folded_apart(column, first, second);
+                        line.multiply_folded(column, first, second);
                     } else {
                         multiply_apart(column, first, second);
                     }

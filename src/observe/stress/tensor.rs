@@ -41,6 +41,10 @@ impl Stress {
         Stress { s11, s22, s33, s12, s13, s23 }
     }
 
+    fn of([s11, s22, s33, s12, s13, s23]: [f64; 6]) -> Stress {
+        Stress { s11, s22, s33, s12, s13, s23 }
+    }
+
     /// The components 11, 22, 33, 12, 13, 23 \[Pa\].
     pub fn components(&self) -> [f64; 6] {
         [self.s11, self.s22, self.s33, self.s12, self.s13, self.s23]
@@ -107,20 +111,15 @@ impl Stress {
 impl Add for Stress {
     type Output = Stress;
 
-    fn add(mut self, other: Stress) -> Stress {
-        self += other;
-        self
+    fn add(self, other: Stress) -> Stress {
+        let (own, other) = (self.components(), other.components());
+        Stress::of([0, 1, 2, 3, 4, 5].map(|k| own[k] + other[k]))
     }
 }
 
 impl AddAssign for Stress {
     fn add_assign(&mut self, other: Stress) {
-        self.s11 += other.s11;
-        self.s22 += other.s22;
-        self.s33 += other.s33;
-        self.s12 += other.s12;
-        self.s13 += other.s13;
-        self.s23 += other.s23;
+        *self = *self + other;
     }
 }
 
@@ -128,8 +127,7 @@ impl Mul<Stress> for f64 {
     type Output = Stress;
 
     fn mul(self, stress: Stress) -> Stress {
-        let [s11, s22, s33, s12, s13, s23] = stress.components().map(|component| self * component);
-        Stress { s11, s22, s33, s12, s13, s23 }
+        Stress::of(stress.components().map(|component| self * component))
     }
 }
 

@@ -174,13 +174,12 @@ fn second_differences(values: &[f64]) -> Vec<f64> {
     values.windows(3).map(|w| ((w[0] - 2.0 * w[1] + w[2]) / w[1]).abs() / 6f64.sqrt()).collect()
 }
 
-/// Relative standard deviation of the scatter about a smooth curve, from the median of its second differences, which a few
-/// outliers or a kink do not change.
-fn median_scatter(second: &[f64]) -> f64 {
-    let mut second = second.to_vec();
-    second.sort_by(f64::total_cmp);
+/// The standard deviation of values around zero, from the median of their magnitudes, which a few outliers or a kink do not change.
+pub(super) fn median_scatter(magnitudes: &[f64]) -> f64 {
+    let mut sorted = magnitudes.to_vec();
+    sorted.sort_by(f64::total_cmp);
     // the median of |N(0, σ)| is 0.6745 σ
-    second.get(second.len() / 2).map_or(0.0, |median| median / 0.6745)
+    sorted.get(sorted.len() / 2).map_or(0.0, |median| median / 0.6745)
 }
 
 /// The same of the rows around one: a pair of rows that contradict each other scatters, a single outlier does not.

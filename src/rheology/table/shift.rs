@@ -5,7 +5,7 @@
 //! the machine spoils, cost little. The column that determines the shift best finds it first, by the fewest decades of the
 //! union, so that two ends which match by chance are not taken for the overlap; all columns refine it.
 
-use super::data::Row;
+use super::data::{Row, median_scatter};
 use super::isotherm::Isotherm;
 use crate::error::{Result, TableError};
 use crate::numeric;
@@ -73,7 +73,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     let all: Vec<usize> = (0..columns).collect();
     let scattered = |&column: &usize| {
         let offs = isotherms.map(|isotherm| off_lines(isotherm, column));
-        let scatter = offs.iter().cloned().map(deviation).fold(LEAST_SCATTER, f64::max);
+        let scatter = offs.iter().map(|offs| median_scatter(offs)).fold(LEAST_SCATTER, f64::max);
         let costs: Vec<f64> = offs.iter().flatten().map(|off| (off / scatter).powi(2).ln_1p()).collect();
         (scatter, (costs.iter().sum::<f64>() / costs.len().max(1) as f64).max(EXPECTED))
     };
@@ -158,7 +158,7 @@ impl Pair<'_> {
     fn residual(&self, shift: f64, column: usize, scatter: f64) -> f64 {
         let (mut values, factor) = (Vec::new(), self.factor(shift, &[column]));
         self.differences(shift, &[column], |found| values.push((found.value - factor).abs() / found.variance.sqrt()));
-        if values.is_empty() { scatter } else { deviation(values).max(0.3 * scatter) }
+        if values.is_empty() { scatter } else { median_scatter(&values).max(0.3 * scatter) }
     }
 
     fn cost(&self, shift: f64, columns: &[usize], scatter: &[f64]) -> f64 {
@@ -245,10 +245,4 @@ fn slopes(isotherm: &Isotherm, column: usize) -> Vec<[f64; 2]> {
         [slopes[slopes.len() / 2], 1.0 / squares]
     };
     (0..points.len()).map(around).collect()
-}
-
-/// The standard deviation of values around zero, from the median of their magnitudes.
-fn deviation(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).map_or(0.0, |median| median / 0.6745)
 }

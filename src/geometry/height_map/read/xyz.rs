@@ -49,7 +49,7 @@ impl HeightMap {
         format: TextFormat,
     ) -> Result<HeightMap> {
         let table = TextTable::read(reader, format)?;
-        on_grid(&points(&table, &[X, Y, HEIGHT], [lateral, vertical], format)?)
+        on_plane(&points(&table, &[X, Y, HEIGHT], [lateral, vertical], format)?)
     }
 
     /// [`HeightMap::from_xyz`] of points x, y, height \[m\], given as an array; NaN where no height was measured.
@@ -63,7 +63,7 @@ impl HeightMap {
             // a mark of missing data is no coordinate
             within(field, value, value.abs() < NO_HEIGHT, "within ±1e30 m")?;
         }
-        on_grid(&points)
+        on_plane(&points)
     }
 
     /// Reads a profile, lines of x and height, for a line contact: a map of a single row along x1.
@@ -93,24 +93,21 @@ impl HeightMap {
         let table = TextTable::read(reader, format)?;
         let points = points(&table, &[X, HEIGHT], [lateral, vertical], format)?;
         let along = axis(&points, "x", 0)?;
-        if along.cells > MAX_CELLS_PER_POINT_OF_PROFILE * points.len() {
-            return Err(MapError::Sparse { points: points.len(), cells: [along.cells, 1] }.into());
-        }
-        let mut heights =
-            memory::field("the points of a profile", count([along.cells, 1], [along.spacing; 2])?, f64::NAN)?;
-        for (point, &k) in points.iter().zip(&along.indices) {
-            heights[k] = point.height;
-        }
-        HeightMap::from_rows([along.cells, 1], [along.spacing; 2], &heights, First::Bottom, |height| height)
+        let across = RegularAxis { cells: 1, spacing: along.spacing, indices: vec![0; points.len()] };
+        on_grid(&points, [along, across], MAX_CELLS_PER_POINT_OF_PROFILE)
     }
 }
 
-/// The map of points on a regular grid.
-fn on_grid(points: &[Point]) -> Result<HeightMap> {
-    let axes = [axis(points, "x", 0)?, axis(points, "y", 1)?];
+/// The map of points of a plane.
+fn on_plane(points: &[Point]) -> Result<HeightMap> {
+    on_grid(points, [axis(points, "x", 0)?, axis(points, "y", 1)?], MAX_CELLS_PER_POINT)
+}
+
+/// The map of points on a regular grid of at most so many cells for each point.
+fn on_grid(points: &[Point], axes: [RegularAxis; 2], most_cells: usize) -> Result<HeightMap> {
     let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
     let count = count(cells, spacing)?;
-    if count / MAX_CELLS_PER_POINT > points.len() {
+    if count.div_ceil(most_cells) > points.len() {
         return Err(MapError::Sparse { points: points.len(), cells }.into());
     }
     let what = "the grid that the points of a file lie on";
@@ -298,6 +295,8 @@ mod tests {
         assert_eq!((line.cells, line.missing), ([4, 1], 1));
         let uneven = profile("0.01 1\n0.1 2\n1 3\n10 4\n").unwrap_err();
         assert!(matches!(uneven, Error::Map(MapError::Sparse { points: 4, .. })), "{uneven}");
+        let twice = profile("0 1\n0.5 2\n1 3\n0.5 4\n").unwrap_err();
+        assert!(matches!(twice, Error::Map(MapError::Duplicate { line: 4, earlier: 2, .. })), "{twice}");
     }
 
     #[test]
