@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::error::{Result, in_order, least_length, positive, within};
+use crate::error::{Result, UserError, in_order, least_length, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 
 /// The gas constant \[J/(mol K)\] (exact since 2019).
@@ -208,6 +208,10 @@ impl<R: Rheology> ShiftedRheology<R> {
 impl<R: Rheology> Rheology for ShiftedRheology<R> {
     fn creep_compliance(&self, t: f64) -> f64 {
         self.rheology.creep_compliance(t / self.factor)
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.rheology.failure()
     }
 
     /// `None` also where a time leaves the range of a [`CreepSpectrum`].

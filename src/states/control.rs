@@ -54,10 +54,13 @@ const EXPECTED: f64 = 0.1;
 /// Groups of levels merge with this share of the tolerance.
 const MERGING: f64 = 0.01;
 
-/// Chooses the adaptive steps.
+/// The control of the steps of a run, and the state at the start of the last one.
 #[derive(Debug, Clone)]
-pub(super) struct HalvedSteps {
+pub struct StatesControl {
     pub(super) record: Record,
+    pub(super) before: StatesContact,
+    /// Whether the last step was taken in two halves.
+    pub(super) halved: bool,
     /// The step taken whole, in halves, and after the first half.
     whole: StatesContact,
     halves: StatesContact,
@@ -68,9 +71,13 @@ pub(super) struct HalvedSteps {
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Record {
+    /// The load that acts; unknown before the first step.
+    pub(super) load: Option<Load>,
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) tolerance: f64,
     until: f64,
     /// Length of the next step; 0 after a jump or a corner.
-    next: f64,
+    pub(super) next: f64,
     /// Time of the last jump or corner.
     corner: f64,
     /// Whether forces are given throughout the run.
@@ -87,9 +94,11 @@ pub(super) struct Record {
 
 impl Record {
     /// For a run to the time `until`.
-    pub(super) fn new(until: f64) -> Record {
+    pub(super) fn new(until: f64, tolerance: f64) -> Record {
         let loads = Vec::with_capacity(PARTS_OF_RUN as usize + 1);
         Record {
+            load: None,
+            tolerance,
             until,
             next: 0.0,
             corner: 0.0,
@@ -147,15 +156,10 @@ impl Record {
     }
 }
 
-impl HalvedSteps {
-    pub(super) fn new(contact: &StatesContact, record: Record) -> HalvedSteps {
-        let quadratic = contact.clone().with_quadratic_steps();
-        HalvedSteps { record, whole: quadratic.clone(), halves: quadratic.clone(), middle: quadratic }
-    }
-
-    /// The next step starts at a jump or a corner of the load.
-    pub(super) fn restart(&mut self) {
-        self.record.next = 0.0;
+impl StatesControl {
+    pub(super) fn new(contact: &StatesContact, record: Record) -> StatesControl {
+        let [before, middle] = [contact.clone(), contact.clone().with_quadratic_steps()];
+        StatesControl { record, before, halved: false, whole: middle.clone(), halves: middle.clone(), middle }
     }
 
     /// Takes the longest step that the tolerance allows, towards the next stop of the run. If it fails, the contact stays as it was.
@@ -163,9 +167,8 @@ impl HalvedSteps {
         &mut self,
         contact: &mut StatesContact,
         &Course { history, stop, corner, .. }: &Course<'_>,
-        tolerance: f64,
     ) -> Result<StepReport> {
-        let (now, is_first) = (contact.time(), self.record.next == 0.0);
+        let (now, is_first, tolerance) = (contact.time(), self.record.next == 0.0, self.record.tolerance);
         if stop - now <= 2.0 * SHORTEST * stop {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
         }
@@ -203,7 +206,7 @@ impl HalvedSteps {
                 length = 0.5 * (end - now);
                 continue;
             }
-            let event = self.event(contact, history, step, &loads, tolerance)?;
+            let event = self.event(contact, history, step, &loads)?;
             end = event.unwrap_or(end);
             let (report, difference) = self.compare(contact, history, Span { now, end })?;
             let force_ends = report.force == 0.0 && contact.level() > 0.0 && load_at(history, end)?.is_force();
@@ -242,7 +245,6 @@ impl HalvedSteps {
         history: &dyn LoadHistory,
         step: Span,
         loads: &[f64; PARTS + 1],
-        tolerance: f64,
     ) -> Result<Option<f64>> {
         let Span { now, end } = step;
         let by_force = load_at(history, end)?.is_force();
@@ -269,7 +271,7 @@ impl HalvedSteps {
             return Ok(None);
         }
         let scale = self.record.greatest[0].max(1e-3 * self.record.greatest_load);
-        let overshoot = if by_force { 0.0 } else { OVERSHOOT * tolerance * scale };
+        let overshoot = if by_force { 0.0 } else { OVERSHOOT * self.record.tolerance * scale };
         let near = now + if by_force { SAME_TIME } else { AT_START } * (end - now);
         let (mut low, mut presses) = (now, by_force && loads[0] > 0.0);
         for (time, load) in points.into_iter().skip(1) {
@@ -302,7 +304,7 @@ impl HalvedSteps {
         history: &dyn LoadHistory,
         Span { now, end }: Span,
     ) -> Result<(StepReport, f64)> {
-        let HalvedSteps { whole, halves, middle, .. } = self;
+        let StatesControl { whole, halves, middle, .. } = self;
         let to = |contact: &mut StatesContact, time: f64| {
             contact.advance(time, time - contact.time(), load_at(history, time)?)
         };
@@ -330,7 +332,7 @@ impl HalvedSteps {
         let expected = halves.levels.expected(&halves.states, demand, greatest_load, until / half, pressed / half);
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
-        let HalvedSteps { whole, halves, middle, .. } = self;
+        let StatesControl { whole, halves, middle, .. } = self;
         let results = |contact: &StatesContact| [contact.depth(), contact.force()];
         let ended = [&*whole, &*halves].map(results);
         let scales = [0, 1].map(|k| f64::abs(ended[1][k]).max(0.1 * greatest[k]));

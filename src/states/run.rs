@@ -13,7 +13,7 @@ use crate::run::driven::{Course, Driven};
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
-use crate::states::control::{HalvedSteps, Record, load_at};
+use crate::states::control::{Record, StatesControl, load_at};
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
 
@@ -53,37 +53,24 @@ impl StatesContact {
     }
 }
 
-/// The control of the steps of a run, and the state at the start of the last one.
-#[derive(Debug, Clone)]
-pub struct StatesControl {
-    /// The load that acts; unknown before the first step.
-    load: Option<Load>,
-    tolerance: f64,
-    before: StatesContact,
-    steps: HalvedSteps,
-    /// Whether the last step was taken in two halves.
-    halved: bool,
-}
-
 impl Driven for StatesContact {
     type Control = StatesControl;
 
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StatesControl) {
         let (_, tolerance) = stepping.lengths();
-        let (before, steps) = (self.clone(), HalvedSteps::new(self, Record::new(until)));
-        let control = StatesControl { load: None, tolerance, before, steps, halved: false };
         #[cfg(feature = "checkpoint")]
         if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedRun>())
-            && saved.progress.continues(self.time, stepping, until)
+            && saved.0.continues(self.time, stepping, until)
         {
-            let SavedRun { progress, load, control: record } = (*saved).clone();
-            return (progress, StatesControl { load, steps: HalvedSteps::new(self, record), ..control });
+            let (progress, mut record) = (*saved).clone();
+            record.tolerance = tolerance;
+            return (progress, StatesControl::new(self, record));
         }
-        (Progress::begin(self.time, stepping), control)
+        (Progress::begin(self.time, stepping), StatesControl::new(self, Record::new(until, tolerance)))
     }
 
     fn load(&self, control: &StatesControl) -> Option<Load> {
-        control.load
+        control.record.load
     }
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
@@ -98,14 +85,13 @@ impl Driven for StatesContact {
         if course.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Error::Cancelled { what: "a step" });
         }
-        let StatesControl { load, tolerance, before, steps, halved } = control;
-        before.copy_from(self);
+        control.before.copy_from(self);
         let report = match course.given {
             Some((time, load)) => self.step_to(time, time - self.time(), load)?,
-            None => steps.step(self, course, *tolerance)?,
+            None => control.step(self, course)?,
         };
-        *halved = course.given.is_none();
-        *load = match course.given {
+        control.halved = course.given.is_none();
+        control.record.load = match course.given {
             Some((_, load)) => Some(load),
             None => Some(load_at(course.history, report.time)?),
         };
@@ -113,7 +99,7 @@ impl Driven for StatesContact {
             self.reset_differences();
         }
         if report.dt == 0.0 || report.time >= course.corner {
-            steps.restart();
+            control.record.next = 0.0;
         }
         Ok(report)
     }
@@ -145,12 +131,11 @@ impl Driven for StatesContact {
     fn tighten(_: &mut StatesControl, _: f64) {}
 
     fn rejected(control: &StatesControl) -> u64 {
-        control.steps.record.rejected
+        control.record.rejected
     }
 
     #[cfg(feature = "checkpoint")]
     fn save_run(&self, path: &Path, (progress, control): (&Progress, &StatesControl)) -> Result<()> {
-        let StatesControl { load, steps, .. } = control;
-        self.save_with(path, Some(SavedRun { progress: progress.clone(), load: *load, control: steps.record.clone() }))
+        self.save_with(path, Some((progress.clone(), control.record.clone())))
     }
 }

@@ -12,7 +12,6 @@ use crate::contact::checkpoint::format::{Input, Output};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::hereditary::Interpolant;
-use crate::load::Load;
 use crate::parallel::Rows;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
@@ -34,13 +33,7 @@ struct Saved<'a> {
 }
 
 /// A run that continues from the state.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct SavedRun {
-    pub(super) progress: Progress,
-    /// The load that acts.
-    pub(super) load: Option<Load>,
-    pub(super) control: Record,
-}
+pub(super) type SavedRun = (Progress, Record);
 
 const KIND: &str = "elastic states";
 
@@ -112,7 +105,7 @@ impl StatesContact {
         if !saved.levels.fits(&self.levels) || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0) {
             return malformed("levels that no contact has");
         }
-        if saved.run.as_ref().is_some_and(|run| !run.progress.fits() || !run.control.fits()) {
+        if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits()) {
             return malformed("a run that no contact can continue");
         }
         let [time, reduced] = saved.times;

@@ -10,6 +10,7 @@ use viscocontact::load::LoadError;
 use viscocontact::motion::{FnPath, Travel};
 use viscocontact::output::Format;
 use viscocontact::prelude::*;
+use viscocontact::rheology::TimeTemperature;
 use viscocontact::run::RunContact;
 use viscocontact::{Error, UserError};
 
@@ -399,6 +400,8 @@ fn errors_of_gaps_and_creep_come_out_as_themselves() {
         let gap = FnGeometry::fallible(move |x1, x2| if gap { "x".parse() } else { Ok((x1 * x1 + x2 * x2) / 2.0e-2) });
         let creep =
             FnRheology::fallible(move |t| if creep && t > 0.0 { "x".parse() } else { Ok(1.0e-6 * (1.0 + t.ln_1p())) });
+        // inside of another rheology
+        let creep = TimeTemperature::arrhenius(1.0e5, 293.15)?.at(creep, 293.15)?;
         let builder = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?).geometry(&gap);
         let settings = Settings::default().with_time_rule(TimeRule::Rectangle);
         let mut contact = builder.material(Material::incompressible(creep)).settings(settings).build()?;
