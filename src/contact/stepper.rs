@@ -93,6 +93,7 @@ impl ViscoelasticContact {
             let [i, j] = region.cell(k);
             *own = pressure[i * n2 + j];
         }
+        contact.computation.state.extrapolation.renew();
         contact.computation.state.sum_up();
         contact.view.refresh(&contact.computation.state);
         Some(contact)

@@ -10,7 +10,7 @@ pub enum MaterialError {
     /// [`Builder::times_of`](crate::contact::Builder::times_of) names; a material is fitted beforehand by
     /// [`Material::fitted`](crate::rheology::Material::fitted).
     #[error(
-        "{what} needs an exponential series, and {rheology} has no exact one: name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted"
+        "{what} needs an exponential series, and {rheology} has no exact one: name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted"
     )]
     NoExponentialSeries {
         /// What needs it.

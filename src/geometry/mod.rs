@@ -169,9 +169,16 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
     // a rank may have no rows
     if !gap.is_empty() {
-        geometry.fill_gap(grid, &mut gap);
+        filled_by(geometry, || geometry.fill_gap(grid, &mut gap))?;
     }
-    geometry.failure().map_or(Ok(gap), |failure| Err(failure.into()))
+    Ok(gap)
+}
+
+/// Lets a geometry fill a gap. An error of its own comes out, but not one of an earlier call.
+pub(crate) fn filled_by(geometry: &dyn Geometry, fill: impl FnOnce()) -> Result<()> {
+    drop(geometry.failure());
+    fill();
+    geometry.failure().map_or(Ok(()), |failure| Err(failure.into()))
 }
 
 /// Refuses NaN and −∞.

@@ -36,7 +36,8 @@ impl Repeated {
     /// The coordinate relative to the nearest periodic image of the origin.
     fn wrapped(&self, axis: usize, x: f64) -> f64 {
         let period = self.period[axis];
-        if period.is_finite() { x - period * (x / period).round() } else { x }
+        let periods = (x / period).round();
+        if period.is_finite() && periods.is_finite() { x - period * periods } else { x }
     }
 }
 

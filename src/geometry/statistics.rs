@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use crate::error::{Error, MapError, Result, count_within, finite, positive};
 use crate::geometry::HeightMap;
 use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
+use crate::memory;
 
 /// Statistics of a surface over its known points.
 ///
@@ -137,7 +138,7 @@ impl HeightMap {
         let low = self.known().fold(f64::INFINITY, f64::min);
         let range = positive("range of the heights", self.known().fold(low, f64::max) - low)?;
         let width = positive("width of a bin", range / bins as f64)?;
-        let mut counts = vec![0_usize; bins];
+        let mut counts = memory::field("the bins of the heights", bins, 0_usize)?;
         for z in self.known() {
             counts[(((z - low) / range * bins as f64) as usize).min(bins - 1)] += 1;
         }
@@ -334,6 +335,8 @@ mod tests {
         assert!(matches!(flat.statistics(), Err(Error::OutOfRange { field: "rms height", .. })));
         assert!(matches!(flat.height_distribution(3), Err(Error::OutOfRange { field: "range of the heights", .. })));
         assert!(matches!(flat.height_distribution(0), Err(Error::CountOutOfRange { .. })));
+        let distribution = rough(8, 0.3, 5).height_distribution(usize::MAX);
+        assert!(matches!(distribution, Err(Error::OutOfMemory { .. })), "{distribution:?}");
         let empty = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN, 1.0]).unwrap();
         assert_eq!(empty.power_spectrum(), Err(Error::Map(MapError::Incomplete { missing: 1 })));
     }

@@ -32,9 +32,14 @@ impl Sum {
     }
 }
 
+/// The sum of two gaps: nothing to touch where one shape has nothing, whatever the other is.
+fn added(one: f64, other: f64) -> f64 {
+    if one == f64::INFINITY || other == f64::INFINITY { f64::INFINITY } else { one + other }
+}
+
 impl Geometry for Sum {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
-        self.parts.iter().map(|shape| shape.initial_gap(x1, x2)).sum()
+        self.parts.iter().fold(0.0, |sum, shape| added(sum, shape.initial_gap(x1, x2)))
     }
 
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
@@ -42,12 +47,13 @@ impl Geometry for Sum {
         let mut part = vec![0.0; gap.len()];
         for shape in &self.parts {
             shape.fill_gap_at(grid, by, &mut part);
-            gap.iter_mut().zip(&part).for_each(|(sum, h)| *sum += h);
+            gap.iter_mut().zip(&part).for_each(|(sum, h)| *sum = added(*sum, *h));
         }
     }
 
     fn failure(&self) -> Option<UserError> {
-        self.parts.iter().find_map(|shape| shape.failure())
+        // all are taken, the first is told
+        self.parts.iter().fold(None, |first, shape| first.into_iter().chain(shape.failure()).next())
     }
 
     fn waves(&self) -> Vec<Waves> {
@@ -68,6 +74,8 @@ mod tests {
             Sum::new(Sphere::new(0.5).unwrap(), FlatPunch::circular(1.0).unwrap()).and(FnGeometry::new(|x1, _| x1));
         assert_eq!(sum.initial_gap(0.5, 0.0), 0.75);
         assert_eq!(sum.initial_gap(1.5, 0.0), f64::INFINITY);
+        let unknown = Sum::new(FnGeometry::new(|_, _| f64::NAN), FlatPunch::circular(1.0).unwrap());
+        assert!(unknown.initial_gap(1.5, 0.0) == f64::INFINITY && unknown.initial_gap(0.5, 0.0).is_nan());
         let grid = Grid::square(4, 4.0).unwrap();
         let mut gap = vec![f64::NAN; 16];
         sum.fill_gap(&grid, &mut gap);

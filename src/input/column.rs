@@ -100,9 +100,11 @@ impl fmt::Display for TakenColumn {
             write!(f, " {:?}", self.heading)?;
         }
         match &self.unit_of {
-            UnitOf::Sizes(text, sizes) if sizes[0] != 1.0 => {
+            UnitOf::Sizes(text, sizes) if sizes.len() == 1 && sizes[0] != 1.0 => {
                 write!(f, ", 1 {text} = {:e} {}", sizes[0], self.quantity.si())
             }
+            UnitOf::Other(_) => f.write_str(", of another unit"),
+            UnitOf::Sizes(_, sizes) if sizes.len() > 1 => f.write_str(", of a unit with two meanings"),
             _ => write!(f, " in {}", self.quantity.si()),
         }
     }

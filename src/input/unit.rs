@@ -164,12 +164,16 @@ fn plain(text: &str) -> String {
 /// longer than a letter.
 fn powers(factor: &str, sign: i32) -> Vec<Unit> {
     if let Some(power) = ["10^", "1e", "1E"].iter().find_map(|ten| factor.strip_prefix(ten)) {
-        return power.parse::<i32>().map(|power| (Q::NUMBER, 10_f64.powi(sign * power))).into_iter().collect();
+        return power
+            .parse::<i8>()
+            .map(|power| (Q::NUMBER, 10_f64.powi(sign * i32::from(power))))
+            .into_iter()
+            .collect();
     }
     let end = factor.find(|c: char| c == '^' || c == '-' || c.is_ascii_digit()).unwrap_or(factor.len());
     let (name, power) = factor.split_at(end);
-    let power = if power.is_empty() { Ok(1) } else { power.trim_start_matches('^').parse::<i32>() };
-    let Ok(power) = power.map(|power| sign * power) else { return Vec::new() };
+    let power = if power.is_empty() { Ok(1) } else { power.trim_start_matches('^').parse::<i8>() };
+    let Ok(power) = power.map(|power| sign * i32::from(power)) else { return Vec::new() };
     let units = |fits: &dyn Fn(&str, &str) -> bool| -> Vec<Unit> {
         let named = prefixed().filter(|(prefix, names, _)| names.iter().any(|unit| fits(prefix, unit)));
         named.map(|(.., (quantity, size))| (Q(quantity.0.map(|one| power * one)), size.powi(power))).collect()
@@ -225,6 +229,10 @@ mod tests {
             );
         }
         for text in ["", "%", "t", "S", "H", "1", "10^", "%", "N/m", "-", "5 MPa", "1 Hz", "ω", "m s", "1/K"] {
+            assert_eq!(readings(text), [], "{text}");
+        }
+        // powers of no unit
+        for text in ["Pa^2000000000", "1/10^-2147483648", "10^400 Pa", "Pa^128"] {
             assert_eq!(readings(text), [], "{text}");
         }
         assert_eq!(name(Q::TIME, 7.0), "7e0 s");

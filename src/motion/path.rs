@@ -13,6 +13,17 @@ pub trait Path: fmt::Debug + Send + Sync {
     }
 }
 
+macro_rules! forward_path {
+    ($($pointer:ty),*) => {
+        $(forward! {
+            Path, (<T> self: $pointer => **self),
+            at(t: f64) -> [f64; 2];
+            failure() -> Option<UserError>;
+        })*
+    };
+}
+forward_path!(&T, Box<T>, std::sync::Arc<T>);
+
 /// A straight path at constant velocity.
 ///
 /// ```

@@ -11,6 +11,7 @@
 /// assert!((found - 2f64.sqrt()).abs() < 1e-15);
 /// ```
 pub fn root(bracket: [f64; 2], from: f64, tolerance: f64, mut at: impl FnMut(f64) -> [f64; 2]) -> f64 {
+    let bracket = bracket.map(|end| end.clamp(f64::MIN, f64::MAX));
     let ([mut low, mut high], mut s, mut last) = (bracket, from, f64::INFINITY);
     loop {
         let [excess, slope] = at(s);
@@ -22,7 +23,7 @@ pub fn root(bracket: [f64; 2], from: f64, tolerance: f64, mut at: impl FnMut(f64
         } else {
             low = s
         }
-        let (newton, middle) = (s - excess / slope, 0.5 * (low + high));
+        let (newton, middle) = (s - excess / slope, 0.5 * low + 0.5 * high);
         let is_near = |next: f64| (next - s).abs() <= tolerance * s.abs().max(1.0);
         if is_near(newton) || is_near(middle) {
             let ends = [(low, bracket[0]), (high, bracket[1])];
@@ -31,5 +32,17 @@ pub fn root(bracket: [f64; 2], from: f64, tolerance: f64, mut at: impl FnMut(f64
         }
         let converges = newton > low && newton < high && excess.abs() <= 0.5 * last;
         (s, last) = (if converges { newton } else { middle }, excess.abs());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::root;
+
+    #[test]
+    fn brackets_may_be_endless() {
+        let square = |x: f64| [x * x - 2.0, 2.0 * x];
+        assert!((root([0.0, f64::INFINITY], 0.0, 1e-8, square) - 2f64.sqrt()).abs() < 1e-12);
+        assert_eq!(root([f64::NEG_INFINITY, f64::INFINITY], 1.0, 1e-8, |_| [-1.0, 0.0]), f64::MAX);
     }
 }

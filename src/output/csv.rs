@@ -157,7 +157,7 @@ fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<App
         let numbers: Vec<f64> = line.split(',').take(4).filter_map(|cell| cell.parse().ok()).collect();
         match (number, &numbers[..]) {
             (0, _) if line.starts_with("# ") => kept.earlier = end,
-            (1, _) if line.trim_end() == names => kept.earlier = end,
+            (1, _) if line.trim_end_matches(['\n', '\r']) == names => kept.earlier = end,
             (2.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], contact) => {}
             _ => break,
         }

@@ -170,8 +170,15 @@ fn temperature(history: &TemperatureHistory) -> String {
         Ok(table) => ("table", pairs(table)),
         Err(corners) => ("corners", array(corners.iter().copied().map(number))),
     };
+    let table = |name, rows: Vec<(f64, f64)>| (!rows.is_empty()).then(|| (name, pairs(&rows)));
+    let parts = [
+        table("shift_factors", law.rows()),
+        table("arrhenius_below", law.arrhenius_below().collect()),
+        history.age().map(|age| ("ageing", array(age.map(number)))),
+    ];
     let reference = ("reference", number(law.reference()));
-    object([reference].into_iter().chain(constants.into_iter().flatten()).chain(energy).chain([course]))
+    let law = [reference].into_iter().chain(constants.into_iter().flatten()).chain(energy);
+    object(law.chain(parts.into_iter().flatten()).chain([course]))
 }
 
 fn pairs(pairs: &[(f64, f64)]) -> String {

@@ -144,7 +144,11 @@ impl FrameSeries {
 /// The number of the frames of an earlier series up to the state of a contact, and their entries in the collection.
 fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> io::Result<(usize, String)> {
     let (mut kept, mut entries) = (Kept::default(), Vec::new());
-    while let Ok(frame) = fs::File::open(folder.join(format.frame(entries.len()))) {
+    loop {
+        let frame = match fs::File::open(folder.join(format.frame(entries.len()))) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => break,
+            opened => opened?,
+        };
         let state = match format {
             #[cfg(feature = "npy")]
             Format::Npz => npz::state_of(frame)?,

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use zip::ZipArchive;
 
 use crate::contact::Warnings;
-use crate::error::{Error, FileError, Result};
+use crate::error::{Error, FileError, Result, finite, poisson_ratio};
 use crate::file::{npy, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
@@ -137,12 +137,17 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let rest = array("rest", 3)?;
     let rest = RigidMotion { approach: rest[0], tilt: [rest[1], rest[2]] };
     let given = array("given_tilt", 4)?;
+    given.iter().try_for_each(|&value| finite("tilt or load point of the states", value).map(drop))?;
     let tilt =
         [0, 2].map(|k| if given[k] == 1.0 { Tilt::Free { at: given[k + 1] } } else { Tilt::Fixed(given[k + 1]) });
     let mut states = ElasticStates::new(table, rest, tilt);
     let sizes = array("error_first_level_poisson", 3)?;
+    if sizes[..2].iter().any(|size| size.is_nan() || *size < 0.0) {
+        return Err(refused("the error or the first level is not 0 or more".into()));
+    }
     (states.error, states.first_level) = (sizes[0], sizes[1]);
-    states.poisson = Some(sizes[2]).filter(|poisson| !poisson.is_nan());
+    let poisson = Some(sizes[2]).filter(|poisson| !poisson.is_nan());
+    states.poisson = poisson.map(|poisson| poisson_ratio("Poisson's ratio of the states", poisson)).transpose()?;
     if arrays.contains_key("grid") {
         let grid = array("grid", 4)?;
         states.grid = Some(Grid::new([grid[0] as usize, grid[1] as usize], [grid[2], grid[3]])?);

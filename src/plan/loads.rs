@@ -32,7 +32,7 @@ impl Loads {
     /// and the force is given at some times only, the compliance at the end of the run gives an upper bound.
     pub(super) fn of(scene: &TrialScene<'_>) -> Result<Loads> {
         let course = scene.course();
-        let all = course.sampled(PARTS)?;
+        let all = course.sampled(0.0, PARTS)?;
         let tilt = all[0].tilt();
         let on_states = all.iter().all(|load| load.tilt() == tilt);
         let interpolant = scene.asked.accuracy.settings().adaptive_interpolant();

@@ -1,5 +1,6 @@
 //! Axes: their ticks, and the numbers on them.
 
+use crate::plot::quantity::{scientific, superscript};
 use crate::plot::{Quantity, font};
 
 /// Size of the numbers along an axis in pixels per em.
@@ -77,7 +78,7 @@ impl Axis {
         let (first, last) = (low.ceil() as i32, high.floor() as i32);
         let number = |multiple: i32, k: i32| {
             let value = f64::from(multiple) * 10_f64.powi(k);
-            if is_short { format!("{value:.*}", -k.min(0) as usize) } else { scientific(value) }
+            if is_short { format!("{value:.*}", -k.min(0) as usize) } else { scientific(value, 0) }
         };
         let decade = |k: i32| (fraction(f64::from(k)), number(1, k));
         let multiples = |of: &[i32]| -> Vec<(f64, i32, i32)> {
@@ -137,21 +138,6 @@ fn round_step(least: f64) -> f64 {
     let multiple = [1.0, 2.0, 5.0].into_iter().find(|m| m * power >= 0.999_999 * least).unwrap_or(10.0);
     // a division is exact where a product is not: 3 / 10, not 3 * 0.1
     if exponent < 0.0 { multiple / 10_f64.powf(-exponent) } else { multiple * power }
-}
-
-/// A number as a digit and a power of ten, for labels: `5×10⁻²`, `10⁻²`.
-fn scientific(value: f64) -> String {
-    let text = format!("{value:.0e}");
-    let Some((digit, exponent)) = text.split_once('e') else { return text };
-    let power = format!("10{}", superscript(exponent.parse().unwrap_or(0)));
-    if digit == "1" { power } else { format!("{digit}×{power}") }
-}
-
-/// An exponent: −3 as ⁻³.
-fn superscript(exponent: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
-    exponent.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]

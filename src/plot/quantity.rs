@@ -109,8 +109,27 @@ pub(super) fn drawable_as_power(field: &'static str, value: f64) -> Result<f64> 
 pub fn measure(value: f64, unit: &str) -> String {
     let (prefix, factor) = prefix(unit, value.abs()).unwrap_or(("", 1.0));
     let number = value * factor;
+    if number != 0.0 && prefix.is_empty() && number.abs() < 1e-3 {
+        return format!("{} {unit}", scientific(number, 3));
+    }
     let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
     format!("{} {prefix}{unit}", shortened(&format!("{number:.*}", decimals as usize)))
+}
+
+/// A number as digits, so many of them `decimals`, and a power of ten: `5×10⁻²`, `10⁻²`.
+pub(super) fn scientific(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$e}");
+    let Some((digit, exponent)) = text.split_once('e') else { return text };
+    let power = format!("10{}", superscript(exponent.parse().unwrap_or(0)));
+    let digit = shortened(digit);
+    if digit == "1" { power } else { format!("{digit}×{power}") }
+}
+
+/// An exponent: −3 as ⁻³.
+pub(super) fn superscript(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    exponent.to_string().chars().map(raised).collect()
 }
 
 /// A number without trailing zeros, without the sign of a negative zero, and with a minus instead of a hyphen.
@@ -146,6 +165,15 @@ mod tests {
             let (text, by) = Quantity::new("q", unit).shown(greatest);
             assert_eq!(text, label, "{greatest} {unit}");
             assert!((by / factor - 1.0).abs() < 1e-12, "{greatest} {unit}");
+        }
+        for (value, unit, text) in [
+            (4.1237e-11, "1/Pa", "4.124×10⁻¹¹ 1/Pa"),
+            (-4.0e-13, "1/Pa", "−4×10⁻¹³ 1/Pa"),
+            (0.0, "1/Pa", "0 1/Pa"),
+            (1e-30, "s", "10⁻³⁰ s"),
+            (2.5e-3, "kg", "0.0025 kg"),
+        ] {
+            assert_eq!(measure(value, unit), text);
         }
     }
 }

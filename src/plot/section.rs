@@ -1,6 +1,6 @@
 //! Maps of the stress on a section.
 
-use crate::error::{Result, exact_length, in_order, least_length};
+use crate::error::{Result, exact_length, in_order, least_length, within};
 use crate::observe::{Stress, StressSection};
 use crate::plot::contact::time_title;
 use crate::plot::map::runs;
@@ -45,6 +45,11 @@ impl Map {
         let (axis, _) = section.along.and_other();
         let (positions, depths) = (&section.positions, &section.depths);
         exact_length("positions of a section", positions.len(), contact.grid().cells()[axis])?;
+        let centre = |k: usize| if axis == 0 { contact.grid().center(k, 0)[0] } else { contact.grid().center(0, k)[1] };
+        let (field, allowed) = ("position of a section", "the middle of a cell of the contact");
+        for (k, &position) in positions.iter().enumerate() {
+            within(field, position, (position - centre(k)).abs() <= UNEQUAL * contact.grid().spacing()[axis], allowed)?;
+        }
         exact_length("stresses on a section", section.values.len(), positions.len() * depths.len())?;
         least_length("depths of a section", depths.len(), 2)?;
         let step = depths[1] - depths[0];

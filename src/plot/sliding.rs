@@ -29,14 +29,21 @@ impl SlidingTable {
         chart
     }
 
-    /// Writes the table ([`SlidingTable::write_csv`]) and a picture of the friction over the speed: `path` with the endings `csv` and `png`. Existing files are
-    /// replaced.
+    /// Writes the table ([`SlidingTable::write_csv`]) and a picture of the friction over the speed: `path` with the endings `csv` and `png`, which take
+    /// the place of one of these endings alone. Existing files are replaced.
     ///
     /// # Errors
     /// If a file cannot be written, or there is nothing to draw.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        self.write_csv(path.with_extension("csv"))?;
-        self.chart("coefficient of friction", SlidingReport::friction).save(path.with_extension("png"))
+        let is_ending = path.extension().is_some_and(|ending| ending == "csv" || ending == "png");
+        let stem = if is_ending { path.with_extension("") } else { path.to_owned() };
+        let with = |ending: &str| {
+            let mut name = stem.clone().into_os_string();
+            name.push(ending);
+            name
+        };
+        self.write_csv(with(".csv"))?;
+        self.chart("coefficient of friction", SlidingReport::friction).save(with(".png"))
     }
 }

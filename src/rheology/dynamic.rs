@@ -47,7 +47,11 @@ impl CreepSpectrum {
     /// J* = J_g − iφ/ω + Σ J_k/(1 + iωλ_k)
     pub fn complex_compliance(&self, omega: f64) -> Complex64 {
         let flow = if self.fluidity() > 0.0 { self.fluidity() / omega } else { 0.0 };
-        let branch = |&(c, lambda): &(f64, f64)| c / Complex64::new(1.0, omega * lambda);
+        // 1/(1 + iy) = (1/y − i)/(y + 1/y)
+        let branch = |&(c, lambda): &(f64, f64)| {
+            let y = (omega * lambda).clamp(1e-200, 1e200);
+            Complex64::new(1.0 / y, -1.0) * (c / (y + 1.0 / y))
+        };
         Complex64::new(self.glassy(), -flow) + self.terms().iter().map(branch).sum::<Complex64>()
     }
 

@@ -32,8 +32,9 @@ impl FractionalMaxwell {
         positive("shear modulus", modulus)?;
         positive("quasi-property", quasi_property)?;
         fractional_order(exponent)?;
+        let glassy = positive("compliance 1/G", 1.0 / modulus)?;
         let rate = positive("creep after 1 s", 1.0 / (quasi_property * libm::tgamma(1.0 + exponent)))?;
-        Ok(FractionalMaxwell { glassy: 1.0 / modulus, rate, exponent })
+        Ok(FractionalMaxwell { glassy, rate, exponent })
     }
 
     /// A spring of shear `modulus` G \[Pa\] in series with a springpot that creeps as much as the spring, but for a factor

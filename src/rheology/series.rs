@@ -55,7 +55,8 @@ impl CreepSeries {
         within("longest time of a series", last, ordered, "no less than the shortest, and at most 1e90")?;
         within("tolerance of a series", tolerance, (1e-8..=0.1).contains(&tolerance), "in [1e-8, 0.1]")?;
         if let Some(spectrum) = rheology.creep_spectrum() {
-            let report = FitReport::exact(spectrum.terms().len());
+            let exact = || FitReport::exact(spectrum.terms().len());
+            let report = rheology.fit_report().cloned().unwrap_or_else(exact);
             let (known_until, measured) = (rheology.known_until(), rheology.measured());
             return Ok(CreepSeries { spectrum, report, known_until, measured });
         }
@@ -74,7 +75,8 @@ impl CreepSeries {
         let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
         let known_until = last.min(rheology.known_until());
         crate::events::fitted([first, last], series.terms.len(), report.max_misfit());
-        let measured = [first, known_until.min(rheology.measured()[1])];
+        let [from, to] = rheology.measured();
+        let measured = [first.max(from), known_until.min(to)];
         Ok(CreepSeries { spectrum, report, known_until, measured })
     }
 

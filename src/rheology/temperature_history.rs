@@ -157,7 +157,10 @@ impl TemperatureHistory {
 
     /// dξ/dt.
     pub(crate) fn rate(&self, time: f64) -> Result<f64> {
-        let aged = self.ageing.map_or(1.0, |Ageing { rate, reference, start }| ((start + time) / reference).powf(rate));
+        let aged = match self.ageing {
+            Some(Ageing { rate, reference, start }) => (positive("age", start + time)? / reference).powf(rate),
+            None => 1.0,
+        };
         Ok(1.0 / (self.law.shift_factor(self.at(time))? * aged))
     }
 
@@ -220,7 +223,7 @@ impl TemperatureHistory {
             // temperatures beyond the range of the law are too far
             _ => [f64::INFINITY, 0.0],
         };
-        Ok(guess * root([0.0, (most / guess).min(f64::MAX)], 1.0, LENGTH_TOLERANCE, excess))
+        Ok(guess * root([0.0, most / guess], 1.0, LENGTH_TOLERANCE, excess))
     }
 
     /// ξ over a piece without corners inside.
@@ -295,6 +298,11 @@ impl TemperatureHistory {
 
 impl TemperatureHistory {
     /// The times and temperatures of a table, or the corners of a function.
+    /// Shift rate, reference age and age at the start of an ageing body.
+    pub(crate) fn age(&self) -> Option<[f64; 3]> {
+        self.ageing.map(|Ageing { rate, reference, start }| [rate, reference, start])
+    }
+
     pub(crate) fn course(&self) -> std::result::Result<&[(f64, f64)], &[f64]> {
         match &self.course {
             Temperatures::Table(table) => Ok(table.as_slice()),

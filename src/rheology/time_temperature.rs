@@ -26,8 +26,8 @@ pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 pub struct TimeTemperature {
     law: Law,
     reference: f64,
-    /// A temperature, below which an Arrhenius law with an energy continues.
-    below: Option<Below>,
+    /// Temperatures, each lower than the one before, below which Arrhenius laws with their energies continue.
+    below: Vec<Below>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +61,7 @@ impl TimeTemperature {
         positive("WLF constant C1", c1)?;
         positive("WLF constant C2", c2)?;
         positive("reference temperature", reference)?;
-        Ok(TimeTemperature { law: Law::Wlf { c1, c2 }, reference, below: None })
+        Ok(TimeTemperature { law: Law::Wlf { c1, c2 }, reference, below: Vec::new() })
     }
 
     /// Arrhenius: ln a_T = (E/R)(1/T − 1/T_ref), activation `energy` E in J/mol, temperatures in K.
@@ -71,7 +71,7 @@ impl TimeTemperature {
     pub fn arrhenius(energy: f64, reference: f64) -> Result<TimeTemperature> {
         positive("activation energy", energy)?;
         positive("reference temperature", reference)?;
-        Ok(TimeTemperature { law: Law::Arrhenius { energy }, reference, below: None })
+        Ok(TimeTemperature { law: Law::Arrhenius { energy }, reference, below: Vec::new() })
     }
 
     /// A `table` of temperatures \[K\], ascending, and shift factors a_T, which are 1 at the `reference`. Between its rows ln a_T
@@ -100,7 +100,7 @@ impl TimeTemperature {
         let allowed = "a temperature of the table at which a_T = 1";
         within("reference temperature", reference, table.contains(&(reference, 1.0)), allowed)?;
         let nodes = table.iter().map(|&(temperature, factor)| (1.0 / temperature, factor.ln())).collect();
-        Ok(TimeTemperature { law: Law::Table { nodes, extrapolated: false }, reference, below: None })
+        Ok(TimeTemperature { law: Law::Table { nodes, extrapolated: false }, reference, below: Vec::new() })
     }
 
     /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows; other laws stay as they are.
@@ -116,11 +116,30 @@ impl TimeTemperature {
     /// polymers below their glass transition.
     ///
     /// # Errors
-    /// If one is not finite and positive, or the law does not hold at the temperature.
-    pub fn with_arrhenius_below(self, temperature: f64, energy: f64) -> Result<TimeTemperature> {
+    /// If one is not finite and positive, the law does not hold at the temperature, or the temperature is above the reference, or not below
+    /// the temperature of an Arrhenius law that continues the law already.
+    pub fn with_arrhenius_below(mut self, temperature: f64, energy: f64) -> Result<TimeTemperature> {
         positive("activation energy", energy)?;
+        let is_below = match self.below.last() {
+            Some(above) => temperature < above.temperature,
+            None => temperature <= self.reference,
+        };
+        let allowed = "at most the reference temperature, and below those given before";
+        within("upper end of an Arrhenius law", temperature, is_below, allowed)?;
         self.shift_factor(temperature)?;
-        Ok(TimeTemperature { below: Some(Below { temperature, energy }), ..self })
+        self.below.push(Below { temperature, energy });
+        Ok(self)
+    }
+
+    /// Temperatures \[K\] below which Arrhenius laws continue, and their energies in J/mol.
+    pub(crate) fn arrhenius_below(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.below.iter().map(|below| (below.temperature, below.energy))
+    }
+
+    /// The rows of a table of shift factors.
+    pub(crate) fn rows(&self) -> Vec<(f64, f64)> {
+        let Law::Table { nodes, .. } = &self.law else { return Vec::new() };
+        nodes.iter().map(|&(reciprocal, log)| (1.0 / reciprocal, log.exp())).collect()
     }
 
     /// The temperature at which a_T = 1 \[K\].
@@ -145,7 +164,7 @@ impl TimeTemperature {
     /// \[1e-60, 1e60\].
     pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
         positive("temperature", temperature)?;
-        if let Some(below) = self.below.filter(|below| temperature < below.temperature) {
+        if let Some(below) = self.below.iter().rfind(|below| temperature < below.temperature) {
             let slower = below.energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / below.temperature);
             let factor = self.shift_factor(below.temperature)? * slower.exp();
             return within("shift factor", factor, (1e-60..=1e60).contains(&factor), "in [1e-60, 1e60]");

@@ -58,18 +58,8 @@ pub trait FieldFinder<C>: Debug + Send + Sync {
     /// Sees a step of the run, from `start` to the time of its contact.
     fn follow(&mut self, _: &C, _: &dyn LoadHistory, _start: f64) {}
 
-    /// A contact of the last step with its field to the accuracy, where it does not have it itself.
-    fn with_field(&self, contact: &C, moment: &Moment<'_>) -> Result<(Option<C>, FieldReport)>;
-}
-
-/// A time of a run at which a field is asked for.
-#[derive(Debug)]
-pub struct Moment<'a> {
-    pub history: &'a dyn LoadHistory,
-    /// Whether a jump of the load at this time has been taken.
-    pub after: bool,
-    /// Ends of the steps so far.
-    pub ends: &'a [f64],
+    /// A contact of the last step with its field to the accuracy, where it does not have it itself; before a jump of the load at its time, or after it.
+    fn with_field(&self, contact: &C, history: &dyn LoadHistory, after: bool) -> Result<(Option<C>, FieldReport)>;
 }
 
 /// How exact the pressure of a [`Sample`](crate::run::Sample) is, and what it took.

@@ -14,8 +14,6 @@ pub(super) struct RunFields<C> {
     pub(super) finder: Box<dyn FieldFinder<C>>,
     /// Whether the run has begun.
     pub(super) is_prepared: bool,
-    /// Ends of the steps so far.
-    pub(super) ends: Vec<f64>,
     /// The greatest error of a field so far.
     pub(super) worst: Mutex<Option<f64>>,
 }

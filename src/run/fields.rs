@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::contact::StepReport;
 use crate::error::{Result, within};
 use crate::run::RunContact;
-use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Moment, Prepared};
+use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::{MOST_FIELDS, RunFields};
 use crate::run::follow::{Run, history_of};
 use crate::run::progress::Stepping;
@@ -14,8 +14,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Asks for fields to an accuracy.
     pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
         let accuracy = within("accuracy of the fields", accuracy, (1e-5..=0.1).contains(&accuracy), "in [1e-5, 0.1]")?;
-        self.fields =
-            Some(RunFields { accuracy, finder, is_prepared: false, ends: Vec::new(), worst: Mutex::new(None) });
+        self.fields = Some(RunFields { accuracy, finder, is_prepared: false, worst: Mutex::new(None) });
         Ok(self)
     }
 
@@ -35,14 +34,12 @@ impl<'a, C: RunContact> Run<'a, C> {
         let Prepared { stops, tolerance } = fields.finder.prepare(&self.contact, &request)?;
         C::tighten(&mut self.control, tolerance);
         fields.is_prepared = true;
-        fields.ends.push(self.contact.time());
         self.stops.add(stops.into(), self.progress.start)
     }
 
     /// Shows the step just taken, from `start` on, to what finds the fields.
     pub(super) fn show_step(&mut self, start: f64) {
         let Some(fields) = self.fields.as_mut() else { return };
-        fields.ends.push(self.contact.time());
         fields.finder.follow(&self.contact, history_of(&self.history), start);
     }
 
@@ -50,8 +47,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     pub(super) fn with_field(&self, contact: &C, after: bool) -> Result<Option<(Option<C>, FieldReport)>> {
         let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok(None) };
         let history = history_of(&self.history);
-        let moment = Moment { history, after, ends: &fields.ends };
-        let (exact, report) = fields.finder.with_field(contact, &moment)?;
+        let (exact, report) = fields.finder.with_field(contact, history, after)?;
         if let Some(error) = report.error {
             let mut worst = fields.worst.lock().unwrap_or_else(PoisonError::into_inner);
             *worst = Some(worst.unwrap_or(0.0).max(error));

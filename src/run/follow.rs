@@ -12,7 +12,7 @@ use crate::run::autosave::Autosave;
 use crate::run::driven::Course;
 use crate::run::event::Event;
 use crate::run::field::RunFields;
-use crate::run::progress::{Progress, RunProgress, Stepping};
+use crate::run::progress::{Progress, RunProgress, SAME_TIME, Stepping};
 use crate::run::{OwnedOrBorrowed, RunContact};
 
 /// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
@@ -86,6 +86,8 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
+    /// Times up to here were sampled at the ends of the steps before.
+    pub(super) covered: f64,
     pub(super) fields: Option<RunFields<C>>,
     #[cfg(feature = "checkpoint")]
     pub(super) autosave: Option<Autosave>,
@@ -143,6 +145,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             events: Vec::new(),
             cancelled: None,
             last: None,
+            covered: 0.0,
             fields: None,
             #[cfg(feature = "checkpoint")]
             autosave: None,
@@ -221,7 +224,9 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Takes the next step and keeps its report for [`Run::samples`].
     pub(super) fn take_next(&mut self) -> Result<Option<StepReport>> {
-        self.last = None;
+        if let Some((start, StepReport { time, .. })) = self.last.take() {
+            self.covered = self.covered.max(time + SAME_TIME * (time - start));
+        }
         self.prepare_fields()?;
         let start = self.contact.time();
         let mut report = if self.events.is_empty() { self.take_step() } else { self.take_until_event() }?;

@@ -99,7 +99,7 @@ impl Halves {
             Some([1.0, u[k].abs(), v[k].abs(), (u[k] - u_whole[k]).abs(), (v[k] - v_whole[k]).abs()].map(|x| w * x))
         });
         let least = least_sizes(&self.start, outlook);
-        let over = |off: f64, of: f64, least: f64| if off > 0.0 { off / of.max(least * weight) } else { 0.0 };
+        let over = |off: f64, of: f64, least: f64| if off != 0.0 { off / of.max(least * weight) } else { 0.0 };
         over(off_u, of_u, least[0]).max(over(off_v, of_v, least[1]))
     }
 }

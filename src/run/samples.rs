@@ -82,7 +82,7 @@ impl<C: RunContact> Run<'_, C> {
     pub fn samples(&self) -> impl Iterator<Item = Result<Sample<'_, C>>> {
         let (start, end) = self.last.map_or((0.0, 0.0), |(start, report)| (start, report.time));
         let same = SAME_TIME * (end - start);
-        let (mut time, mut left) = (start + same, self.last);
+        let (mut time, mut left) = (self.covered.max(start), self.last);
         std::iter::from_fn(move || {
             let (_, whole) = left?;
             let next = self.sampled.after(time).filter(|next| *next < end - same);

@@ -216,6 +216,8 @@ impl StepControl {
     /// Chooses the length of the next step after the one proposed, of length `dt`, with the given error, which grows with the power
     /// `order` of the length. Returns whether the error allows the step.
     pub(super) fn judge(&mut self, Proposal { order, dashpot, .. }: Proposal, dt: f64, error: f64) -> bool {
+        // an error that overflows is no number
+        let error = if error.is_nan() { f64::INFINITY } else { error };
         let (ratio, order) = ((error / self.tolerance).max(1e-10), f64::from(order));
         let accepted = ratio <= 1.0;
         let factor = if accepted {

@@ -68,7 +68,6 @@ pub(super) struct Beside {
     allowed_fall: f64,
     /// Elastic contacts solved since the last field, and their convolutions.
     spent: [usize; 2],
-    serves: bool,
 }
 
 /// A pressure on the grid.
@@ -82,14 +81,14 @@ pub(crate) struct FoundPressure {
 
 impl Beside {
     /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field: tilts change, or are free
-    /// under a given approach, the material has no series, or nothing presses.
+    /// under a given approach, the material has no series, nothing presses, or an elastic contact shrinks as its load grows.
     pub(crate) fn new(
         contact: &ViscoelasticContact,
         course: &Loading<'_>,
         accuracy: f64,
         (interpolant, start): (Interpolant, f64),
     ) -> Result<Option<Beside>> {
-        let all = course.sampled(PARTS)?;
+        let all = course.sampled(start, PARTS)?;
         let tilt = all[0].tilt();
         let (by_force, is_free) =
             (all.iter().all(Load::is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));
@@ -128,14 +127,14 @@ impl Beside {
             rest,
             allowed_fall: FALL_OVER_TOLERANCE * tolerance,
             spent: [0; 2],
-            serves: true,
         };
         let mut below: Option<Solved> = None;
         for k in (0..FIRST_LEVELS).rev() {
             let level = top * RATIO.powi(-k);
             let next = beside.solve(level)?;
-            let shrinks = below.is_some_and(|below| beside.check(&below, &next).is_err());
-            beside.serves &= !shrinks;
+            if below.is_some_and(|below| beside.check(&below, &next).is_err()) {
+                return Ok(None);
+            }
             below = Some(next);
         }
         let origin = undisturbed(course, &beside.curve_through(&beside.rows)?, interpolant, start)?;
@@ -328,32 +327,6 @@ impl Beside {
             solved.pressure.add_to(shares[k] - shares.get(k + 1).unwrap_or(&0.0), &mut field);
         }
         field
-    }
-
-    /// Whether the elastic contacts give fields: none shrinks.
-    pub(crate) fn serves(&self) -> bool {
-        self.serves
-    }
-
-    /// Times before a time at which steps should end for the field there, and by how many times an error of the level counts in it.
-    pub(crate) fn stops(&self, history: &dyn LoadHistory, time: f64) -> Result<(Vec<f64>, f64)> {
-        let found = self.repeated.at(history, time, false)?;
-        let profile = Profile::new(found.contact.tractions());
-        let (levels, _) = profile.cuts(found.size(), self.repeated.accuracy);
-        let amplification = if self.by_force { profile.amplification(found.contact.level()) } else { 1.0 };
-        Ok((levels.into_iter().map(|level| found.since(level)).collect(), amplification))
-    }
-
-    /// The error of the pressure at a time by steps with these ends.
-    pub(crate) fn error_of_steps(
-        &self,
-        history: &dyn LoadHistory,
-        ends: &[f64],
-        (time, after): (f64, bool),
-    ) -> Result<f64> {
-        let found = self.repeated.at(history, time, after)?;
-        let taken = self.repeated.by_steps(history, ends, (time, after))?;
-        Ok(Profile::new(found.contact.tractions()).distance(&Profile::new(taken.contact.tractions()), found.size()))
     }
 }
 

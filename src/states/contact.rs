@@ -26,6 +26,8 @@ pub struct StatesContact {
     pub(super) levels: Levels,
     pub(super) time: f64,
     pub(super) reduced_time: f64,
+    /// The reduced time until which the bodies were undisturbed.
+    pub(super) undisturbed_until: f64,
     /// The run that saved this state, for the next run to go on with.
     #[cfg(feature = "checkpoint")]
     pub(super) saved_run: Option<Arc<dyn std::any::Any + Send + Sync>>,
@@ -70,6 +72,7 @@ impl StatesContact {
             levels,
             time: 0.0,
             reduced_time: 0.0,
+            undisturbed_until: 0.0,
             #[cfg(feature = "checkpoint")]
             saved_run: None,
         })
@@ -159,15 +162,21 @@ impl StatesContact {
         non_negative("time step", dt)?;
         load.validate_in(false)?;
         let (length, reduced) = self.reduced(time, dt)?;
-        let known_until = self.scene.limits.known_until;
-        if !is_known(reduced, known_until) {
-            return Err(Error::Step(StepError::BeyondMaterial { time, age: reduced, known_until }));
-        }
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
+        // time at rest does not count
+        let (age, known_until) = (reduced - self.undisturbed_until, self.scene.limits.known_until);
+        let known = |touched: bool| match !touched || is_known(age, known_until) {
+            true => Ok(()),
+            false => Err(Error::Step(StepError::BeyondMaterial { time, age, known_until })),
+        };
+        known(self.groups() > 0)?;
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
+        known(wanted.level > 0.0)?;
         if self.scene.elastic.is_some() && wanted.level > 0.0 {
+            let before = Arc::clone(&self.states);
             self.solve(wanted)?;
-            wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
+            let again = self.levels.wanted(&self.states, times, interpolant, demand);
+            wanted = again.inspect_err(|_| self.states = before)?;
         }
         Ok((demand, wanted, reduced))
     }
@@ -197,6 +206,9 @@ impl StatesContact {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         self.levels.accept(&self.states, demand, wanted);
         (self.time, self.reduced_time) = (time, reduced);
+        if self.groups() == 0 {
+            self.undisturbed_until = reduced;
+        }
         Ok(self.report(dt, load))
     }
 
@@ -206,7 +218,7 @@ impl StatesContact {
         let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
         if self.groups() > 0 {
             let reduced = self.temperature().and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
-            warnings |= limits.warnings(self.reduced_time, reduced.unwrap_or(dt));
+            warnings |= limits.warnings(self.reduced_time - self.undisturbed_until, reduced.unwrap_or(dt));
         }
         warnings.set(Warnings::MODULUS, limits.modulus.is_some());
         StepReport {
@@ -280,6 +292,7 @@ impl StatesContact {
         self.states.clone_from(&other.states);
         self.levels.copy_from(&other.levels);
         (self.time, self.reduced_time) = (other.time, other.reduced_time);
+        self.undisturbed_until = other.undisturbed_until;
     }
 
     /// Puts other elastic states of the same surface in the place of its own.

@@ -31,7 +31,7 @@ impl StatesContact {
         // Σ w (p_e(l_i) − p_e(l_i−1)) by the share of each state in it
         let mut shares = vec![0.0; states.pressures.len()];
         let mut last = 0.0;
-        for (top, traction, _) in self.levels.groups().filter(|(_, traction, _)| *traction > 0.0) {
+        for (top, traction) in self.tractions() {
             states.share(top, traction, &mut shares);
             states.share(last, -traction, &mut shares);
             last = top;

@@ -89,7 +89,7 @@ pub(crate) struct Loading<'a> {
 impl Loading<'_> {
     fn reach(&self) -> Result<Reach> {
         positive("end of the run", self.until)?;
-        let all = self.sampled(PARTS)?;
+        let all = self.sampled(0.0, PARTS)?;
         if all.iter().all(Load::is_force) {
             return Ok(Reach::Level(
                 MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
@@ -98,15 +98,15 @@ impl Loading<'_> {
         Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
 
-    /// Loads at the ends of so many even parts of the run, and at the corners and jumps of its history.
-    pub(crate) fn sampled(&self, parts: u32) -> Result<Vec<Load>> {
+    /// Loads at the ends of so many even parts of the run from `start` on, and at the corners and jumps of its history.
+    pub(crate) fn sampled(&self, start: f64, parts: u32) -> Result<Vec<Load>> {
         let Loading { history, until, .. } = *self;
         let mut all = Vec::new();
         for k in 0..=parts {
-            let time = until * f64::from(k) / f64::from(parts);
+            let time = start + (until - start) * f64::from(k) / f64::from(parts);
             all.push(history.checked_at(time, false)?);
         }
-        for corner in history.breakpoints(0.0).take(MAX_CORNERS).take_while(|&next| next <= until) {
+        for corner in history.breakpoints(start).take(MAX_CORNERS).take_while(|&next| next <= until) {
             all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
         }
         Ok(all)

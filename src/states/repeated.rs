@@ -40,10 +40,9 @@ pub(crate) struct Repeated {
     shortening: f64,
 }
 
-/// A contact on levels at a time, and the times and levels of its steps.
+/// A contact on levels at a time.
 pub(crate) struct Found {
     pub(crate) contact: StatesContact,
-    steps: Vec<(f64, f64)>,
     /// The greatest force so far.
     force: f64,
 }
@@ -130,15 +129,10 @@ impl Repeated {
     }
 
     /// The contact at a time, by steps with these ends.
-    pub(super) fn by_steps(
-        &self,
-        history: &dyn LoadHistory,
-        ends: &[f64],
-        (time, after): (f64, bool),
-    ) -> Result<Found> {
+    fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<Found> {
         let mut contact = self.origin.clone();
         let (start, mut force) = (contact.time(), 0.0_f64);
-        let (mut corner, mut steps) = (history.next_breakpoint(start), vec![(start, 0.0)]);
+        let mut corner = history.next_breakpoint(start);
         let jump = |contact: &mut StatesContact, time: f64| {
             match contact.step_to(time, 0.0, history.checked_at(time, false)?) {
                 // the run stays as it was
@@ -161,13 +155,12 @@ impl Repeated {
                 jump(&mut contact, end)?;
                 force = force.max(contact.force());
             }
-            steps.push((end, contact.level()));
             while let Some(next) = corner.filter(|corner| *corner <= end) {
                 contact.reset_differences();
                 corner = history.next_breakpoint(next);
             }
         }
-        Ok(Found { contact, steps, force })
+        Ok(Found { contact, force })
     }
 }
 
@@ -184,12 +177,6 @@ impl Found {
     pub(super) fn clearance(&mut self) -> Result<f64> {
         let time = self.contact.time();
         Ok(if self.contact.level() > 0.0 { 0.0 } else { self.contact.surface_at(time)? - self.contact.depth() })
-    }
-
-    /// The time from which on the contact has been larger than at this level.
-    pub(super) fn since(&self, level: f64) -> f64 {
-        let after = self.steps.iter().rposition(|step| step.1 < level * (1.0 - NEAREST));
-        after.map_or(self.steps[0].0, |k| self.steps.get(k + 1).unwrap_or(&self.steps[k]).0)
     }
 }
 

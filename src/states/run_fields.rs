@@ -3,10 +3,10 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::{Scene, ViscoelasticContact};
-use crate::error::{Error, Result, count_within};
+use crate::error::{Result, count_within};
 use crate::load::{Load, LoadHistory};
 use crate::run::Run;
-use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Moment, Prepared};
+use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::MOST_FIELDS;
 use crate::states::beside::Beside;
 use crate::states::coarser::Coarser;
@@ -15,12 +15,11 @@ use crate::states::reach::Loading;
 use crate::states::repeated::Repeated;
 use crate::states::unless_refused;
 
-/// An error of the level counts K times in a field ([`Profile::amplification`](crate::states::Profile::amplification)): adaptive steps before it
-/// have this tolerance over K, as a part of the accuracy of the field.
-const OF_LEVEL: f64 = 1.5;
-/// Where levels do not tell K, it is taken as the creep of the bodies under a given force, up to so much.
+/// An error of the force counts in a field as many times as the bodies creep under a given force, up to so much: adaptive steps have this tolerance
+/// over the creep, as a part of the accuracy of the field.
+const OF_CREEP: f64 = 1.5;
 const MOST_CREEP: f64 = 15.0;
-/// Number and ratio of the graded steps before a field where nothing better is known.
+/// Number and ratio of the graded steps before a field where levels do not give it.
 const GRADED: i32 = 12;
 const RATIO: f64 = 0.7;
 
@@ -30,7 +29,7 @@ enum InSpace {
     /// The run has not begun.
     #[default]
     Unknown,
-    /// From elastic contacts; where these shrink, by steps, whose error levels tell.
+    /// From elastic contacts.
     Beside(Mutex<Box<Beside>>),
     /// By graded steps, whose error longer steps tell.
     Coarser(Coarser),
@@ -46,9 +45,8 @@ impl<'a> Run<'a> {
     /// elastic contacts beside the run give the pressure of [`Sample::contact`](crate::run::Sample::contact) and [`Run::within_step`] at any
     /// time: 6 for 1e-2 and 13 for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
     ///
-    /// Elsewhere steps end before each of the times, and [`Run::contact`] has the pressure there. Where an elastic contact shrinks as its load
-    /// grows, the levels choose these steps, 8 more for 1e-2 and 16 for 1e-3 in the median. Where load points or tilts change, or bodies are
-    /// several, attract each other or are shared out by ranks, 12 steps are graded by 0.7. Under a given force the tolerance of all steps is then the
+    /// Where an elastic contact shrinks as its load grows, load points or tilts change, or bodies are several, attract each other or are shared
+    /// out by ranks, 12 steps graded by 0.7 end before each of the times, and [`Run::contact`] has the pressure there. Under a given force the tolerance of all steps is then the
     /// accuracy over two thirds of the creep, but a tenth at least. The estimate is the difference to a run beside in steps twice as long: half as
     /// much work again, and the memory of a contact. There is none once a step of that run has failed.
     ///
@@ -106,19 +104,12 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         let kind = (settings.adaptive_interpolant(), start);
         let beside = (is_alone && is_new).then(|| Beside::new(contact, &course, accuracy, kind)).transpose();
         if let Some(beside) = unless_refused(beside)?.flatten() {
-            let (mut stops, mut finest) = (Vec::new(), 1.0_f64);
-            let times = if beside.serves() { &[] } else { few(times)? };
-            for &time in times {
-                let (before, amplification) = beside.stops(history, time)?;
-                finest = finest.min(OF_LEVEL / amplification);
-                stops.extend(before.into_iter().chain([time]));
-            }
-            let tolerance = if beside.serves() { f64::INFINITY } else { finest * accuracy };
             *self = InSpace::Beside(Mutex::new(Box::new(beside)));
-            return Ok(Prepared { stops, tolerance });
+            return Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY });
         }
+        count_within("fields for which steps end", times.len(), times.len() <= MOST_FIELDS, "10 000 at most")?;
         let mut stops = Vec::new();
-        for &time in few(times)? {
+        for &time in times {
             let (mut since, mut corner) = (start, history.next_breakpoint(start));
             while let Some(next) = corner.filter(|next| *next > since && *next < time) {
                 (since, corner) = (next, history.next_breakpoint(next));
@@ -130,7 +121,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         let tolerance = match history.checked_at(start, attraction.is_some())? {
             Load::Force { .. } => {
                 let creep = course.softest_compliance()? / material.contact_compliance(0.0);
-                OF_LEVEL / creep.clamp(OF_LEVEL, MOST_CREEP) * accuracy
+                OF_CREEP / creep.clamp(OF_CREEP, MOST_CREEP) * accuracy
             }
             _ => accuracy,
         };
@@ -146,9 +137,9 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
     fn with_field(
         &self,
         contact: &ViscoelasticContact,
-        moment: &Moment<'_>,
+        history: &dyn LoadHistory,
+        after: bool,
     ) -> Result<(Option<ViscoelasticContact>, FieldReport)> {
-        let Moment { history, after, ends } = *moment;
         let mut report = FieldReport::default();
         let beside = match self {
             InSpace::Unknown => return Ok((None, report)),
@@ -159,30 +150,14 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             InSpace::Beside(beside) => beside,
         };
         let mut beside = beside.lock().unwrap_or_else(PoisonError::into_inner);
-        if beside.serves() {
-            match beside.pressure(history, contact.time(), after) {
-                Ok(found) => {
-                    [report.elastic_contacts, report.convolutions] = found.spent;
-                    if let Some(contact) = contact.with_pressure(&found.pressure) {
-                        report.error = Some(found.error).filter(|error| error.is_finite());
-                        return Ok((Some(contact), report));
-                    }
-                }
-                // an elastic contact that shrinks here says nothing of the steps
-                Err(Error::States(_) | Error::Step(_)) => return Ok((None, report)),
-                Err(error) => return Err(error),
-            }
-        }
-        let error = beside.error_of_steps(history, ends, (contact.time(), after));
-        report.error = unless_refused(error.map(Some))?;
-        Ok((None, report))
+        let Some(found) = unless_refused(beside.pressure(history, contact.time(), after).map(Some))? else {
+            return Ok((None, report));
+        };
+        [report.elastic_contacts, report.convolutions] = found.spent;
+        let exact = contact.with_pressure(&found.pressure);
+        report.error = Some(found.error).filter(|error| exact.is_some() && error.is_finite());
+        Ok((exact, report))
     }
-}
-
-/// Accepts so many times as steps can end for.
-fn few(times: &[f64]) -> Result<&[f64]> {
-    count_within("fields for which steps end", times.len(), times.len() <= MOST_FIELDS, "10 000 at most")?;
-    Ok(times)
 }
 
 /// A run on states in fine steps.
@@ -196,8 +171,13 @@ impl FieldFinder<StatesContact> for OnStates {
         Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY })
     }
 
-    fn with_field(&self, contact: &StatesContact, moment: &Moment<'_>) -> Result<(Option<StatesContact>, FieldReport)> {
-        let found = self.0.as_ref().map(|run| run.at(moment.history, contact.time(), moment.after)).transpose()?;
+    fn with_field(
+        &self,
+        contact: &StatesContact,
+        history: &dyn LoadHistory,
+        after: bool,
+    ) -> Result<(Option<StatesContact>, FieldReport)> {
+        let found = self.0.as_ref().map(|run| run.at(history, contact.time(), after)).transpose()?;
         Ok((found.map(|found| found.contact), FieldReport::default()))
     }
 }

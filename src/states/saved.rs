@@ -27,7 +27,8 @@ struct Saved<'a> {
     /// Fingerprint of the elastic states.
     states: u32,
     interpolant: Interpolant,
-    times: [f64; 2],
+    /// Time, reduced time, and the reduced time until which the bodies were undisturbed.
+    times: [f64; 3],
     levels: Cow<'a, Levels>,
     run: Option<SavedRun>,
 }
@@ -53,7 +54,7 @@ impl StatesContact {
     /// [`StatesContact::save`] with a run that continues from there.
     pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun>) -> Result<()> {
         let (kind, states, interpolant) = (Cow::Borrowed(KIND), self.fingerprint(), self.scene.interpolant);
-        let times = [self.time, self.reduced_time];
+        let times = [self.time, self.reduced_time, self.undisturbed_until];
         let saved = Saved { kind, states, interpolant, times, levels: Cow::Borrowed(&self.levels), run };
         replace(path, |out| {
             let mut out = Output::begin(out)?;
@@ -74,7 +75,7 @@ impl StatesContact {
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let saved = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source })?;
-        [self.time, self.reduced_time] = saved.times;
+        [self.time, self.reduced_time, self.undisturbed_until] = saved.times;
         self.levels = saved.levels.into_owned();
         self.saved_run = saved.run.map(|run| Arc::new(run) as _);
         Ok(())
@@ -102,13 +103,16 @@ impl StatesContact {
         if !saved.levels.is_of_the_material_of(&self.levels) {
             return other("material", "another".into(), "its own".into());
         }
-        if !saved.levels.fits(&self.levels) || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0) {
+        let [time, reduced, undisturbed_until] = saved.times;
+        if undisturbed_until > reduced
+            || !saved.levels.fits(&self.levels)
+            || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0)
+        {
             return malformed("levels that no contact has");
         }
         if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits()) {
             return malformed("a run that no contact can continue");
         }
-        let [time, reduced] = saved.times;
         check_clocks(time, reduced, self.scene.temperature.as_ref())?;
         Ok(saved)
     }

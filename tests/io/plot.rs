@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use viscocontact::ErrorKind;
+use viscocontact::observe::Stress;
 use viscocontact::output::Field;
 use viscocontact::plot::{
     Animation, COLORS, Chart, ColorScale, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style, measure,
@@ -234,11 +235,15 @@ fn bad_pictures_are_refused_by_name() {
         map.range = range;
         assert!(field(map.draw()).ends_with("end of the colour scale"));
     }
+    let contact = |side: f64| contact_of(&sphere(), Grid::square(8, side).unwrap(), maxwell(), Settings::default());
+    let section = contact(1.0).stress().unwrap().on_section(Axis::X1, 0.0, &[0.1, 0.2]).unwrap();
+    assert!(Map::section(&contact(1.0), &section, Stress::tresca, "q").is_ok());
     let empty = Chart::new("", "x", "y", Legend::UpperLeft);
     let mut far = empty.clone();
     far.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);
     refused([
         (Map::draw_row(&[]).err(), "maps of a row"),
+        (Map::section(&contact(2.0), &section, Stress::tresca, "q").err(), "position of a section"),
         (Map::draw_row(&vec![map; 40]).err(), "pixels along a side of a picture"),
         (Map::new(&grid, vec![0.0; 3], "q").err(), "values of a map"),
         (Map::new(&grid, vec![1e101; 4], "q").err(), "value of a map"),

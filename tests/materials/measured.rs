@@ -142,6 +142,14 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
         let error = contact.step(51.0, Load::force(0.1)).unwrap_err();
         assert!(matches!(error, Error::Step(StepError::BeyondMaterial { known_until: 100.0, .. })), "{error}");
     }
+    let states = ElasticStates::sphere(1.0e-2).unwrap();
+    let mut contact = StatesContact::new(&states, &Material::incompressible(body.clone())).unwrap();
+    contact.step(1e5, Load::force(0.0)).unwrap();
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    let report = contact.step(50.0, Load::force(0.1)).unwrap();
+    assert!(!report.warnings.contains(Warnings::NEAR_END_OF_MATERIAL), "{report}");
+    let error = contact.step(51.0, Load::force(0.1)).unwrap_err();
+    assert_eq!(error, Error::Step(StepError::BeyondMaterial { time: 100051.0, age: 101.0, known_until: 100.0 }));
     // the choice
     let trusted = body.extrapolated();
     assert!(trusted.creep_compliance(150.0).is_finite());
@@ -347,4 +355,47 @@ fn tables_as_they_come_are_fitted_or_refused_for_a_reason() {
     println!("{} in {:.2} s", fitted.report(), clock.elapsed().as_secs_f64());
     assert!(fitted.report().max_misfit() < 1e-3 && fitted.report().samples().len() == times.len());
     assert_eq!(Material::incompressible(fitted).fit_reports().count(), 1);
+}
+
+/// What a table says of its scatter holds for it as an isotherm, and what a fit says of itself for a series of it. Tables that are shorter
+/// than a mean of their rows are fitted.
+#[test]
+fn what_is_known_of_a_table_is_not_lost() {
+    let rows = [(0.1, 1.0e-9), (1.0, 1.4e-9), (10.0, 1.1e-9), (100.0, 1.6e-9), (1000.0, 2.1e-9)];
+    let table = Measurements::creep(&rows).unwrap();
+    let as_isotherm = |table: Measurements| MasterCurve::new(300.0, vec![Isotherm::new(300.0, table)?])?.fit();
+    assert!(as_isotherm(table.clone()).is_err());
+    let table = table.with_scatter(0.08).unwrap();
+    let (curve, body) = (as_isotherm(table.clone()).unwrap(), table.fit().unwrap());
+    assert_eq!(curve.spectrum(), body.spectrum());
+    let again = body.series(1e-3..=1e3, 1e-6).unwrap();
+    assert_eq!((again.report(), again.measured()), (body.report(), body.measured()));
+    /// A creep function that was measured in a part of the times.
+    #[derive(Debug)]
+    struct Measured(PowerLaw);
+    impl Rheology for Measured {
+        fn creep_compliance(&self, t: f64) -> f64 {
+            self.0.creep_compliance(t)
+        }
+        fn measured(&self) -> [f64; 2] {
+            [1.0, 10.0]
+        }
+    }
+    let series = Measured(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap()).series(1e-3..=1e3, 1e-4).unwrap();
+    assert_eq!(series.measured(), [1.0, 10.0]);
+    let short = [(1.00, 1.00e6), (1.01, 0.99e6), (1.02, 0.98e6), (1.03, 0.97e6)];
+    assert!(Measurements::relaxation(&short).unwrap().fit().is_ok());
+}
+
+/// J* at frequencies at which ωλ has no square.
+#[test]
+fn oscillations_may_be_of_any_frequency() {
+    let body = CreepSpectrum::new(1.0, 0.0, &[(2.0, 1.0)]).unwrap();
+    for (omega, real, imaginary) in
+        [(0.0, 3.0, 0.0), (1e-200, 3.0, -2e-200), (1.0, 2.0, -1.0), (1e180, 1.0, -2e-180), (f64::INFINITY, 1.0, 0.0)]
+    {
+        let compliance = body.complex_compliance(omega);
+        let near = |value: f64, wanted: f64| (value - wanted).abs() <= 1e-12 * wanted.abs() + 1e-190;
+        assert!(near(compliance.re, real) && near(compliance.im, imaginary), "{omega:e}: {compliance}");
+    }
 }

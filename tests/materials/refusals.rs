@@ -65,6 +65,7 @@ fn rheologies_refuse_by_name() {
         (GeneralizedMaxwell::prony_long_term(0.0, &[share(1.0, 1.0)]).err(), "rubbery modulus"),
         (Elastic::young(1.0, 0.6).err(), "Poisson's ratio"),
         (Elastic::young(0.0, 0.3).err(), "Young's modulus"),
+        (FractionalMaxwell::new(1e-310, 1.0, 0.5).err(), "compliance 1/G"),
     ]);
 }
 

@@ -330,9 +330,16 @@ fn a_sweep_is_its_states() {
     }
     let ended = wavy(16).sweep_with(&sweep, |_, _| ControlFlow::Break(())).unwrap();
     assert_eq!(ended.states().len(), 1);
-    let file = crate::common::Temporary::file("sliding_sweep.csv");
-    table.write_csv(&*file).unwrap();
-    let mut rows = csv::Reader::from_path(&*file).unwrap();
+    let folder = crate::common::Temporary::folder("sliding_sweep");
+    for name in ["mu_0.5", "mu_0.25", "mu.png"] {
+        table.save(folder.join(name)).unwrap();
+    }
+    let files = ["mu_0.5.csv", "mu_0.5.png", "mu_0.25.csv", "mu_0.25.png", "mu.csv", "mu.png"];
+    assert!(
+        files.iter().all(|file| folder.join(file).is_file())
+            && std::fs::read_dir(&*folder).unwrap().count() == files.len()
+    );
+    let mut rows = csv::Reader::from_path(folder.join("mu_0.5.csv")).unwrap();
     let friction: Vec<f64> = rows.records().map(|row| row.unwrap()[5].parse().unwrap()).collect();
     assert_eq!(friction, table.states().iter().map(|state| state.report.friction()).collect::<Vec<_>>());
 }

@@ -238,6 +238,21 @@ fn fields_of_states_are_as_exact_as_asked() {
     }
 }
 
+/// A group of levels that has relaxed to nothing keeps its place in the pressure.
+#[test]
+fn relaxed_levels_press_no_more() {
+    let (grid, settings) = (Grid::square(32, 4.0e-3).unwrap(), Settings::default().with_tolerance(1e-8));
+    let sweep =
+        Sweep::new(grid.clone(), &Sphere::new(RADIUS).unwrap()).settings(settings).accuracy(1e-3).keep_pressures();
+    let states = sweep.run(Reach::Approach(6.0e-5)).unwrap();
+    let mut contact = StatesContact::new(&states, &rubber()).unwrap();
+    for (dt, depth) in [(0.0, 2.0e-5), (100.0, 2.0e-5), (0.0, 4.0e-5), (1.0, 5.0e-5)] {
+        contact.step(dt, Load::approach(depth)).unwrap();
+        let force = contact.pressure().unwrap().iter().sum::<f64>() * grid.cell_area();
+        assert!((force - contact.force()).abs() <= 1e-3 * contact.force() + 1e-12, "{force:e} {:e}", contact.force());
+    }
+}
+
 /// Where elastic contacts give the fields the steps stay as they are, bitwise; a jump has the field before it and after it; bodies apart
 /// have none.
 #[test]
@@ -308,15 +323,16 @@ fn fields_are_found_again_after_a_resumption() {
 #[derive(Debug)]
 struct Turning<'a> {
     load: &'a dyn LoadHistory,
-    /// Farthest distance of the point \[m\], or greatest tilt, and turns per second.
+    /// Farthest distance of the point \[m\], or greatest tilt, turns per second and at t = 0.
     most: f64,
     rate: f64,
+    turned: f64,
     is_free: bool,
 }
 
 impl Turning<'_> {
     fn turned(&self, load: Load, t: f64) -> Load {
-        let at = self.most * (std::f64::consts::TAU * self.rate * t).sin();
+        let at = self.most * (std::f64::consts::TAU * (self.rate * t + self.turned)).sin();
         let tilt = [at, -0.3 * at].map(|at| if self.is_free { Tilt::Free { at } } else { Tilt::Fixed(at) });
         match load {
             Load::Force { normal, .. } => Load::Force { normal, tilt },
@@ -357,34 +373,35 @@ fn no_error_of_zero_is_told_at_the_first_touch() {
     assert!(matches!(told[..], [Some(0.0), None, Some(error)] if 0.0 < error && error < 1e-2), "{told:?}");
 }
 
-/// Tilts that turn, load points that move and surfaces that attract each other have no elastic states: graded steps, and an estimate by steps
-/// twice as long.
+/// Tilts that turn, load points that move, surfaces that attract each other and elastic contacts that shrink as their load grows, as under
+/// loads far aside: graded steps, and an estimate by steps twice as long.
 #[test]
 fn fields_without_states_are_found_by_graded_steps() {
     let (seed, scenes) = (from_environment("FIELD_SEED", 1), from_environment("FIELD_TURNS", 20));
     let first = from_environment("FIELD_FIRST", 0);
     for accuracy in [1e-2, 1e-3] {
         // errors less than 1e-4 are compared with no estimate
-        let mut all = [(); 3].map(|()| Population { least: 1e-4 / accuracy, ..Population::default() });
+        let mut all = [(); 4].map(|()| Population { least: 1e-4 / accuracy, ..Population::default() });
         for number in first..first + scenes {
-            let kind = [0, 1, 0, 2][number as usize % 4];
+            let kind = [0, 1, 3, 2][number as usize % 4];
             let features = if kind == 2 { Features::ANY.attracted() } else { Features::ANY };
             let scene = Scene::draw(seed + 17, number, features);
             let (asked, mut draws) = (asked_of(&scene, seed, number), Draws::new(number));
-            let is_free = kind == 1;
+            let is_free = kind % 2 == 1;
             if scene.body.creep_ratio() > 100.0 || is_free && !matches!(scene.control, Control::Force(_)) {
                 continue;
             }
             let least = Load::force(if let Control::Force(force) = scene.control { 0.01 * force } else { 0.0 });
             let pressed = is_free.then(|| FromSmallLoad::new(scene.load(), least, scene.body.until));
             let (most, rate) = (if is_free { 3e-4 } else { 0.03 }, draws.between(0.2, 1.5) / scene.body.until);
+            let (rate, turned) = if kind == 3 { (0.0, 0.25) } else { (rate, 0.0) };
             let load = pressed.as_ref().map_or(scene.load(), |pressed| pressed as &dyn LoadHistory);
-            let turning = Turning { load, most: draws.scale(0.1 * most, most), rate, is_free };
+            let turning = Turning { load, most: draws.scale(0.1 * most, most), rate, turned, is_free };
             let load: &dyn LoadHistory = if kind == 2 { scene.load() } else { &turning };
             let Some(exact) = truth(&scene, load, &asked) else { continue };
             all[kind].compare(&scene, load, &asked, accuracy, &exact);
         }
-        for (some, what) in all.iter().zip(["tilts that turn", "load points that move", "attraction"]) {
+        for (some, what) in all.iter().zip(["tilts that turn", "load points that move", "attraction", "loads aside"]) {
             some.print(&format!("accuracy {accuracy:.0e}, {what}"));
             assert!(some.over.above(2.0) == 0 && 10 * some.low() <= some.told.count().max(10));
         }
@@ -409,7 +426,8 @@ fn what_follows_a_run_has_its_fields() {
         let kinds = [Features::ANY, Features::PERIODIC, Features::SPRING, Features::RETURNING];
         let scene = Scene::draw(from_environment("FIELD_SEED", 1) + 5, number, kinds[number as usize % 4]);
         let (asked, name) = (asked_of(&scene, 3, number), &scene.name);
-        let turning = Turning { load: scene.load(), most: 0.01, rate: 1.0 / scene.body.until, is_free: false };
+        let turning =
+            Turning { load: scene.load(), most: 0.01, rate: 1.0 / scene.body.until, turned: 0.0, is_free: false };
         let load: &dyn LoadHistory = if number % 8 > 3 { &turning } else { scene.load() };
         let exact = (scene.body.creep_ratio() <= 100.0).then(|| truth(&scene, load, &asked)).flatten();
         let Some((fields, greatest)) = exact else { continue };

@@ -254,7 +254,7 @@ proptest! {
 
     /// What presses harder in a jump is refused as before, and leaves no trace.
     #[test]
-    fn jumps_that_press_are_refused(mut scene in scenes(), pressed in any::<bool>(), kind in 0..6_usize, by in 1e-3..1.0_f64) {
+    fn jumps_that_press_are_refused(mut scene in scenes(), pressed in any::<bool>(), kind in 0..7_usize, by in 1e-3..1.0_f64) {
         scene.body = if scene.body % 2 == 0 { 1 } else { 3 };
         let mut contact = scene.contact();
         let touch = contact.approach();
@@ -268,6 +268,7 @@ proptest! {
             2 => Load::eccentric_force(force + by * FORCE, [0.0; 2]),
             3 => Load::approach_and_tilt(approach + 0.1 * by * DEPTH, [0.0, 0.01 * by]),
             4 => Load::force_and_tilt(force + 1e-3 * FORCE, [0.01 * by, 0.0]),
+            5 => Load::spring(FORCE / DEPTH, approach + (by + force / FORCE) * DEPTH),
             _ if pressed => Load::force((1.0 - 0.9 * by) * force),
             _ => Load::approach(touch + 1e-9 * by),
         };

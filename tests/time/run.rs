@@ -6,8 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use viscocontact::adhesion::{Attraction, ExponentialAttraction};
+use viscocontact::geometry::Sum;
 use viscocontact::load::LoadError;
-use viscocontact::motion::{FnPath, Travel};
+use viscocontact::motion::{FnPath, Path, Straight, Travel};
 use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::rheology::TimeTemperature;
@@ -173,7 +174,7 @@ behaviours! {
 
     samples_leave_the_steps_and_know_whether_they_were_asked_for: kind, C => {
         for stepping in STEPPINGS {
-            let times = [0.05, 0.31, 0.62, 1.9];
+            let times = [1e-9, 0.05, 0.31, 0.62, 1.9];
             let load = || Sinusoid::about(Load::force(0.4), 0.3, 0.6).unwrap();
             let mut run = kind.run(load(), stepping, 2.0).sample_at(times).unwrap();
             let (mut found, mut ends, mut asked) = (Vec::new(), 0, Vec::new());
@@ -419,7 +420,7 @@ fn errors_of_gaps_and_creep_come_out_as_themselves() {
     let failing = || FnGeometry::fallible(|_, _| "x".parse::<f64>());
     let shapes: [Box<dyn Geometry>; 3] = [
         Box::new(Shifted::new(failing(), [1.0e-4, 0.0]).unwrap()),
-        Box::new(viscocontact::geometry::Sum::new(Sphere::new(10.0e-3).unwrap(), failing())),
+        Box::new(Sum::new(Sphere::new(10.0e-3).unwrap(), failing())),
         Box::new(Repeated::new(failing(), [2.0e-3; 2]).unwrap()),
     ];
     for shape in &shapes {
@@ -468,11 +469,26 @@ fn errors_of_paths_and_attraction_come_out_as_themselves() {
         assert_eq!((contact.time(), contact.force().to_bits()), before);
     }
     let path = FnPath::fallible(|t| if t < 0.15 { Ok([1.0e-3 * t, 0.0]) } else { "x".parse().map(|x1| [x1, 0.0]) });
-    let travel = Travel::new(ball, path);
-    let mut contact = contact_of(&ball, grid.clone(), material(), Settings::default());
-    contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap();
-    own(contact.step_along(&travel, 0.1, Load::force(0.5)).unwrap_err());
-    assert_eq!(contact.time(), 0.1);
+    // a shape on a path, or its track, is not known everywhere
+    let scan = |most: f64| {
+        let gap = move |x1: f64, x2: f64| if x1 > most { "x".parse() } else { Ok((x1 * x1 + x2 * x2) / 2.0e-2) };
+        FnGeometry::fallible(gap)
+    };
+    let along = || Box::new(Straight::new([0.0; 2], [-1.0e-3, 0.0]).unwrap()) as Box<dyn Path>;
+    let travels =
+        [Travel::new(ball, path), Travel::new(scan(2.05e-3), along()), Travel::new(ball, along()).over(scan(1.0e-3))];
+    for (travel, steps) in travels.iter().zip([1, 0, 0]) {
+        let mut contact = contact_of(&ball, grid.clone(), material(), Settings::default());
+        for _ in 0..steps {
+            contact.step_along(travel, 0.1, Load::force(0.5)).unwrap();
+        }
+        own(contact.step_along(travel, 0.1, Load::force(0.5)).unwrap_err());
+        assert_eq!(contact.time(), 0.1 * f64::from(steps));
+    }
+    // what failed elsewhere, before, does not matter here
+    let scan = Arc::new(scan(2.05e-3));
+    assert!(scan.initial_gap(3.0e-3, 0.0).is_nan());
+    builder_of(&Sum::new(ball, scan), grid, material()).build().unwrap();
 }
 
 /// A run that is interrupted at any step and resumed writes the files of one that is not: rows and frames after the save are cut off.
@@ -497,7 +513,7 @@ fn a_resumed_run_continues_its_files() {
                 if saved.exists() {
                     contact.resume(&saved).unwrap();
                 }
-                let mut table = CsvHistory::create(table, &metadata, &contact, &[], Earlier::Continue).unwrap();
+                let mut table = CsvHistory::create(table, &metadata, &contact, &["force "], Earlier::Continue).unwrap();
                 let mut series =
                     FrameSeries::create(frames, format, &metadata, &contact, &fields, Earlier::Continue).unwrap();
                 let mut run = contact.follow(&load, stepping, 1.0);
@@ -508,7 +524,7 @@ fn a_resumed_run_continues_its_files() {
                     }
                     let Some(report) = run.next_step().unwrap() else { break };
                     steps += 1;
-                    table.record(run.contact(), &report, &[]).unwrap();
+                    table.record(run.contact(), &report, &[report.force]).unwrap();
                     series.record(run.contact()).unwrap();
                     if interrupted.is_some_and(|step| steps == step + 3) {
                         break;

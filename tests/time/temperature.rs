@@ -34,6 +34,24 @@ fn close(value: f64, expected: f64, within: f64, what: &str) {
     assert!(equal, "{what}: {value:e}, expected {expected:e}");
 }
 
+/// Each Arrhenius law continues the one above it, and the law is 1 at its reference.
+#[test]
+fn arrhenius_laws_continue_one_another() {
+    let [first, second] = [(REFERENCE - 20.0, 2.0e5), (REFERENCE - 40.0, 5.0e4)];
+    let one = wlf().with_arrhenius_below(first.0, first.1).unwrap();
+    let two = one.clone().with_arrhenius_below(second.0, second.1).unwrap();
+    for off in [0.0, 5.0, 19.9, 20.0, 30.0, 40.0] {
+        let temperature = REFERENCE - off;
+        assert_eq!(two.shift_factor(temperature).unwrap(), one.shift_factor(temperature).unwrap(), "{temperature} K");
+    }
+    let slower = 5.0e4 / 8.314_462_618 * (1.0 / (second.0 - 5.0) - 1.0 / second.0);
+    let expected = one.shift_factor(second.0).unwrap() * slower.exp();
+    close(two.shift_factor(second.0 - 5.0).unwrap(), expected, 1e-9, "the second");
+    for (law, above) in [(wlf(), REFERENCE + 1.0), (one, first.0), (two, first.0 - 1.0)] {
+        refused([(law.with_arrhenius_below(above, 1.0e5).err(), "upper end of an Arrhenius law")]);
+    }
+}
+
 /// ∫ (t_e/t_ref)^(−μ) dt in closed form, at a constant temperature and, through the quadrature, at one that varies by nothing.
 #[test]
 fn ageing_bodies_creep_in_the_time_of_struik() {
@@ -58,6 +76,8 @@ fn ageing_bodies_creep_in_the_time_of_struik() {
         let short = 1e-6 * (start / reference).powf(-rate);
         close(aged.reduced_time(0.0, 1e-6).unwrap(), short, 1e-6 / start, "a short time");
     }
+    let early = TemperatureHistory::constant(wlf(), REFERENCE).unwrap().ageing(2.0, 3600.0, 3600.0).unwrap();
+    refused([(early.reduced_time(-7200.0, -3700.0).err(), "age")]);
     let constant = || TemperatureHistory::constant(wlf(), REFERENCE).unwrap();
     for (rate, reference, start) in
         [(-0.1, 1.0, 1.0), (2.1, 1.0, 1.0), (f64::NAN, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 0.0)]

@@ -44,7 +44,8 @@ impl ViscoelasticContact {
         exact_length("geometries of the rigid bodies", 1, self.bodies())?;
         let loads = [load];
         let requested = self.request_next(dt, &loads)?;
-        let from = travel.position(self.time())?;
+        let [from, position] = [travel.position(self.time())?, travel.position(self.time() + dt)?];
+        let shape = travel.shape_at(self.time() + dt)?;
         if self.indenter_buffer.heights.is_empty() {
             memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
         }
@@ -53,8 +54,7 @@ impl ViscoelasticContact {
         let left = Arc::clone(&self.computation.state.indenter);
         let step = self.take(Step { indenter, ..requested })?;
         self.indenter_buffer.indenter = Some(left);
-        let position = travel.position(step.time)?;
-        let lateral_force = self.lateral_force(&travel.shape_at(step.time)?);
+        let lateral_force = self.lateral_force(&shape);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, from, lateral_force, power })
     }

@@ -20,6 +20,8 @@ const MAX_FORCES: usize = 60;
 const SHARE_OF_TOLERANCE: f64 = 0.3;
 /// The next force over the last, where a body that tilts freely may bear none.
 const SMALLER: f64 = 0.1;
+/// Rounding of a depth, relative to its summands.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Halvings of the depth of a first contact.
 const HALVINGS: usize = 40;
 
@@ -76,7 +78,13 @@ pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<
             };
             let is_short = |depth: f64| depth + give * carried(depth) < drive - lowest;
             let depth = bisect(0.0, (drive - lowest).max(0.0), HALVINGS, is_short)[1];
-            if depth > 0.0 && c > 0.0 { carried(depth) } else { 0.0 }
+            // a body that does not respond takes all that the spring presses with, beyond rounding
+            let rounding = ROUNDING * (drive.abs() + lowest.abs() + gap.datum.abs());
+            match depth > 0.0 {
+                true if c > 0.0 => carried(depth),
+                true if drive - lowest > rounding => (drive - lowest) / give,
+                _ => 0.0,
+            }
         };
         trial.free[body].total = force.max(0.0) / area;
         trial.springs[body] = TriedSpring::default();

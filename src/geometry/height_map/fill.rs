@@ -7,6 +7,8 @@ use crate::sum::{greatest, sum_of_pairs};
 
 /// Residual of the equations, relative to the range of the known heights, at which the iteration stops.
 const TOLERANCE: f64 = 1e-10;
+/// No residual is less, over this range.
+const ROUNDING: f64 = 1e-15;
 
 impl HeightMap {
     /// The map with its missing heights filled by harmonic interpolation: each is the mean of its neighbours, as in a
@@ -25,7 +27,9 @@ impl HeightMap {
         let laplacian = Laplacian::new(&self);
         // Unknowns are relative to the middle of the range, and start there. Halves do not overflow.
         let middle = 0.5 * low + 0.5 * self.highest;
-        let values = laplacian.solve(&self, middle, TOLERANCE * (self.highest - low))?;
+        // along the axis of the smaller weight heights err by a residual over this weight
+        let tolerance = (TOLERANCE * laplacian.least_weight).max(ROUNDING);
+        let values = laplacian.solve(&self, middle, tolerance * (self.highest - low))?;
         // A mean does not exceed its terms: any excess is within the tolerance.
         for (&point, value) in laplacian.points.iter().zip(values) {
             self.heights[point] = (middle + value).clamp(low, self.highest);
@@ -42,6 +46,8 @@ struct Laplacian {
     unknown: Vec<Option<usize>>,
     /// Neighbours of each missing point with their weights; 0 where there is none.
     neighbours: Vec<[(usize, f64); 4]>,
+    /// The least weight of a neighbour.
+    least_weight: f64,
 }
 
 impl Laplacian {
@@ -52,8 +58,12 @@ impl Laplacian {
         for (n, &k) in points.iter().enumerate() {
             unknown[k] = Some(n);
         }
-        // Proportional to 1/s², with a sum of 1/2.
-        let (w1, w2) = (0.5 / (1.0 + (s1 / s2).powi(2)), 0.5 / (1.0 + (s2 / s1).powi(2)));
+        // proportional to 1/s², with a sum of 1/2 over the axes that have neighbours
+        let (w1, w2) = match [n1, n2] {
+            [_, 1] => (0.5, 0.0),
+            [1, _] => (0.0, 0.5),
+            _ => (0.5 / (1.0 + (s1 / s2).powi(2)), 0.5 / (1.0 + (s2 / s1).powi(2))),
+        };
         let next = |index: usize, n: usize, forward: bool| match (forward, index) {
             (true, index) if index + 1 < n => Some(index + 1),
             (false, index) if index > 0 => Some(index - 1),
@@ -65,7 +75,8 @@ impl Laplacian {
             let along2 = |forward| next(j, n2, forward).map_or((k, 0.0), |j| (i * n2 + j, w2));
             [along1(false), along1(true), along2(false), along2(true)]
         });
-        Laplacian { neighbours: neighbours.collect(), points, unknown }
+        let least_weight = [w1, w2].into_iter().filter(|w| *w > 0.0).fold(1.0, f64::min);
+        Laplacian { neighbours: neighbours.collect(), points, unknown, least_weight }
     }
 
     /// Σ weight (value − neighbour) with 0 for known neighbours: the equations without their right-hand sides.
@@ -150,6 +161,21 @@ mod tests {
         let ramp = map_of([5, 30], |x1, x2| if x1.abs() > 0.3 || x2.abs() > 0.49 { 2.5 * x1 + 1.0 } else { f64::NAN });
         for (k, z) in ramp.filled().unwrap().heights().iter().enumerate() {
             assert!((z - (k / 30) as f64 * 0.5).abs() < 1e-8, "{k}: {z}");
+        }
+    }
+
+    /// Points of a profile, and rows far apart, along which alone heights are known.
+    #[test]
+    fn spacings_may_differ_by_orders() {
+        for (cells, lengths) in
+            [([5, 1], [5.0, 1e-5]), ([5, 2], [5.0, 2e-5]), ([5, 2], [5.0, 2.0e4]), ([5, 1], [5.0, 1e5])]
+        {
+            let known = |k: usize| if k == 0 || k == 4 { k as f64 / 4.0 } else { f64::NAN };
+            let heights = (0..cells[0] * cells[1]).map(|k| known(k / cells[1])).collect();
+            let filled = HeightMap::new(cells, lengths, heights).unwrap().filled().unwrap();
+            for (k, z) in filled.heights().iter().enumerate() {
+                assert!((z - (k / cells[1]) as f64 / 4.0).abs() < 1e-4, "{lengths:?} {k}: {z}");
+            }
         }
     }
 

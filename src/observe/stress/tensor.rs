@@ -41,7 +41,8 @@ impl Stress {
         Stress { s11, s22, s33, s12, s13, s23 }
     }
 
-    fn of([s11, s22, s33, s12, s13, s23]: [f64; 6]) -> Stress {
+    fn of(components: [f64; 6]) -> Stress {
+        let [s11, s22, s33, s12, s13, s23] = components;
         Stress { s11, s22, s33, s12, s13, s23 }
     }
 

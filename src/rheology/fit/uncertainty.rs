@@ -110,7 +110,7 @@ impl Measured {
     /// which the part `unseen` of the modulus is left at the second.
     fn with_slow_terms(&self, samples: &[Sample], unseen: f64) -> FittedSeries {
         let mut series = self.series.clone();
-        let (first, second) = (samples[0].x, samples[1].x);
+        let [first, second] = [&samples[0], samples.get(1).unwrap_or(&samples[0])].map(|sample| sample.x);
         let least = unseen * series.value(MaterialFunction::Relaxation, first);
         for (strength, time) in &mut series.terms {
             let left = *strength * (-first / *time).exp();

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{Place, Result, TableError, positive};
+use crate::error::{Error, Place, Result, TableError, TextError, positive};
 use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, open, same, symbol};
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
@@ -170,8 +170,10 @@ impl Measurements {
 impl Columns {
     pub(super) fn of(experiment: Experiment, table: &TextTable, units: Units) -> Result<Columns> {
         match (Columns::named(experiment, table, units), table.without_comment()) {
-            // a comment that is a remark
-            (Err(error), Some(plain)) => Columns::named(experiment, &plain, units).or(Err(error)),
+            // a comment that is a remark names no columns
+            (Err(error @ Error::Text(TextError::Heading { .. })), Some(plain)) => {
+                Columns::named(experiment, &plain, units).or(Err(error))
+            }
             (found, _) => found,
         }
     }
@@ -214,7 +216,7 @@ impl Columns {
             }
         }
         let given = |place: usize, column: &TakenColumn| match column.name() {
-            name if name == TAN.name => Some(("value", Some(1.0))),
+            name if name == TAN.name => Some(("value", Some(if column.heading().contains('%') { 0.01 } else { 1.0 }))),
             name if name == PHASE.name => None,
             _ => Some(if place == 0 { ("abscissa", units.abscissa) } else { ("value", units.value) }),
         };

@@ -37,6 +37,8 @@ pub struct Isotherm {
     pub(super) deformation: Deformation,
     /// Ascending.
     pub(super) rows: Vec<Row>,
+    /// The stated scatter of the values.
+    pub(super) scatter: Option<f64>,
 }
 
 debug_by! {
@@ -46,15 +48,15 @@ debug_by! {
 }
 
 impl Isotherm {
-    /// `measurements` at `temperature` \[K\].
+    /// `measurements` at `temperature` \[K\], without a row at t = 0, which cannot be shifted.
     ///
     /// # Errors
     /// If the temperature is not finite and positive.
     pub fn new(temperature: f64, measurements: Measurements) -> Result<Isotherm> {
         within("temperature", temperature, temperature > 0.0, "finite and > 0 (kelvin)")?;
-        let Measurements { experiment, deformation, mut rows, .. } = measurements;
-        rows.retain(|row| row.x > 0.0); // a time of zero cannot be shifted
-        Ok(Isotherm { temperature, experiment, deformation, rows })
+        let Measurements { experiment, deformation, mut rows, scatter, .. } = measurements;
+        rows.retain(|row| row.x > 0.0);
+        Ok(Isotherm { temperature, experiment, deformation, rows, scatter })
     }
 
     /// Temperature \[K\].

@@ -233,7 +233,10 @@ impl MasterCurve {
             }
             rows[k].place = Place::Entry(k);
         }
-        Measurements::from_rows(self.isotherms[0].experiment, rows)?.fitted(deformation)
+        // the greatest that is stated
+        let scatter = self.isotherms.iter().filter_map(|isotherm| isotherm.scatter).reduce(f64::max);
+        let curve = Measurements::from_rows(self.isotherms[0].experiment, rows)?;
+        Measurements { scatter, ..curve }.fitted(deformation)
     }
 }
 

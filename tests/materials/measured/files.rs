@@ -45,9 +45,25 @@ fn errors_name_the_line() {
     let dynamic = |text: &str| error(fitted(Experiment::Dynamic, text.as_bytes(), Units::SI));
     let bad = dynamic("frequency,storage modulus,strain\n1,1e6,0.1\n");
     assert!(matches!(bad, TableError::StorageOnly { line: 1 }), "{bad}");
-    let bad = dynamic("f [Hz],G',G''\n1,1e6,1e5\n");
-    let TableError::Unit { line: 1, column: 1, unit, size: Some(size), .. } = &bad else { panic!("{bad}") };
-    assert_eq!((&**unit, *size), ("Hz", std::f64::consts::TAU));
+    // a heading may be a comment
+    for mark in ["", "# "] {
+        let bad = dynamic(&format!("{mark}f [Hz],G',G''\n1,1e6,1e5\n"));
+        let TableError::Unit { line: 1, column: 1, unit, size: Some(size), .. } = &bad else { panic!("{bad}") };
+        assert_eq!((&**unit, *size), ("Hz", std::f64::consts::TAU));
+    }
+    // tan δ in percent
+    let table = |heading: &str, by: f64| {
+        let rows = [(1.0, 0.05), (10.0, 0.06), (100.0, 0.07), (1000.0, 0.06)]
+            .map(|(omega, tan)| format!("{omega},2e6,{}\n", by * tan));
+        let text = format!("omega [rad/s],G' [Pa],{heading}\n{}", rows.concat());
+        Measurements::from_csv_reader(Experiment::Dynamic, text.as_bytes(), Units::OF_HEADINGS, TextFormat::default())
+            .unwrap()
+    };
+    let [of_number, of_percent] =
+        [table("tan delta", 1.0), table("tan delta [%]", 100.0)].map(|table| table.fit().unwrap());
+    for (one, other) in of_number.spectrum().terms().iter().zip(of_percent.spectrum().terms()) {
+        assert!((one.0 / other.0 - 1.0).abs() < 1e-9 && (one.1 / other.1 - 1.0).abs() < 1e-9);
+    }
     // remarks in any encoding
     assert!(fitted(Experiment::Creep, b"# 23 \xb0C\n1,1\n2,1.1\n3,1.2\n4,1.3\n", Units::SI).is_ok());
     for empty in ["", "\n\n", "# nothing\n", "time,J\n"] {

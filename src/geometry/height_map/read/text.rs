@@ -157,7 +157,8 @@ fn is_grid(heights: &[f64]) -> bool {
 /// Makes NaN of heights that stand for missing ones; without a value for them, heights that look so are an error.
 pub(super) fn mask(heights: &mut [f64], missing: Option<f64>) -> Result<()> {
     if let Some(missing) = missing {
-        let is_missing = |height: &f64| (height - missing).abs() <= 1e-6 * missing.abs();
+        let near = if missing.is_finite() { 1e-6 * missing.abs() } else { 0.0 };
+        let is_missing = |height: &f64| *height == missing || (height - missing).abs() <= near;
         heights.iter_mut().filter(|height| is_missing(height)).for_each(|height| *height = f64::NAN);
         return Ok(());
     }
@@ -207,6 +208,16 @@ mod tests {
         // a row, or a column, without measured points
         assert_eq!(read("1,2\n,\n3,4\n").unwrap().cells, [2, 3]);
         assert_eq!(read("1,2,\n4,5,6\n").unwrap().cells, [3, 2]);
+    }
+
+    #[test]
+    fn heights_that_are_no_number_may_stand_for_missing_ones() {
+        let read = |text: &str, missing: f64| {
+            let format = TextFormat::default().with_missing_height(missing);
+            HeightMap::from_text(text.as_bytes(), [3.0, 2.0], LengthUnit::Metre, format).unwrap().missing()
+        };
+        assert_eq!(read("1 2 3\n4 5 6\n", f64::INFINITY), 0);
+        assert_eq!([read("1 2 3\n4 -9999 6\n", -9999.0), read("1 2 3\n4 5 6\n", f64::NAN)], [1, 0]);
     }
 
     #[test]
