@@ -93,7 +93,7 @@ impl RunScale {
             let compliance = compliance_at(*time)? + SECANT * scale.give(load);
             scale.stress = scale.stress.max(scale.magnitude(load) / compliance);
         }
-        let large_enough = |size: f64| size == 0.0 || size >= LEAST;
+        let large_enough = |size: f64| size == 0.0 || size >= LEAST || tolerance.is_none();
         let allowed = "0, or 1e-290 at least, for adaptive steps: choose other units, or Stepping::fixed";
         within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
         within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;

@@ -70,6 +70,11 @@ impl FromStr for LengthUnit {
     /// The unit of a symbol: m, cm, mm, µm (um), nm, Å (A), pm. Case matters: Mm is not a millimetre.
     fn from_str(symbol: &str) -> Result<LengthUnit> {
         let symbol = symbol.trim();
+        // of an ångström, and of 1E-9
+        let is_capital = |c: char| c.is_uppercase() && !"AÅ\u{212b}E".contains(c);
+        if symbol.contains(is_capital) {
+            return Err(MapError::Unit { symbol: symbol.to_owned() }.into());
+        }
         let mut sizes = readings(symbol).into_iter().filter(|unit| unit.0 == Quantity::LENGTH).map(|unit| unit.1);
         let known = sizes.find_map(|size| UNITS.iter().find(|(_, per_metre)| same(size * per_metre, 1.0)));
         known.map(|unit| unit.0).ok_or_else(|| MapError::Unit { symbol: symbol.to_owned() }.into())
@@ -97,7 +102,7 @@ mod tests {
             let unit: LengthUnit = symbol.parse().unwrap();
             assert_eq!((unit.factor(), unit.to_metres(1.0)), (metres, metres), "{symbol}");
         }
-        for symbol in ["", "Mm", "V", "m^2", "inch"] {
+        for symbol in ["", "Mm", "MM", "NM", "Nm", "V", "m^2", "inch"] {
             let unknown = MapError::Unit { symbol: symbol.to_owned() };
             assert_eq!(symbol.parse::<LengthUnit>(), Err(Error::Map(unknown)));
         }
