@@ -1,5 +1,7 @@
 //! A state on its region, with what computes there.
 
+use std::sync::Arc;
+
 use crate::contact::window::fields::transferred;
 use crate::contact::{Indenter, Region, Scene, State, Trial, Window};
 use crate::error::Result;
@@ -27,7 +29,7 @@ impl Computation {
         &mut self,
         scene: &Scene,
         region: Region,
-        indenter: &Indenter,
+        indenter: &Arc<Indenter>,
     ) -> Result<Box<Computation>> {
         self.check_memory_for(scene, &region)?;
         let cells = region.len();

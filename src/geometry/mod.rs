@@ -185,13 +185,6 @@ fn check(gap: &[f64], grid: &Grid) -> Result<()> {
     }
 }
 
-/// Subtracts the least gap from all, and returns it.
-fn subtract_least(gap: &mut [f64]) -> f64 {
-    let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
-    gap.iter_mut().for_each(|h| *h -= least);
-    least
-}
-
 impl Gap {
     /// Combines the gap fields of the bodies and checks them: no NaN, no −∞, and each body has something to touch.
     pub(crate) fn new(bodies: Vec<Vec<f64>>, grid: &Grid) -> Result<Gap> {
@@ -221,19 +214,9 @@ impl Gap {
                 return Err(Error::NothingToTouch { body, cells: grid.len() });
             }
         }
-        let datum = subtract_least(&mut above);
+        let datum = above.iter().copied().fold(f64::INFINITY, f64::min);
+        above.iter_mut().for_each(|h| *h -= datum);
         Ok(Gap { datum, above, owner })
-    }
-
-    /// Checks the heights of a single body and swaps them in; `heights` receives the old gap above its datum.
-    pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
-        check(heights, grid)?;
-        if heights.iter().all(|h| *h == f64::INFINITY) {
-            return Err(Error::NothingToTouch { body: 0, cells: grid.len() });
-        }
-        self.datum = subtract_least(heights);
-        std::mem::swap(&mut self.above, heights);
-        Ok(())
     }
 
     /// The body of cell `k`.

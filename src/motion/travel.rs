@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::error::{Error, Result, finite};
-use crate::geometry::{Geometry, Shifted};
+use crate::geometry::{Geometry, Shifted, evaluate};
 use crate::motion::Path;
 
 /// A shape that moves along a path, optionally over a fixed track.
@@ -65,13 +65,11 @@ impl Travel {
     }
 
     /// The gap \[m\] at time `t` \[s\] on every cell, of the moving shape and the track.
-    pub(crate) fn fill_gap(&self, t: f64, grid: &Grid, gap: &mut [f64], scratch: &mut Vec<f64>) -> Result<()> {
-        self.shape.fill_gap_at(grid, self.position(t)?, gap);
+    pub(crate) fn gap(&self, t: f64, grid: &Grid) -> Result<Vec<f64>> {
+        let mut gap = evaluate(&self.shape_at(t)?, grid)?;
         if let Some(track) = &self.track {
-            scratch.resize(grid.len(), 0.0);
-            track.fill_gap(grid, scratch);
-            gap.iter_mut().zip(scratch).for_each(|(gap, track)| *gap += *track);
+            gap.iter_mut().zip(evaluate(track, grid)?).for_each(|(gap, own)| *gap += own);
         }
-        Ok(())
+        Ok(gap)
     }
 }

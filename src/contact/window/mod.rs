@@ -4,6 +4,8 @@ pub(in crate::contact) mod fields;
 pub(crate) mod placement;
 pub(crate) mod region;
 
+use std::sync::Arc;
+
 use crate::contact::{Indenter, Region, Scene, Solver, Trial};
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
@@ -24,8 +26,8 @@ pub(crate) struct Window {
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
     pub(super) lowest_outside: f64,
-    /// The number of the indenter that the gap belongs to.
-    indenter: Option<u64>,
+    /// The indenter that the gap belongs to.
+    indenter: Option<Arc<Indenter>>,
     /// Exchange of halo rows, if ranks share out the region.
     halo: Option<(HaloExchange, HaloRows)>,
 }
@@ -37,7 +39,7 @@ enum ContactSolver {
 }
 
 impl Window {
-    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
+    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Arc<Indenter>) -> Window {
         let rows = region.rows();
         let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &rows);
         let mut work = kernel.workspace();
@@ -65,13 +67,13 @@ impl Window {
     }
 
     /// Brings the gap up to date with an indenter that has moved.
-    pub(crate) fn follow(&mut self, region: &Region, indenter: &Indenter) {
-        if self.indenter == Some(indenter.id()) {
+    pub(crate) fn follow(&mut self, region: &Region, indenter: &Arc<Indenter>) {
+        if self.indenter.as_ref().is_some_and(|own| Arc::ptr_eq(own, indenter)) {
             return;
         }
         region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
-        self.indenter = Some(indenter.id());
+        self.indenter = Some(Arc::clone(indenter));
     }
 
     /// Whether there is a near field.
