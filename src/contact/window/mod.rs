@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::contact::{Indenter, Region, Scene, Solver, Trial};
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
-use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
+use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
 /// another region and never saved.
@@ -28,8 +28,6 @@ pub(crate) struct Window {
     pub(super) lowest_outside: f64,
     /// The indenter that the gap belongs to.
     indenter: Option<Arc<Indenter>>,
-    /// Exchange of halo rows, if ranks share out the region.
-    halo: Option<(HaloExchange, HaloRows)>,
 }
 
 #[derive(Debug, Clone)]
@@ -47,21 +45,10 @@ impl Window {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
             Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, scene.bodies))),
         };
-        let halo = HaloExchange::new(&rows, rows.cells()[1])
-            .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let near = scene.attraction.as_ref().and_then(|_| kernel.near());
         let inverse = scene.attraction.as_ref().map(|_| kernel.period_inverse());
-        let mut window = Window {
-            halo,
-            near,
-            inverse,
-            work,
-            kernel,
-            solver,
-            gap: None,
-            lowest_outside: f64::INFINITY,
-            indenter: None,
-        };
+        let mut window =
+            Window { near, inverse, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
         window.follow(region, indenter);
         window
     }
@@ -92,14 +79,6 @@ impl Window {
     /// The gap of the indenter on the region, which the window follows.
     pub(crate) fn gap<'a>(&'a self, indenter: &'a Indenter) -> &'a Gap {
         self.gap.as_ref().unwrap_or(indenter.gap())
-    }
-
-    /// The halo row of a field before the local rows, if another rank has it.
-    pub(crate) fn row_before(&mut self, field: &[f64]) -> Option<&[f64]> {
-        let (neighbours, ghosts) = self.halo.as_mut()?;
-        let [rows, columns] = self.kernel.grid().cells();
-        neighbours.fetch(ghosts, columns, rows, |row, out| out.copy_from_slice(&field[row * columns..][..columns]));
-        ghosts.before()
     }
 
     /// Whether the solver needs K p of a guess, rather than computing it itself.
