@@ -1,7 +1,9 @@
 //! A state on its region, with what computes there.
 
+use std::sync::Arc;
+
 use crate::contact::window::fields::transferred;
-use crate::contact::{Footprint, Indenter, Region, Scene, State, Trial, Window};
+use crate::contact::{Indenter, Region, Scene, State, Trial, Window};
 use crate::error::Result;
 
 /// State, window and trial of one computation. A step that needs a larger region continues in a copy, which the
@@ -27,7 +29,7 @@ impl Computation {
         &mut self,
         scene: &Scene,
         region: Region,
-        indenter: &Indenter,
+        indenter: &Arc<Indenter>,
     ) -> Result<Box<Computation>> {
         self.check_memory_for(scene, &region)?;
         let cells = region.len();
@@ -37,15 +39,8 @@ impl Computation {
 
     /// Rejects a region for which there is no memory beside this one.
     pub(crate) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
-        let Scene { kernel, settings, bodies, .. } = scene;
-        let footprint = Footprint {
-            bodies: *bodies,
-            settings,
-            kernel,
-            history: &self.state.history,
-            attracts: self.state.attracts,
-        };
-        footprint.check(region, footprint.on(&self.state.region).total())
+        let history = &self.state.history;
+        scene.check_memory(history, region, scene.memory_on(history, &self.state.region).total())
     }
 
     /// Goes to another state, without reallocating where the regions are the same.

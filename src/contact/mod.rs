@@ -60,7 +60,6 @@ pub(crate) use step::constraints::depth_of_power;
 pub(crate) use stepper::impl_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 
-use builder::memory::Footprint;
 pub(crate) use computation::Computation;
 use indenter::Indenter;
 use indenter::hull::Hull;

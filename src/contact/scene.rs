@@ -14,7 +14,7 @@ use crate::kernel::InfluenceKernel;
 use crate::rheology::{Material, TemperatureHistory};
 
 /// Grid, kernel, material and settings of a contact. A contact and its clones share one.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Scene {
     pub(crate) grid: Grid,
     pub(crate) kernel: Arc<InfluenceKernel>,

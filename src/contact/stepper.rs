@@ -3,7 +3,6 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use crate::contact::moving::indenter_buffer::IndenterBuffer;
 use crate::contact::read::view::View;
 use crate::contact::{Computation, Scene, State, StepReport};
 use crate::error::Result;
@@ -56,22 +55,13 @@ pub struct ViscoelasticContact {
     pub(crate) view: View,
     /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which use contacts.
     pub(crate) saved_run: Option<Arc<dyn Any + Send + Sync>>,
-    /// Buffers for the indenter of the next step along a path.
-    pub(crate) indenter_buffer: IndenterBuffer,
 }
 
 impl ViscoelasticContact {
     pub(crate) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state);
-        ViscoelasticContact {
-            scene: Arc::new(scene),
-            computation,
-            missed,
-            view,
-            saved_run: None,
-            indenter_buffer: IndenterBuffer::default(),
-        }
+        ViscoelasticContact { scene: Arc::new(scene), computation, missed, view, saved_run: None }
     }
 
     /// The gap before the bodies deform.

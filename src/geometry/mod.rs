@@ -168,17 +168,12 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     memory::check("gap and pressure of a contact", 16 * grid.len() as u128)?;
     let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
     // a rank may have no rows
-    if !gap.is_empty() {
-        filled_by(geometry, || geometry.fill_gap(grid, &mut gap))?;
-    }
-    Ok(gap)
-}
-
-/// Lets a geometry fill a gap. An error of its own comes out, but not one of an earlier call.
-pub(crate) fn filled_by(geometry: &dyn Geometry, fill: impl FnOnce()) -> Result<()> {
+    // an error of an earlier call is none of this one
     drop(geometry.failure());
-    fill();
-    geometry.failure().map_or(Ok(()), |failure| Err(failure.into()))
+    if !gap.is_empty() {
+        geometry.fill_gap(grid, &mut gap);
+    }
+    geometry.failure().map_or(Ok(gap), |failure| Err(failure.into()))
 }
 
 /// Refuses NaN and −∞.
@@ -190,13 +185,6 @@ fn check(gap: &[f64], grid: &Grid) -> Result<()> {
         }
         None => Ok(()),
     }
-}
-
-/// Subtracts the least gap from all, and returns it.
-fn subtract_least(gap: &mut [f64]) -> f64 {
-    let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
-    gap.iter_mut().for_each(|h| *h -= least);
-    least
 }
 
 impl Gap {
@@ -228,19 +216,9 @@ impl Gap {
                 return Err(Error::NothingToTouch { body, cells: grid.len() });
             }
         }
-        let datum = subtract_least(&mut above);
+        let datum = above.iter().copied().fold(f64::INFINITY, f64::min);
+        above.iter_mut().for_each(|h| *h -= datum);
         Ok(Gap { datum, above, owner })
-    }
-
-    /// Checks the heights of a single body and swaps them in; `heights` receives the old gap above its datum.
-    pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
-        check(heights, grid)?;
-        if heights.iter().all(|h| *h == f64::INFINITY) {
-            return Err(Error::NothingToTouch { body: 0, cells: grid.len() });
-        }
-        self.datum = subtract_least(heights);
-        std::mem::swap(&mut self.above, heights);
-        Ok(())
     }
 
     /// The body of cell `k`.

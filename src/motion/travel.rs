@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::error::{Error, Result, finite};
-use crate::geometry::{Geometry, Shifted, filled_by};
+use crate::geometry::{Geometry, Shifted, evaluate};
 use crate::motion::Path;
 
 /// A shape that moves along a path, optionally over a fixed track.
@@ -64,15 +64,12 @@ impl Travel {
         Shifted::of(Arc::clone(&self.shape), self.position(t)?)
     }
 
-    /// The gap \[m\] at time `t` \[s\] on every cell, of the moving shape and the track.
-    pub(crate) fn fill_gap(&self, t: f64, grid: &Grid, gap: &mut [f64], scratch: &mut Vec<f64>) -> Result<()> {
-        let position = self.position(t)?;
-        filled_by(&self.shape, || self.shape.fill_gap_at(grid, position, gap))?;
+    /// The gap \[m\] on every cell, of the shape where it is and the track.
+    pub(crate) fn gap(&self, shape: &Shifted, grid: &Grid) -> Result<Vec<f64>> {
+        let mut gap = evaluate(shape, grid)?;
         if let Some(track) = &self.track {
-            scratch.resize(grid.len(), 0.0);
-            filled_by(track, || track.fill_gap(grid, scratch))?;
-            gap.iter_mut().zip(scratch).for_each(|(gap, track)| *gap += *track);
+            gap.iter_mut().zip(evaluate(track, grid)?).for_each(|(gap, own)| *gap += own);
         }
-        Ok(())
+        Ok(gap)
     }
 }

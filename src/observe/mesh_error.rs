@@ -1,7 +1,6 @@
 //! Error due to the mesh.
 
 use std::fmt;
-use std::ops::Range;
 
 use crate::extent::Extent;
 use crate::observe::area::{End, Pressed};
@@ -83,8 +82,6 @@ const MOST_RISING: f64 = 0.5;
 /// Safety factor on the estimated error of a peak.
 const TRUSTED: f64 = 3.0;
 
-/// Number of cells of a row that are tested together.
-const PIECE: usize = 16;
 const SIDES: [[isize; 2]; 4] = [[-1, 0], [0, -1], [0, 1], [1, 0]];
 
 impl MeshError {
@@ -145,18 +142,13 @@ enum Peak {
     },
 }
 
-/// The rows of an extent, in pieces: the row, and the columns of the piece.
-fn pieces(Extent { low, high }: Extent) -> impl Iterator<Item = (usize, Range<usize>)> {
-    let columns = move || (low[1]..=high[1]).step_by(PIECE).map(move |start| start..(start + PIECE).min(high[1] + 1));
-    (low[0]..=high[0]).flat_map(move |i| columns().map(move |piece| (i, piece)))
-}
-
 impl Pressed<'_> {
     /// The errors due to the mesh of a contact of `contact_cells` cells. `None` without a rim, and where the cells do not
     /// resolve the contact or the periodic gap.
     pub(crate) fn mesh_error(&self, contact_cells: usize) -> Option<MeshError> {
         let extent @ Extent { low, high } = self.extent?;
-        let rows = (low[0]..=high[0]).map(|i| self.columns(i, low[1]..high[1] + 1));
+        let n2 = self.grid.cells()[1];
+        let rows = (low[0]..=high[0]).map(|i| &self.pressure[i * n2..][low[1]..=high[1]]);
         let (total, highest) =
             rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))));
         let rim = self.rim(extent);
@@ -195,26 +187,20 @@ impl Pressed<'_> {
         })
     }
 
-    fn columns(&self, i: usize, columns: Range<usize>) -> &[f64] {
-        &self.pressure[i * self.grid.cells()[1]..][columns]
-    }
-
     /// The error of the greatest pressure: the largest error among the peaks that may be the greatest on a finer mesh, each
     /// from the curvature of the pressure at the peak. `None` if one of these peaks is not resolved.
     fn peak_error(&self, extent: Extent, highest: f64) -> Option<f64> {
         let least = OTHER_PEAKS * highest;
         let mut worst = 0.0_f64;
-        for (i, piece) in pieces(extent) {
-            let pressure = self.columns(i, piece.clone());
-            if !pressure.iter().fold(false, |any, &p| any | (p >= least)) {
+        for [i, j] in extent.cells() {
+            let p = self.pressure[i * self.grid.cells()[1] + j];
+            if p < least {
                 continue;
             }
-            for (j, &p) in piece.zip(pressure).filter(|(_, p)| **p >= least) {
-                match self.peak([i as isize, j as isize], p) {
-                    Peak::Unresolved { drop } if p * (1.0 + drop) >= highest => return None,
-                    Peak::Resolved { error } if p * (1.0 + TRUSTED * error) >= highest => worst = worst.max(error),
-                    _ => {}
-                }
+            match self.peak([i as isize, j as isize], p) {
+                Peak::Unresolved { drop } if p * (1.0 + drop) >= highest => return None,
+                Peak::Resolved { error } if p * (1.0 + TRUSTED * error) >= highest => worst = worst.max(error),
+                _ => {}
             }
         }
         Some(worst)
@@ -239,10 +225,13 @@ impl Pressed<'_> {
     }
 
     fn rim(&self, extent: Extent) -> Rim {
-        let n2 = self.grid.cells()[1];
+        let [n1, n2] = self.grid.cells();
         let mut rim = Rim::default();
-        for (i, piece) in pieces(extent).filter(|(i, piece)| !self.has_no_rim(*i, piece)) {
-            for j in piece.filter(|j| self.pressure[i * n2 + j] != 0.0) {
+        for [i, j] in extent.cells().filter(|[i, j]| self.pressure[i * n2 + j] != 0.0) {
+            // most cells are inside, which takes few comparisons; beside an end of the grid may be the other end
+            let k = i * n2 + j;
+            let beside = || [k - n2, k - 1, k + 1, k + n2].iter().all(|&k| self.pressure[k] != 0.0);
+            if !(i > 0 && i + 1 < n1 && j > 0 && j + 1 < n2 && beside()) {
                 self.add_cell([i, j], &mut rim);
             }
         }
@@ -306,21 +295,6 @@ impl Pressed<'_> {
         let (length, force) = edge.fold((0.0, 0.0), |(length, force), p| (length + 1.0, force + p));
         rim.shape_lengths += length * length;
         rim.shape_pressures += force * force;
-    }
-
-    /// Whether the cells of a piece of a row are all without pressure, or all in contact together with their neighbours. This
-    /// is true of most pieces and takes few comparisons. False for pieces at the ends of the grid, whose neighbours may be at
-    /// the other end.
-    fn has_no_rim(&self, i: usize, piece: &Range<usize>) -> bool {
-        let [n1, n2] = self.grid.cells();
-        if i == 0 || i + 1 == n1 || piece.start == 0 || piece.end == n2 {
-            return false;
-        }
-        let any_free =
-            |i: usize, columns: Range<usize>| self.columns(i, columns).iter().fold(false, |free, p| free | (*p == 0.0));
-        let beside = piece.start - 1..piece.end + 1;
-        let all_free = self.columns(i, piece.clone()).iter().fold(true, |free, p| free & (*p == 0.0));
-        all_free || !(any_free(i, beside) | any_free(i - 1, piece.clone()) | any_free(i + 1, piece.clone()))
     }
 }
 

@@ -83,21 +83,12 @@ impl<T: Task> WithSimd for Vectorised<'_, T> {
 pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
     #[cfg(feature = "rayon")]
     if shared {
-        let (mut first, mut second) = (Some(first), Some(second));
-        return in_parallel(&mut || first.take().map_or((), |run| run()), &mut || {
-            second.take().map_or((), |run| run())
-        });
+        rayon::join(first, second);
+        return;
     }
     let _ = shared;
     first();
     second();
-}
-
-/// [`rayon::join`], whose many functions are compiled once, and not for each pair of closures: they were a tenth of the
-/// machine code of this crate.
-#[cfg(feature = "rayon")]
-fn in_parallel(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
-    rayon::join(first, second);
 }
 
 /// Runs `job`, which works on fields of so many cells, on a thread of the pool if threads share the work. A call from a thread

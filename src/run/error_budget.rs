@@ -4,28 +4,6 @@ use std::fmt;
 
 use crate::observe::MeshError;
 
-/// The errors of a step, or the greatest ones of several steps.
-#[derive(Debug, Clone, Copy)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct StepErrors {
-    /// Estimated error in time, relative.
-    pub(super) time: f64,
-    /// Estimated error in time of the pressure of a single cell, relative to the mean in contact.
-    pub(super) pressure: f64,
-    /// Residual of the contact problem.
-    pub(super) residual: f64,
-}
-
-impl StepErrors {
-    pub(super) fn max(self, other: StepErrors) -> StepErrors {
-        StepErrors {
-            time: self.time.max(other.time),
-            pressure: self.pressure.max(other.pressure),
-            residual: self.residual.max(other.residual),
-        }
-    }
-}
-
 /// Where the error of a run comes from, made by [`Run::error_budget`](crate::run::Run::error_budget). All
 /// errors are relative; `None` where nothing was estimated.
 ///
@@ -47,7 +25,7 @@ impl StepErrors {
 /// println!("{budget}");
 /// # Ok::<(), Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ErrorBudget {

@@ -110,14 +110,7 @@ impl ViscoelasticContact {
 impl Run<'_> {
     /// The errors of the run so far, by their source.
     pub fn error_budget(&self) -> ErrorBudget {
-        let StepControl { worst, mesh, .. } = self.control;
-        ErrorBudget {
-            time: worst.map(|worst| worst.time),
-            pressure: worst.map(|worst| worst.pressure),
-            field: self.worst_field(),
-            mesh: self.contact.mesh_error().unwrap_or_default(),
-            max_mesh: mesh,
-            solver: worst.map_or(0.0, |worst| worst.residual),
-        }
+        let mesh = self.contact.mesh_error().unwrap_or_default();
+        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst }
     }
 }

@@ -5,6 +5,7 @@ use crate::contact::{Scene, State};
 use crate::error::{Error, Result, within};
 use crate::hereditary::Meeting;
 use crate::load::{Load, LoadHistory};
+use crate::quadrature::bisect;
 
 /// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
 const SMALL: f64 = 0.05;
@@ -237,14 +238,7 @@ impl RunScale {
         }
         let part = |k: i32| now + (stop - now) * f64::from(k) / f64::from(EQUAL_PARTS);
         let Some(k) = (1..=EQUAL_PARTS).find(|&k| !apart(part(k))) else { return f64::INFINITY };
-        let (mut before, mut after) = (part(k - 1), part(k));
-        loop {
-            let middle = 0.5 * (before + after);
-            if middle <= before || middle >= after {
-                return after;
-            }
-            if apart(middle) { before = middle } else { after = middle }
-        }
+        bisect(part(k - 1), part(k), 64, apart)[1]
     }
 }
 

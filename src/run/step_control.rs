@@ -5,7 +5,7 @@ use crate::error::{Error, Result, StepError};
 use crate::hereditary::TimeError;
 use crate::load::{Load, LoadHistory};
 use crate::observe::MeshError;
-use crate::run::error_budget::StepErrors;
+use crate::run::error_budget::ErrorBudget;
 use crate::run::halves::Halves;
 use crate::run::past_steps::PastSteps;
 use crate::run::progress::Stepping;
@@ -35,10 +35,8 @@ pub struct StepControl {
     pub(super) since: f64,
     /// Number of rejected steps.
     pub(super) rejected: u64,
-    /// Greatest errors of a step; `None` before the first.
-    pub(super) worst: Option<StepErrors>,
-    /// Greatest estimated errors due to the mesh, of the states in contact.
-    pub(super) mesh: Option<MeshError>,
+    /// The greatest errors so far, without those of fields and of the present mesh.
+    pub(super) worst: ErrorBudget,
     /// The last step of surfaces that attract each other.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(super) halves: Option<Box<Halves>>,
@@ -256,12 +254,12 @@ impl StepControl {
 
     /// Includes the errors of a step with this residual of its contact problem, and the errors of the mesh at its end.
     pub(super) fn include(&mut self, error: &TimeError, residual: f64, mesh: Option<MeshError>) {
-        let errors = StepErrors { time: error.relative.max(error.lasting), pressure: error.greatest, residual };
-        self.worst = Some(self.worst.map_or(errors, |worst| worst.max(errors)));
-        self.mesh = match (self.mesh, mesh) {
-            (Some(worst), Some(mesh)) => Some(worst.max(mesh)),
-            (worst, mesh) => worst.or(mesh),
-        };
+        let ErrorBudget { time, pressure, max_mesh, solver, .. } = &mut self.worst;
+        let in_time = error.relative.max(error.lasting);
+        *time = Some(time.map_or(in_time, |worst| worst.max(in_time)));
+        *pressure = Some(pressure.map_or(error.greatest, |worst| worst.max(error.greatest)));
+        *solver = solver.max(residual);
+        *max_mesh = [*max_mesh, mesh].into_iter().flatten().reduce(MeshError::max);
     }
 }
 

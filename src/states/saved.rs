@@ -12,7 +12,6 @@ use crate::contact::checkpoint::format::{Input, Output};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::hereditary::Interpolant;
-use crate::parallel::Rows;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
 use crate::states::control::Record;
@@ -82,9 +81,9 @@ impl StatesContact {
     }
 
     fn read(&self, path: &Path) -> Result<Saved<'static>, CheckpointError> {
-        let (mut file, rows) = (Input::open(path)?, Rows::all([1, 1]));
-        let of_part = file.checksum_of_part(&rows)?;
-        file.require_checksum(&rows, of_part)?;
+        let mut file = Input::open(path)?;
+        let found = file.checksum()?;
+        file.require_checksum(found)?;
         let saved: Saved<'static> = file.contents()?;
         let malformed = |what: &str| Err(CheckpointError::Malformed { what: what.into() });
         let other = |what, saved, built| Err(CheckpointError::OtherScene { what, saved, built });

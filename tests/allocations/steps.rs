@@ -165,18 +165,6 @@ pub fn steps_allocate_nothing() {
         });
     }
 
-    // nor, after the first, do steps along a path, with and without something that stays in place
-    let plane = Grid::square(48, 8.0e-3).unwrap();
-    let path = || Straight::new([-1.0e-3, 0.0], [0.01, 0.0]).unwrap();
-    let ways = [Travel::new(sphere(), path()), Travel::new(sphere(), path()).over(Wavy::new(1.0e-6, 1.0e-3).unwrap())];
-    for travel in ways {
-        let mut contact = sphere_on(plane.clone(), body(), Settings::default().with_window(false));
-        contact.step_along(&travel, 0.0, Load::force(0.5)).unwrap();
-        allocates_nothing("along a path", || {
-            (0..40).for_each(|_| _ = contact.step_along(&travel, 5.0e-3, Load::force(0.5)).unwrap());
-        });
-    }
-
     // nor do steps at a temperature that changes, unless it changes the rate of creep by many decades within a step
     let law = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
     let courses = [

@@ -5,20 +5,20 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
-use crate::contact::builder::memory::symmetry_of;
+use crate::contact::builder::memory::{symmetry_of, windowed};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::distributed::gap::SharedGap;
 use crate::contact::read::limits::Limits;
 use crate::contact::{
-    Builder, Computation, Footprint, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
+    Builder, Computation, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
     ViscoelasticContact,
 };
 use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, coverage};
 use crate::error::{count_within, length, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
-use crate::kernel::{HalfSpace, InfluenceKernel, Layer};
+use crate::kernel::{InfluenceKernel, Layer};
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::{Elastic, Material};
 
@@ -47,50 +47,33 @@ impl Builder {
             let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
             let bodies = gaps.len();
             let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-            let parts = self.parts()?;
+            let (scene, history) = self.scene(bodies)?;
             let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
-            let region = if parts.are_windowed() {
+            let region = if windowed(&scene, &history) {
                 // without load, each body is above the cell that it would touch first
                 Region::around(&self.grid, folded, Region::lowest_cells(&self.grid, indenter.gap(), bodies), 0.0)
             } else {
                 Region::whole(&self.grid, folded)
             };
-            parts.footprint(bodies).check(&region, 0)?;
-            return Ok(self.assemble(parts, Arc::new(indenter), region));
+            scene.check_memory(&history, &region, 0)?;
+            let missed = self.missed(&scene);
+            return Ok(assemble(scene, &history, Arc::new(indenter), region, missed));
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
         rows.unless_lost(|| {
-            let (parts, gap, even, region) = self.shared_parts(&gaps, &rows)?;
-            rows.agree(parts.footprint(1).check(&region, 0))?;
+            let ((scene, history), gap, even, region) = self.shared_parts(&gaps, &rows)?;
+            rows.agree(scene.check_memory(&history, &region, 0))?;
             let indenter = gap.on(&region, &self.grid, even);
             drop(gaps);
-            Ok(self.assemble(parts, Arc::new(indenter), region))
+            let missed = self.missed(&scene);
+            Ok(assemble(scene, &history, Arc::new(indenter), region, missed))
         })
     }
 
-    /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
-    fn assemble(self, parts: Parts, indenter: Arc<Indenter>, region: Region) -> ViscoelasticContact {
-        let Builder { grid, waves, temperature, attraction, steady, .. } = self;
-        let Parts { settings, material, kernel, history, .. } = parts;
-        let missed = Missed::of(&waves, &grid, kernel.periodic_axes());
-        let scene = Scene {
-            #[cfg(feature = "checkpoint")]
-            built: Built::new(indenter.gap(), &region.of_gap()),
-            steady,
-            bodies: indenter.bodies(),
-            grid,
-            kernel,
-            limits: Limits::of(&material),
-            material,
-            settings,
-            temperature,
-            softening: attraction.as_deref().map_or(0.0, softening),
-            attraction,
-        };
-        let attracts = scene.attraction.is_some();
-        let computation = Computation::new(&scene, State::at_rest(indenter, region, &history, attracts));
-        ViscoelasticContact::new(scene, computation, missed)
+    /// What the grid misses of the waves of the shapes.
+    fn missed(&self, scene: &Scene) -> Missed {
+        Missed::of(&self.waves, &self.grid, scene.kernel.periodic_axes())
     }
 
     /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
@@ -128,13 +111,17 @@ impl Builder {
         parts.into_iter().try_for_each(|(has, case)| case.unless(|other| has && other == special))
     }
 
-    /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
-    fn shared_parts<'a>(&self, gaps: &'a [LocalGap], rows: &Rows) -> Result<(Parts, SharedGap<'a>, [bool; 2], Region)> {
-        let parts = rows.agree(self.parts())?;
+    /// Scene and history, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
+    fn shared_parts<'a>(
+        &self,
+        gaps: &'a [LocalGap],
+        rows: &Rows,
+    ) -> Result<((Scene, History), SharedGap<'a>, [bool; 2], Region)> {
+        let scene = rows.agree(self.scene(1))?;
         let gap = SharedGap::new(rows.agree(local_gap(gaps, rows))?, &self.grid, rows)?;
         let even = gap.even_axes();
         let region = Region::shared(&self.grid, even.map(|even| even && self.settings.symmetry), rows);
-        Ok((parts, gap, even, region))
+        Ok((scene, gap, even, region))
     }
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
@@ -168,15 +155,15 @@ impl Builder {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
             return rows.unless_lost(|| {
-                let (parts, _, _, region) = self.shared_parts(&self.gaps, &rows)?;
-                Ok(parts.footprint(1).on(&region))
+                let ((scene, history), _, _, region) = self.shared_parts(&self.gaps, &rows)?;
+                Ok(scene.memory_on(&history, &region))
             });
         }
         self.validate()?;
-        let (parts, cells) = (self.parts()?, self.grid.cells());
+        let ((scene, history), cells) = (self.scene(self.gaps.len())?, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|(_, gap)| gap.as_ref().ok()).collect();
         let folded = gaps.filter(|_| self.settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
-        Ok(parts.footprint(self.gaps.len()).most(&self.grid, folded, parts.are_windowed()))
+        Ok(scene.most_memory(&history, folded))
     }
 
     /// Rejects settings out of range, and no rigid body or too many.
@@ -194,8 +181,8 @@ impl Builder {
         specials.into_iter().filter(|(is, _)| *is).try_for_each(|(_, special)| self.is_covered(special))
     }
 
-    /// Material, kernel and history.
-    fn parts(&self) -> Result<Parts> {
+    /// The scene with so many rigid bodies, without the fingerprint of their gap, and the history, on no cells yet.
+    pub(super) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
@@ -218,11 +205,24 @@ impl Builder {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
-        let attracts = self.attraction.is_some();
         if let Some(law) = self.attraction.as_deref() {
             zone_is_resolved(law, &material, &self.grid)?;
         }
-        Ok(Parts { settings: self.settings, material, kernel, history, attracts })
+        let scene = Scene {
+            grid: self.grid.clone(),
+            kernel,
+            limits: Limits::of(&material),
+            material,
+            settings: self.settings,
+            temperature: self.temperature.clone(),
+            softening: self.attraction.as_deref().map_or(0.0, softening),
+            attraction: self.attraction.clone(),
+            steady: self.steady,
+            bodies,
+            #[cfg(feature = "checkpoint")]
+            built: Built::default(),
+        };
+        Ok((scene, history))
     }
 }
 
@@ -232,17 +232,17 @@ impl ViscoelasticContact {
     /// # Errors
     /// If there is no memory for it.
     pub(crate) fn of_unit_compliance(&self, tolerance: f64) -> Result<ViscoelasticContact> {
-        let (scene, material) = (&*self.scene, Material::incompressible(Elastic::new(0.25)?));
-        let settings = Settings { tolerance, time_rule: TimeRule::Exponential, ..scene.settings };
-        let history = history_by(&settings, &material, scene.kernel.periodic_axes())?;
-        let indenter = &self.computation.state.indenter;
+        let (own, material) = (&*self.scene, Material::incompressible(Elastic::new(0.25)?));
+        let settings = Settings { tolerance, time_rule: TimeRule::Exponential, ..own.settings };
+        let history = history_by(&settings, &material, own.kernel.periodic_axes())?;
+        let (limits, temperature, steady) = (Limits::of(&material), None, false);
+        let scene =
+            Scene { material, limits, settings, temperature, attraction: None, softening: 0.0, steady, ..own.clone() };
+        let indenter = Arc::clone(&self.computation.state.indenter);
         let folded = if settings.symmetry { indenter.even_axes(&scene.grid) } else { [false; 2] };
         let region = Region::whole(&scene.grid, folded);
-        let parts = Parts { settings, material, kernel: Arc::clone(&scene.kernel), history, attracts: false };
-        parts.footprint(1).check(&region, 0)?;
-        let mut unit = ViscoelasticContact::builder(scene.grid.clone()).assemble(parts, Arc::clone(indenter), region);
-        unit.missed = self.missed;
-        Ok(unit)
+        scene.check_memory(&history, &region, 0)?;
+        Ok(assemble(scene, &history, indenter, region, self.missed))
     }
 }
 
@@ -255,32 +255,19 @@ fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     Ok(if is_of_all { &gap[own.start * n2..own.end * n2] } else { gap })
 }
 
-/// The parts of a contact that do not depend on its gap.
-struct Parts {
-    settings: Settings,
-    material: Material,
-    kernel: Arc<InfluenceKernel>,
-    /// On no cells yet.
-    history: History,
-    attracts: bool,
-}
-
-impl Parts {
-    fn are_windowed(&self) -> bool {
-        // the bound of the displacement outside a window holds for pressures alone
-        !self.attracts && windowed(&self.settings, &self.history, &self.kernel)
-    }
-
-    fn footprint(&self, bodies: usize) -> Footprint<'_> {
-        let Parts { settings, kernel, history, attracts, .. } = self;
-        Footprint { bodies, settings, kernel, history, attracts: *attracts }
-    }
-}
-
-/// Whether only a part of the grid is computed: on half-spaces only, since the displacement outside a window is bounded for
-/// these alone.
-pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
-    settings.window && history.has_far_field() && kernel.half_space_below() == Some(HalfSpace::LoadedOnGrid)
+/// The contact of a scene; nothing here can fail. A call of all ranks that share out the region.
+fn assemble(
+    scene: Scene,
+    history: &History,
+    indenter: Arc<Indenter>,
+    region: Region,
+    missed: Missed,
+) -> ViscoelasticContact {
+    #[cfg(feature = "checkpoint")]
+    let scene = Scene { built: Built::new(indenter.gap(), &region.of_gap()), ..scene };
+    let attracts = scene.attraction.is_some();
+    let computation = Computation::new(&scene, State::at_rest(indenter, region, history, attracts));
+    ViscoelasticContact::new(scene, computation, missed)
 }
 
 /// Fewer cells in the zone of an attraction are refused.

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use crate::contact::indenter::even_axes;
 use crate::contact::step::attraction::Attracted;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
-use crate::contact::{Indenter, Region, Settings, Solver, State, Trial};
+use crate::contact::{Indenter, Region, Scene, Solver, State, Trial};
 use crate::error::{Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary::History;
-use crate::kernel::InfluenceKernel;
+use crate::kernel::HalfSpace;
+use crate::memory;
 use crate::parallel::Rows;
 use crate::solver::{Bands, Extension};
-use crate::{Grid, memory};
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
 ///
@@ -82,31 +82,21 @@ impl fmt::Display for Memory {
     }
 }
 
-/// What the memory of a contact depends on, besides the region that is computed.
-pub(in crate::contact) struct Footprint<'a> {
-    pub(in crate::contact) bodies: usize,
-    pub(in crate::contact) settings: &'a Settings,
-    pub(in crate::contact) kernel: &'a InfluenceKernel,
-    /// The history, whose time rule counts.
-    pub(in crate::contact) history: &'a History,
-    /// Whether the surfaces attract each other.
-    pub(in crate::contact) attracts: bool,
-}
-
-impl Footprint<'_> {
-    /// Bytes of a contact that is computed on a region.
-    pub(in crate::contact) fn on(&self, region: &Region) -> Memory {
+impl Scene {
+    /// Bytes of a contact that is computed on a region, with a history of this time rule.
+    pub(in crate::contact) fn memory_on(&self, history: &History, region: &Region) -> Memory {
         // a rank without rows is counted as one row
         let cells = region.cells().map(|count| count.max(1));
         let (count, shown) = (cells[0].saturating_mul(cells[1]), region.shown_len());
         let (all, n) = (shown as u128, count as u128);
         let gap = if self.bodies > 1 { 10 } else { 8 };
+        let attracts = self.attraction.is_some();
         // the whole gap, which ranks do not have; its computed part; the pressure on the grid
         let whole = if region.is_shared() { 0 } else { gap * all };
         let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
         let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
-        let layout = State::layout(indenter, region.clone(), self.history, self.attracts);
-        let passes = if self.attracts { Attracted::BYTES_PER_CELL } else { 0 };
+        let layout = State::layout(indenter, region.clone(), history, attracts);
+        let passes = if attracts { Attracted::BYTES_PER_CELL } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
@@ -124,14 +114,14 @@ impl Footprint<'_> {
             state: saturated((per_cell - of_history + Trial::BYTES_PER_CELL + passes) as u128 * n),
             history: saturated(of_history as u128 * n),
             solver: saturated(solver),
-            kernel: saturated(kernel + if self.attracts { near } else { 0 }),
-            each_step: if self.history.grows() { saturated(8 * n) } else { 0 },
+            kernel: saturated(kernel + if attracts { near } else { 0 }),
+            each_step: if history.grows() { saturated(8 * n) } else { 0 },
         }
     }
 
     /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
-    pub(in crate::contact) fn check(&self, region: &Region, besides: u64) -> Result<()> {
-        let memory = self.on(region);
+    pub(in crate::contact) fn check_memory(&self, history: &History, region: &Region, besides: u64) -> Result<()> {
+        let memory = self.memory_on(history, region);
         let cells = memory.computed_cells;
         let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
         count_within("cells that are computed", cells, u32::try_from(cells).is_ok(), allowed)?;
@@ -139,18 +129,25 @@ impl Footprint<'_> {
     }
 
     /// The most bytes that the contact can take while the axes `folded` stay so.
-    pub(in crate::contact) fn most(&self, grid: &Grid, folded: [bool; 2], windowed: bool) -> Memory {
-        let all = Region::whole(grid, folded);
-        let whole = self.on(&all);
-        if !windowed {
+    pub(in crate::contact) fn most_memory(&self, history: &History, folded: [bool; 2]) -> Memory {
+        let all = Region::whole(&self.grid, folded);
+        let whole = self.memory_on(history, &all);
+        if !windowed(self, history) {
             return whole;
         }
         // the largest window, beyond which it is all of the grid
         let [rows, columns] = all.cells();
         let rows = (rows as f64 * MAX_WINDOW_FRACTION).ceil() as usize;
-        let window = self.on(&Region::of_size(grid, folded, [rows, columns]));
+        let window = self.memory_on(history, &Region::of_size(&self.grid, folded, [rows, columns]));
         if window.total() > whole.total() { window } else { whole }
     }
+}
+
+/// Whether only a part of the grid is computed: under pressures on half-spaces only, since the displacement outside a window is
+/// bounded for these alone.
+pub(in crate::contact) fn windowed(scene: &Scene, history: &History) -> bool {
+    let half_space = scene.kernel.half_space_below() == Some(HalfSpace::LoadedOnGrid);
+    scene.settings.window && scene.attraction.is_none() && history.has_far_field() && half_space
 }
 
 /// Axes about whose middle the gap of all bodies together is even, bitwise.
@@ -170,25 +167,24 @@ pub(in crate::contact) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Grid;
+    use crate::contact::ViscoelasticContact;
     use crate::error::Error;
-    use crate::rheology::CreepSpectrum;
+    use crate::rheology::{CreepSpectrum, Material};
 
     /// Solvers number the cells that are computed in 32 bits, whatever memory there is.
     #[test]
     fn no_more_cells_are_computed_than_can_be_numbered() {
-        let creep = CreepSpectrum::new(1.0, 1.0, &[]).unwrap();
-        let (settings, history) = (Settings::default(), History::exponential(&creep));
+        let body = Material::incompressible(CreepSpectrum::new(1.0, 1.0, &[]).unwrap());
         for cells in [[65536, 65536], [1 << 32, 1], [131072, 65536]] {
             let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
-            let kernel = InfluenceKernel::half_space(&grid).unwrap();
-            let all = cells[0] * cells[1];
-            let footprint =
-                Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history, attracts: false };
-            let refused = footprint.check(&Region::whole(&grid, [false; 2]), 0).unwrap_err();
+            let builder = ViscoelasticContact::builder(grid.clone()).material(body.clone());
+            let ((scene, history), all) = (builder.scene(1).unwrap(), cells[0] * cells[1]);
+            let refused = scene.check_memory(&history, &Region::whole(&grid, [false; 2]), 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
             // a small part of them may be, in the memory of gap and pressure
             let part = Region::of_size(&grid, [false; 2], [64, 1]);
-            assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(&part).total()));
+            assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&scene.memory_on(&history, &part).total()));
         }
     }
 }

@@ -16,7 +16,7 @@ const TIMES_PER_DECADE: i32 = 8;
 const DECADES: i32 = 12;
 
 /// Fingerprint of gap and material as built.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Built {
     /// Sums over the gap.
     pub(super) shape: Vec<f64>,

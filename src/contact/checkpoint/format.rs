@@ -3,14 +3,14 @@
 
 use std::cmp::Ordering;
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crc32fast::Hasher;
 use serde::de::DeserializeOwned;
 
 use crate::error::CheckpointError;
-use crate::parallel::{Rows, part};
+use crate::parallel::Rows;
 
 const MAGIC: &[u8; 8] = b"VISCOCHK";
 /// Raised with every change of the contents.
@@ -107,31 +107,22 @@ impl Input {
         number(&self.header, CHECKSUM)
     }
 
-    /// The checksum of the part of the contents that a rank reads, and the number of its bytes.
-    pub(crate) fn checksum_of_part(&mut self, rows: &Rows) -> Result<[f64; 2], CheckpointError> {
-        let bytes = part(self.length as usize, rows.rank(), rows.ranks());
-        self.file.seek(SeekFrom::Start((HEADER + bytes.start) as u64)).map_err(unreadable)?;
-        let (mut hasher, mut piece) = (Hasher::new(), vec![0; PIECE]);
-        for start in bytes.clone().step_by(PIECE) {
-            let piece = &mut piece[..PIECE.min(bytes.end - start)];
-            self.file.read_exact(piece).map_err(unreadable)?;
+    /// The checksum of what the file holds.
+    pub(crate) fn checksum(&mut self) -> Result<u32, CheckpointError> {
+        self.file.seek(SeekFrom::Start(HEADER as u64)).map_err(unreadable)?;
+        let mut hasher = Hasher::new();
+        hasher.update(&self.header[..CHECKSUM]);
+        while let piece @ [_, ..] = self.file.fill_buf().map_err(unreadable)? {
             hasher.update(piece);
+            let read = piece.len();
+            self.file.consume(read);
         }
-        Ok([f64::from(hasher.finalize()), bytes.len() as f64])
+        Ok(hasher.finalize())
     }
 
-    /// Compares the checksum stated with the checksum found, of the parts of all ranks. A call of all ranks.
-    pub(crate) fn require_checksum(&self, rows: &Rows, of_part: [f64; 2]) -> Result<(), CheckpointError> {
-        let hasher = |[checksum, length]: [f64; 2]| Hasher::new_with_initial_len(checksum as u32, length as u64);
-        let joined = |before: [f64; 2], after: [f64; 2]| {
-            let mut all = hasher(before);
-            all.combine(&hasher(after));
-            [f64::from(all.finalize()), before[1] + after[1]]
-        };
-        let mut header = Hasher::new();
-        header.update(&self.header[..CHECKSUM]);
-        header.combine(&hasher(rows.join(of_part, joined)));
-        let (found, expected) = (header.finalize(), self.stated_checksum());
+    /// Refuses a file with another checksum than it states.
+    pub(crate) fn require_checksum(&self, found: u32) -> Result<(), CheckpointError> {
+        let expected = self.stated_checksum();
         if found == expected { Ok(()) } else { Err(CheckpointError::Damaged { found, expected }) }
     }
 

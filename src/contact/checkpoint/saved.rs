@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::scene_fingerprint::Fingerprint;
-use crate::contact::builder::build::windowed;
+use crate::contact::builder::memory::windowed;
 use crate::contact::checkpoint::SavedRun;
 use crate::contact::{Clock, Equilibrium, Region, Scene, State, ViscoelasticContact};
 use crate::error::CheckpointError;
@@ -125,7 +125,7 @@ fn check(state: &State, contact: &ViscoelasticContact) -> Result<(), CheckpointE
     if state.attracts != scene.attraction.is_some() {
         return malformed("another attraction");
     }
-    if !region.is_of(&scene.grid) || !(covers || windowed(&scene.settings, built, &scene.kernel)) {
+    if !region.is_of(&scene.grid) || !(covers || windowed(scene, built)) {
         return malformed("its region is not part of the grid");
     }
     let motions = |Equilibrium { solution, motions, .. }: &Equilibrium| [solution.motions.len(), motions.len()];

@@ -4,13 +4,11 @@ pub(in crate::contact) mod hull;
 mod slope;
 
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use self::slope::Slopes;
 use crate::Grid;
 use crate::contact::window::region::Region;
 use crate::contact::{Hull, Scene};
-use crate::error::Result;
 use crate::geometry::Gap;
 use crate::solver::{HaloRows, RigidMotion};
 
@@ -18,8 +16,6 @@ use crate::solver::{HaloRows, RigidMotion};
 #[derive(Debug)]
 pub(crate) struct Indenter {
     gap: Gap,
-    /// Unique among the indenters of this process.
-    id: u64,
     /// Axes about whose middle the gap is even, bitwise.
     even: OnceLock<[bool; 2]>,
     /// Where loads may act on each body; computed when a body is first free to tilt.
@@ -37,7 +33,6 @@ impl Indenter {
         let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
         Indenter {
             gap,
-            id: next_id(),
             even: OnceLock::new(),
             hulls,
             slopes: OnceLock::new(),
@@ -61,10 +56,6 @@ impl Indenter {
     /// Number of rigid bodies.
     pub(crate) fn bodies(&self) -> usize {
         self.hulls.len()
-    }
-
-    pub(crate) fn id(&self) -> u64 {
-        self.id
     }
 
     /// Axes about whose middle the gap is even, bitwise.
@@ -108,19 +99,6 @@ impl Indenter {
         let at = |body: usize| RigidMotion { approach: self.gap.datum + height(body), tilt: [0.0; 2] };
         (0..self.bodies()).map(at).collect()
     }
-
-    /// Becomes another indenter without reallocating: exchanges the gap of a single body for `heights`.
-    ///
-    /// # Errors
-    /// If the heights are no valid gap; the indenter is then unchanged.
-    pub(crate) fn refill(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
-        self.gap.exchange(heights, grid)?;
-        self.id = next_id();
-        self.even.take();
-        self.slopes.take();
-        self.hulls.iter_mut().for_each(|hull| _ = hull.take());
-        Ok(())
-    }
 }
 
 /// Axes of an even number of cells about whose middle every cell is `alike` its mirror image.
@@ -128,11 +106,6 @@ pub(crate) fn even_axes([n1, n2]: [usize; 2], alike: impl Fn(usize, usize) -> bo
     let rows = |i: usize| (0..n2).all(|j| alike(i * n2 + j, (n1 - 1 - i) * n2 + j));
     let columns = |i: usize| (0..n2 / 2).all(|j| alike(i * n2 + j, i * n2 + n2 - 1 - j));
     [n1.is_multiple_of(2) && (0..n1 / 2).all(rows), n2.is_multiple_of(2) && (0..n1).all(columns)]
-}
-
-fn next_id() -> u64 {
-    static NEXT: AtomicU64 = AtomicU64::new(0);
-    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Indenters in checkpoints: their gap without its heights, and how many bodies there are.

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::contact::{State, Step, StepReport, ViscoelasticContact};
+use crate::contact::{Indenter, State, Step, StepReport, ViscoelasticContact};
 use crate::error::{Result, coverage, exact_length};
+use crate::geometry::Gap;
 use crate::load::Load;
-use crate::memory;
 use crate::motion::Travel;
 
 /// A step along a path.
@@ -46,21 +46,16 @@ impl ViscoelasticContact {
         let requested = self.request_next(dt, &loads)?;
         let [from, position] = [travel.position(self.time())?, travel.position(self.time() + dt)?];
         let shape = travel.shape_at(self.time() + dt)?;
-        if self.indenter_buffer.heights.is_empty() {
-            memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
-        }
-        let indenter = self.indenter_buffer.fill(&self.scene.grid, travel, self.time() + dt)?;
+        let gap = Gap::new(vec![travel.gap(&shape, self.grid())?], self.grid())?;
         let before = self.load_and_motion();
-        let left = Arc::clone(&self.computation.state.indenter);
-        let step = self.take(Step { indenter, ..requested })?;
-        self.indenter_buffer.indenter = Some(left);
+        let step = self.take(Step { indenter: Arc::new(Indenter::new(gap, 1)), ..requested })?;
         let lateral_force = self.lateral_force(&shape);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
 
     /// Force and moments of the first body, and the parts of its motion on which they do work.
-    fn load_and_motion(&self) -> [[f64; 3]; 2] {
+    pub(in crate::contact) fn load_and_motion(&self) -> [[f64; 3]; 2] {
         let ([moment1, moment2], [tilt1, tilt2]) = (self.moment(), self.tilt());
         [[self.force(), moment1, moment2], [self.approach(), tilt1, tilt2]]
     }

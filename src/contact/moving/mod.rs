@@ -1,7 +1,6 @@
 //! Indenters that move along the surface or are replaced, and the lateral force that moves them.
 
 pub(in crate::contact) mod along_path;
-pub(in crate::contact) mod indenter_buffer;
 pub(crate) mod shortfall;
 
 use std::sync::Arc;

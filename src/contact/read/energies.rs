@@ -116,7 +116,7 @@ impl EnergyBalance {
             energies: Energies::default(),
             reduced_time: contact.reduced_time(),
             pushed: [0.0; 3],
-            moved: moved(contact),
+            moved: contact.load_and_motion()[1],
             traction: vec![0.0; cells],
             gap: vec![0.0; cells],
             far_apart: contact.attraction().is_some(),
@@ -147,7 +147,7 @@ impl EnergyBalance {
             self.branches.step(reduced, contact.displacement(), &self.traction).map(|sum| area * sum);
         let stored = stored + self.attracted(contact)?;
         let lost = contact.passes().filter(|_| jumped).map_or(0.0, |passes| passes.released);
-        let (pushed, moved) = (pushed(contact), moved(contact));
+        let [pushed, moved] = contact.load_and_motion();
         let [before, after] = if jumped { self.ends_of_jump(contact, &pushed) } else { [self.pushed, pushed] };
         let work = match dt {
             _ if std::mem::take(&mut self.far_apart) => stored + dissipated + lost,
@@ -214,14 +214,4 @@ impl EnergyBalance {
         let energies = self.gap.iter().filter(|gap| gap.is_finite()).map(|gap| attraction.energy(gap.max(0.0)));
         Ok(-contact.grid().cell_area() * energies.sum::<f64>())
     }
-}
-
-fn pushed(contact: &ViscoelasticContact) -> [f64; 3] {
-    let [first, second] = contact.moment();
-    [contact.force(), first, second]
-}
-
-fn moved(contact: &ViscoelasticContact) -> [f64; 3] {
-    let [first, second] = contact.tilt();
-    [contact.approach(), first, second]
 }

@@ -1,5 +1,7 @@
 //! Acceptance of a computed step, and its warnings.
 
+use std::sync::Arc;
+
 use crate::contact::read::limits::{DEEP, LONG_STEP};
 use crate::contact::{Computation, Edge, Figures, Scene, Step, TimeRule, Warnings};
 use crate::extent::Extent;
@@ -20,7 +22,7 @@ impl Computation {
         let touched = !state.is_undisturbed() || contact_cells > 0 || state.attracts;
         let potentials = [&state.current.solution, &trial.solution].map(|solution| &solution.potential[..]);
         state.history.commit(interval, potentials, touched);
-        if step.indenter.id() != state.indenter.id() {
+        if !Arc::ptr_eq(&step.indenter, &state.indenter) {
             // where the indenter was within the step is not known
             state.history.forget_start();
         }

@@ -70,7 +70,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 ///
 /// False if the last two gaps are not known, if most cells would join or leave, or if the edge moves so slowly that single
 /// cells join: their gaps fall evenly until they touch, which the extrapolated pressure predicts by itself.
-fn predict_contact(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
+fn predict_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.has_memory());
     let (change, rows) = (state.history.last_change(), state.region.rows());
@@ -82,7 +82,7 @@ fn predict_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
-    if ahead * edge_speed(&rows, now, before, window.row_before(&now.solution.pressure)) < MIN_EDGE_SPEED {
+    if ahead * edge_speed(&rows, now, before) < MIN_EDGE_SPEED {
         return false;
     }
     let share = (ahead / (1.0 + ahead)).sqrt();
@@ -120,18 +120,15 @@ fn predict_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
 }
 
 /// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over the length of
-/// the edge, the number of its sides along one axis or the other. `beyond` is the row of pressures before the first local row,
-/// if another rank has it.
-fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium, beyond: Option<&[f64]>) -> f64 {
+/// the edge, the number of its sides along one axis or the other. Sides between bands of rows, of which a rank may have one alone,
+/// do not count.
+fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium) -> f64 {
     let columns = rows.cells()[1];
     let [now, before] = [now, before].map(|equilibrium| &equilibrium.solution.pressure);
     let [moved, across, down] = rows.sum_terms(|k| {
         let touching = now[k] > 0.0;
         let left = if k % columns > 0 { now[k - 1] > 0.0 } else { touching };
-        let above = match k.checked_sub(columns) {
-            Some(above) => now[above] > 0.0,
-            None => beyond.map_or(touching, |row| row[k] > 0.0),
-        };
+        let above = if k % rows.band_cells() >= columns { now[k - columns] > 0.0 } else { touching };
         let differ = [before[k] > 0.0, left, above].map(|other| other != touching);
         (differ != [false; 3]).then(|| differ.map(|differs| f64::from(u8::from(differs))))
     });

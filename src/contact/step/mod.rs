@@ -322,7 +322,7 @@ impl Computation {
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, with the prescribed parts of ω and α
-        let gap_is_new = state.indenter_is_new || step.indenter.id() != state.indenter.id();
+        let gap_is_new = state.indenter_is_new || !Arc::ptr_eq(&step.indenter, &state.indenter);
         let on_bodies = state.history.follows_body_exactly() && !gap_is_new;
         let start = on_bodies.then_some((&state.loads[..], &state.current.motions[..]));
         let bodies = RigidBodies { step, region: &state.region, start };

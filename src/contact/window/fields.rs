@@ -1,5 +1,7 @@
 //! Fields on a region, on the whole grid, and transferred to other regions.
 
+use std::sync::Arc;
+
 use crate::contact::{Indenter, Region, Scene, State, Window};
 use crate::extent::Extent;
 use crate::geometry::Gap;
@@ -120,7 +122,7 @@ pub(in crate::contact) fn transferred(
     scene: &Scene,
     state: &mut State,
     region: Region,
-    indenter: &Indenter,
+    indenter: &Arc<Indenter>,
 ) -> (State, Window) {
     let mut window = Window::new(scene, &region, indenter);
     let (kernel, work) = (&window.kernel, &mut window.work);

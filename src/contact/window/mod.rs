@@ -4,10 +4,12 @@ pub(in crate::contact) mod fields;
 pub(crate) mod placement;
 pub(crate) mod region;
 
+use std::sync::Arc;
+
 use crate::contact::{Indenter, Region, Scene, Solver, Trial};
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
-use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
+use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
 /// another region and never saved.
@@ -24,10 +26,8 @@ pub(crate) struct Window {
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
     pub(super) lowest_outside: f64,
-    /// The number of the indenter that the gap belongs to.
-    indenter: Option<u64>,
-    /// Exchange of halo rows, if ranks share out the region.
-    halo: Option<(HaloExchange, HaloRows)>,
+    /// The indenter that the gap belongs to.
+    indenter: Option<Arc<Indenter>>,
 }
 
 #[derive(Debug, Clone)]
@@ -37,7 +37,7 @@ enum ContactSolver {
 }
 
 impl Window {
-    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
+    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Arc<Indenter>) -> Window {
         let rows = region.rows();
         let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &rows);
         let mut work = kernel.workspace();
@@ -45,33 +45,22 @@ impl Window {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
             Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, scene.bodies))),
         };
-        let halo = HaloExchange::new(&rows, rows.cells()[1])
-            .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
         let near = scene.attraction.as_ref().and_then(|_| kernel.near());
         let inverse = scene.attraction.as_ref().map(|_| kernel.period_inverse());
-        let mut window = Window {
-            halo,
-            near,
-            inverse,
-            work,
-            kernel,
-            solver,
-            gap: None,
-            lowest_outside: f64::INFINITY,
-            indenter: None,
-        };
+        let mut window =
+            Window { near, inverse, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
         window.follow(region, indenter);
         window
     }
 
     /// Brings the gap up to date with an indenter that has moved.
-    pub(crate) fn follow(&mut self, region: &Region, indenter: &Indenter) {
-        if self.indenter == Some(indenter.id()) {
+    pub(crate) fn follow(&mut self, region: &Region, indenter: &Arc<Indenter>) {
+        if self.indenter.as_ref().is_some_and(|own| Arc::ptr_eq(own, indenter)) {
             return;
         }
         region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
-        self.indenter = Some(indenter.id());
+        self.indenter = Some(Arc::clone(indenter));
     }
 
     /// Whether there is a near field.
@@ -90,14 +79,6 @@ impl Window {
     /// The gap of the indenter on the region, which the window follows.
     pub(crate) fn gap<'a>(&'a self, indenter: &'a Indenter) -> &'a Gap {
         self.gap.as_ref().unwrap_or(indenter.gap())
-    }
-
-    /// The halo row of a field before the local rows, if another rank has it.
-    pub(crate) fn row_before(&mut self, field: &[f64]) -> Option<&[f64]> {
-        let (neighbours, ghosts) = self.halo.as_mut()?;
-        let [rows, columns] = self.kernel.grid().cells();
-        neighbours.fetch(ghosts, columns, rows, |row, out| out.copy_from_slice(&field[row * columns..][..columns]));
-        ghosts.before()
     }
 
     /// Whether the solver needs K p of a guess, rather than computing it itself.

@@ -30,6 +30,8 @@ const GREATEST_PRESSURE: f64 = 1e150;
 const GREATEST_DEPTH: f64 = 1e100;
 /// Greatest distance of a point from the origin, in depths of the point: powers of the distance do not overflow.
 const FARTHEST: f64 = 1e40;
+/// The sides of cells along a line, in depths: the farthest distance is nothing beside it.
+const ENDLESS: f64 = 1e60;
 
 /// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
 /// greatest. See [`ViscoelasticContact::stress`](crate::ViscoelasticContact::stress).
@@ -255,13 +257,19 @@ impl SubsurfaceStress {
     /// The stress at a point in the range that [`SubsurfaceStress::at`] accepts.
     fn at_point(&self, point: [f64; 3]) -> Stress {
         let below = |source: &Source| match self.body {
-            HalfSpace::LoadedOnGrid => rectangle::below_cells(&self.grid, &source.field, point, source.weights),
-            HalfSpace::Line { across } => {
-                rectangle::below_strips(&self.grid, across, &source.field, point, source.weights)
-            }
             HalfSpace::Periodic => waves::below_field(&self.grid, &source.spectrum, point, source.weights),
+            _ => rectangle::below_cells(&self.grid, self.sides(point[2]), &source.field, point, source.weights),
         };
         self.sources.iter().map(below).fold(Stress::default(), |sum, stress| sum + stress)
+    }
+
+    /// Sides of a loaded cell \[m\], endless along a line.
+    fn sides(&self, depth: f64) -> [f64; 2] {
+        let mut sides = self.grid.spacing();
+        if let HalfSpace::Line { across } = self.body {
+            sides[1 - across] = ENDLESS * depth;
+        }
+        sides
     }
 
     fn check_depth(&self, depth: f64) -> Result<()> {

@@ -2,7 +2,6 @@
 
 use num_complex::Complex64;
 
-use super::rectangle::{edge, exchanged};
 use super::waves::below_wave;
 use super::{Source, Stress, SubsurfaceStress, Wave, Weights, corner};
 use crate::Grid;
@@ -45,10 +44,8 @@ impl Buffers {
     pub(super) fn fill_plane(&mut self, stress: &SubsurfaceStress, depth: f64, plane: &mut [Stress]) {
         let SubsurfaceStress { grid, body, sources, .. } = stress;
         for (source, table) in sources.iter().zip(&mut self.coefficients) {
-            match *body {
-                HalfSpace::LoadedOnGrid => tabulate_rectangle(grid, depth, source.weights, table),
-                HalfSpace::Line { across } => tabulate_strip(grid, across, depth, source.weights, table),
-                HalfSpace::Periodic => {}
+            if *body != HalfSpace::Periodic {
+                tabulate_rectangle(grid, stress.sides(depth).map(|side| side / depth), source.weights, table);
             }
         }
         let (n2, p2) = (grid.cells()[1], self.transform.periods()[1]);
@@ -117,9 +114,9 @@ fn write_mirrored(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usi
     });
 }
 
-/// Writes the stress at the distances of the grid from a rectangle of the size of a cell.
-fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [Stress]) {
-    let ([_, n2], [d1, d2]) = (grid.cells(), grid.spacing().map(|side| side / depth));
+/// Writes the stress at the distances of the grid from a rectangle with the sides of a cell, over the depth.
+fn tabulate_rectangle(grid: &Grid, sides: [f64; 2], weights: Weights, table: &mut [Stress]) {
+    let ([_, n2], [d1, d2]) = (grid.cells(), sides);
     let row = |i: usize, out: &mut Vec<Stress>| {
         out.clear();
         out.extend((0..=n2).map(|j| corner((i as f64 - 0.5) * d1, (j as f64 - 0.5) * d2, weights)));
@@ -135,15 +132,6 @@ fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [St
             std::mem::swap(&mut lower, &mut upper);
         }
     });
-}
-
-/// Writes the stress at the distances of the grid from a strip.
-fn tabulate_strip(grid: &Grid, across: usize, depth: f64, weights: Weights, table: &mut [Stress]) {
-    let side = grid.spacing()[across] / depth;
-    for (i, out) in table.iter_mut().enumerate() {
-        let stress = edge((i as f64 + 0.5) * side, weights) + -1.0 * edge((i as f64 - 0.5) * side, weights);
-        *out = if across == 0 { stress } else { exchanged(stress) };
-    }
 }
 
 /// Adds a pair of components below the waves of a source.

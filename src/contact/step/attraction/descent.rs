@@ -34,8 +34,6 @@ const ROUNDING: f64 = 1e-13;
 /// is r over the curvature. The least of so many iterations counts.
 const SOFT: f64 = 0.2;
 const REMEMBERED: usize = 8;
-/// Iterations that lose cells while the residual does not fall, before the edge of a line contact is moved on.
-const LOSSES: usize = 3;
 /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
 const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
@@ -187,7 +185,7 @@ impl Descent<'_> {
         // of the last iterations, of all, and of the direction that was looked for
         let (mut measured, mut least) = ([1.0_f64; REMEMBERED], 1.0_f64);
         let mut softest = self.own.softest;
-        let (mut plain, mut front) = (false, Front::new(region.cells(), region.folded(), LOSSES));
+        let (mut plain, mut front) = (false, Front::new(region.cells(), region.folded()));
         let mut looks = if self.own.looks { 0 } else { LOOKS };
         for iteration in 0..=MAX_ITERATIONS {
             let mut gradient = self.gradient();

@@ -1,15 +1,16 @@
 //! The edge of a line contact that runs over many cells within a step.
 //!
-//! A pass, and an iteration in the gap, moves a running edge by about the zone in which the attraction acts. Where cells
+//! An iteration in the gap moves a running edge by about the zone in which the attraction acts. Where cells
 //! were lost several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
 //! cells that are left, since the edge may stop. The trial is kept where the energy falls.
 
 /// Losses count anew where the residual falls to this part, or below so much of the greatest traction.
 const FALLEN: f64 = 0.3;
 const FINE: f64 = 0.01;
-/// The part of the contact by which each edge is moved at most, and losses between a failure and the next trial.
+/// The part of the contact by which each edge is moved at most.
 const MOST: usize = 16;
-const PAUSE: usize = 4;
+/// Losses while the residual does not fall, before the edge is moved on, and between a failure and the next trial.
+const LOSSES: usize = 3;
 
 /// How the edge has moved so far.
 #[derive(Debug, Clone, Copy)]
@@ -18,8 +19,7 @@ pub(super) struct Front {
     is_line: bool,
     folded: bool,
     touching: usize,
-    least: usize,
-    /// How often cells were lost while the residual did not fall, less a pause.
+    /// How often cells were lost while the residual did not fall, or since a failure.
     losses: usize,
     residual: f64,
     span: usize,
@@ -33,18 +33,9 @@ pub(super) struct Moved {
 }
 
 impl Front {
-    /// A front that is moved after so many losses.
-    pub(super) fn new(cells: [usize; 2], folded: [bool; 2], least: usize) -> Front {
-        let is_line = cells.contains(&1);
-        Front {
-            is_line,
-            folded: folded[usize::from(cells[0] == 1)],
-            touching: 0,
-            least,
-            losses: 0,
-            residual: 0.0,
-            span: 1,
-        }
+    pub(super) fn new(cells: [usize; 2], folded: [bool; 2]) -> Front {
+        let (is_line, folded) = (cells.contains(&1), folded[usize::from(cells[0] == 1)]);
+        Front { is_line, folded, touching: 0, losses: 0, residual: 0.0, span: 1 }
     }
 
     /// Looks at the residual, over the greatest traction, and at which cells touch; returns how the profile is to be moved.
@@ -60,7 +51,7 @@ impl Front {
         let touching = in_contact().count();
         let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
         self.losses += usize::from(lost > 0);
-        if lost == 0 || self.losses < self.least {
+        if lost == 0 || self.losses < LOSSES {
             return None;
         }
         let mut parts: Vec<(usize, usize)> = Vec::new();
@@ -84,7 +75,7 @@ impl Front {
             self.span *= 2;
         } else {
             self.span = (self.span / 2).max(1);
-            self.losses = self.least.saturating_sub(PAUSE);
+            self.losses = 0;
         }
     }
 }

@@ -21,7 +21,6 @@ mod near_field;
 mod passes;
 mod split;
 
-use front::Front;
 pub(in crate::contact) use passes::Attracted;
 pub use passes::PassReport;
 use passes::{Extrapolation, InPasses};
@@ -60,8 +59,6 @@ const LEAST_EXACT: f64 = 1e-3;
 /// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
 /// penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
-/// Passes that lose cells before the edge of a line contact is moved on.
-const LOSSES: usize = 200;
 /// The greatest error of s after the first pass, over what the pass changed.
 const MOST_ERROR: f64 = 100.0;
 /// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
@@ -159,8 +156,6 @@ impl AttractedStep<'_> {
         let (mut change, mut exactness, mut exact) = (f64::INFINITY, 0.0, 1.0);
         // plain passes that are to follow, and after the next extrapolation that gains nothing
         let (mut wait, mut penalty) = (0_usize, 1_usize);
-        let region = &self.state.region;
-        let (mut front, mut moved) = (Front::new(region.cells(), region.folded(), LOSSES), false);
         for _ in 0..MAX_PASSES {
             self.open_gap(window, trial);
             own.report.passes += 1;
@@ -196,20 +191,13 @@ impl AttractedStep<'_> {
                 own.report.rejected += 1;
                 trial.solution.attraction.copy_from_slice(own.in_passes().last_g);
                 plain = true;
-                if std::mem::take(&mut moved) {
-                    front.learn(false);
-                } else {
-                    (wait, penalty) = (penalty, penalty.saturating_mul(2));
-                }
+                (wait, penalty) = (penalty, penalty.saturating_mul(2));
                 continue;
             };
             if least.is_finite() {
                 own.report.rise = own.report.rise.max((found.energy - least) / found.scale - unsure);
             }
-            if std::mem::take(&mut moved) {
-                front.learn(true);
-                own.has_last = false;
-            } else if !plain && !reversed && found.change >= change {
+            if !plain && !reversed && found.change >= change {
                 // it gained nothing: the more often, the more plain passes follow
                 (wait, penalty) = (penalty, penalty.saturating_mul(2));
             }
@@ -237,11 +225,6 @@ impl AttractedStep<'_> {
             plain = !own.has_last || wait > 0 && !reversed;
             wait = wait.saturating_sub(1);
             own.go_on(if plain { 0.0 } else { weight }, greatest, s, g);
-            if let Some(profile) = front.look(1.0, s.len(), |k| trial.solution.pressure[k] > 0.0) {
-                let InPasses { last_g, .. } = own.in_passes();
-                s.iter_mut().enumerate().for_each(|(k, s)| *s = last_g[profile.source(k, g.len())]);
-                (plain, moved) = (false, true);
-            }
         }
         let (time, passes) = (step.interval.time, own.report.passes);
         Err(AdhesionError::NotConverged { time, passes, change, tolerance: limit }.into())
