@@ -93,23 +93,26 @@ impl TextTable {
             );
         }
         let first = from.first().map_or(u64::MAX, |row| row.line);
-        let line = names.map_or(if from.is_empty() { 1 } else { first }, |row| row.line);
         let mut commented = false;
-        let headings = match names {
-            Some(names) => with_units(merged(names, width), units.map(|row| merged(row, width))),
+        let (headings, line) = match names {
+            Some(names) => (with_units(merged(names, width), units.map(|row| merged(row, width))), names.line),
             None => {
                 let (mut names, mut units) = (None, None);
                 for row in text.comments_before(first) {
                     match row.fields[0].to_lowercase().as_str() {
-                        "columns:" => names = Some((merged(&row, width).split_off(1), false)),
+                        "columns:" => names = Some((merged(&row, width).split_off(1), false, row.line)),
                         "units:" => units = Some(merged(&row, width).split_off(1)),
-                        _ if names.as_ref().is_none_or(|names| names.1) => names = Some((merged(&row, width), true)),
+                        _ if names.as_ref().is_none_or(|names| names.1) => {
+                            names = Some((merged(&row, width), true, row.line))
+                        }
                         _ => {}
                     }
                 }
-                let (names, in_remark) = names.filter(|names| names.0.len() == width && width > 1).unwrap_or_default();
+                let none = (Vec::new(), false, if from.is_empty() { 1 } else { first });
+                let (names, in_remark, line) =
+                    names.filter(|names| names.0.len() == width && width > 1).unwrap_or(none);
                 commented = in_remark;
-                with_units(names, units)
+                (with_units(names, units), line)
             }
         };
         Ok(TextTable { headings, line, first, commented, text })
@@ -122,7 +125,7 @@ impl TextTable {
 
     /// The same without headings that are a comment: it may say something else.
     pub(crate) fn without_comment(&self) -> Option<TextTable> {
-        self.commented.then(|| TextTable { headings: Vec::new(), commented: false, ..self.clone() })
+        self.commented.then(|| TextTable { headings: Vec::new(), line: self.first, commented: false, ..self.clone() })
     }
 
     /// The same with another heading of a column, counted from 1: with a unit in brackets, `z [nm]`. An empty heading takes

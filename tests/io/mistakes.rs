@@ -142,7 +142,8 @@ const MISTAKES: &[Mistake] = &[
 ("a closure of compliance without times",
     || builder_on(grid(), Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())))).build().map(drop),
     "a contact needs an exponential series, and FnRheology { .. } has no exact one: name the times to fit one over, with \
-     Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted"),
+     Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with \
+     Rheology::series or Material::fitted"),
 ("a compliance that falls",
     || builder_on(grid(), falling()).times(1e-2..=1e2).build().map(drop),
     "creep compliance J(0.01 s) = 9.90099e-7 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and \

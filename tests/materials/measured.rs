@@ -149,7 +149,7 @@ fn times_beyond_the_data_are_refused_unless_extrapolated() {
     let report = contact.step(50.0, Load::force(0.1)).unwrap();
     assert!(!report.warnings.contains(Warnings::NEAR_END_OF_MATERIAL), "{report}");
     let error = contact.step(51.0, Load::force(0.1)).unwrap_err();
-    assert_eq!(error, Error::Step(StepError::BeyondMaterial { time: 100051.0, age: 101.0, known_until: 100.0 }));
+    assert_eq!(error, Error::Step(StepError::BeyondMaterial { time: 100101.0, age: 101.0, known_until: 100.0 }));
     // the choice
     let trusted = body.extrapolated();
     assert!(trusted.creep_compliance(150.0).is_finite());
