@@ -194,7 +194,7 @@ impl ViscoelasticContact {
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let again = self.may_have_snapped().then(|| step.clone());
         let reach = self.adopt(attempt, step, error.sizes)?;
-        again.iter().for_each(|step| self.look_for_jump(step));
+        again.iter().try_for_each(|step| self.look_for_jump(step))?;
         let report = self.report(estimated.then_some(error.relative), reach);
         report.emit();
         Ok(report)
@@ -335,9 +335,11 @@ impl Computation {
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
         if let Some(law) = scene.attraction.as_deref() {
+            // what failed in an earlier call is none of this step's
+            drop(law.failure());
             let solved = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] }
                 .solve(window, trial);
-            solved.map_err(|error| law.failure().map_or(error, Error::User))?;
+            law.failure().map_or(solved, |failure| Err(Error::User(failure)))?;
         } else {
             guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
             if c == 0.0 {

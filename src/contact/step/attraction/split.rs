@@ -6,7 +6,7 @@
 
 use super::{PassReport, add};
 use crate::contact::{State, Step, ViscoelasticContact};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::solver::{Counts, Solution};
 
@@ -22,13 +22,16 @@ impl ViscoelasticContact {
         self.computation.trial.passes.as_ref().is_some_and(|own| own.report.suspected)
     }
 
-    /// Looks whether surfaces snapped within the step that was accepted last. The state is as it was.
-    pub(in crate::contact) fn look_for_jump(&mut self, step: &Step<'_>) {
-        let Some(own) = self.computation.trial.passes.as_mut() else { return };
+    /// Looks whether surfaces snapped within the step that was accepted last. The state is as it was; after an error it is the one before the step.
+    ///
+    /// # Errors
+    /// If the step is cancelled, or the law of attraction fails. A part that is not found is a jump.
+    pub(in crate::contact) fn look_for_jump(&mut self, step: &Step<'_>) -> Result<()> {
+        let Some(own) = self.computation.trial.passes.as_mut() else { return Ok(()) };
         let (whole, end, state) = (own.report, own.end.take(), &mut self.computation.state);
         if !state.history.start_is_kept() {
             own.report.jumped = true;
-            return;
+            return Ok(());
         }
         // parts need not be looked at
         own.looks = false;
@@ -38,12 +41,18 @@ impl ViscoelasticContact {
         let start = self.load_like(0, &step.loads[0]);
         let mut search = Search { contact: self, step, start, released: whole.released, counts: Counts::default() };
         let jumps = search.jumps(0.0, 1.0, &end.current.solution);
-        let (counts, jumped) = (search.counts, jumps.unwrap_or(true));
+        let (counts, jumped) = (search.counts, *jumps.as_ref().unwrap_or(&true));
         self.go_to(&end);
         add(&mut self.computation.state.current.solution.counts, counts);
         if let Some(own) = self.computation.trial.passes.as_mut() {
             (own.report, own.end, own.looks) = (PassReport { jumped, ..whole }, Some(end), true);
         }
+        if let Err(error @ (Error::Cancelled { .. } | Error::User(_))) = jumps {
+            self.computation.state.roll_back();
+            self.view.refresh(&self.computation.state);
+            return Err(error);
+        }
+        Ok(())
     }
 
     /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.
