@@ -73,7 +73,7 @@ impl ViscoelasticContact {
     pub(crate) fn with_pressure(&self, pressure: &[f64]) -> Option<ViscoelasticContact> {
         let mut contact = self.clone();
         let State { region, current, .. } = &mut contact.computation.state;
-        let n2 = region.whole_grid().cells()[1];
+        let n2 = region.whole.cells()[1];
         let pressed = |k: usize| pressure[k] > 0.0;
         if (0..pressure.len()).any(|k| pressed(k) && region.find([k / n2, k % n2]).is_none()) {
             return None;

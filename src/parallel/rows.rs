@@ -230,16 +230,6 @@ impl Rows {
         found
     }
 
-    /// Gathers `of(rank)` values of each rank.
-    pub(crate) fn gather_rows(&self, own: &[f64], all: &mut [f64], of: impl Fn(usize) -> usize) {
-        let Some(shared) = &self.shared else { return };
-        let mut counts = std::mem::take(&mut lock(&shared.buffers).counts);
-        counts.clear();
-        counts.extend((0..self.ranks()).map(of));
-        shared.gather(own, &counts, all);
-        lock(&shared.buffers).counts = counts;
-    }
-
     /// Sends numbers to each rank, and receives numbers from each; if a rank is lost, `received` stays as it is. A process by itself
     /// receives what it sends.
     pub(crate) fn exchange_into(

@@ -18,7 +18,7 @@ pub(crate) fn make_feasible(problem: &Problem<'_>, set: &mut ContactSet, solutio
     for body in problem.loaded_bodies() {
         let balanced = set.count_under(body) > 0 && balance(problem, body, set, solution);
         if !balanced {
-            cold_start(problem, body, set, solution, |_, _| ())?;
+            cold_start(problem, body, set, solution)?;
         }
     }
     set.find_pressed(problem, &solution.pressure);
@@ -28,28 +28,15 @@ pub(crate) fn make_feasible(problem: &Problem<'_>, set: &mut ContactSet, solutio
 /// Fills the pressure under `body` with a guess whose force and moments are in balance; adds all cells that it
 /// may touch to `set`.
 ///
-/// `sharpen` may improve the pressures where the whole face is pressed, as under a punch, whose pressure
-/// rises to its rim. Its result is kept if no part of the face has to open for the balance.
-///
 /// Fails with the body if no pressure on these cells can balance the load.
 pub(crate) fn cold_start(
     problem: &Problem<'_>,
     body: usize,
     set: &mut ContactSet,
     solution: &mut Solution,
-    sharpen: impl FnOnce(&ContactSet, &mut Solution),
 ) -> Result<(), usize> {
     set.press_possible(problem, body);
-    let pressed =
-        |solution: &Solution| !problem.rows().any(!set.cells(problem, body).all(|k| solution.pressure[k] > 0.0));
     fill_hertz(problem, body, set, solution);
-    if pressed(solution) {
-        sharpen(set, solution);
-        if balance(problem, body, set, solution) && pressed(solution) {
-            return Ok(());
-        }
-        fill_hertz(problem, body, set, solution);
-    }
     if balance_with_supports(problem, body, set, solution) { Ok(()) } else { Err(body) }
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::scene_fingerprint::Fingerprint;
 use crate::contact::builder::memory::windowed;
 use crate::contact::checkpoint::SavedRun;
-use crate::contact::{Clock, Equilibrium, Region, Scene, State, ViscoelasticContact};
+use crate::contact::{Clock, Equilibrium, Region, State, ViscoelasticContact};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
@@ -63,7 +63,11 @@ impl<'a, P: SavedRun> Saved<'a, P> {
         if (0..2).any(|axis| self.gap_folded[axis] && !cells[axis].is_multiple_of(2)) {
             return malformed("a symmetry that its grid cannot have");
         }
-        check_run(&self.state.clock, self.progress.as_deref(), &contact.scene)?;
+        let Clock { time, reduced_time, .. } = self.state.clock;
+        check_clocks(time, reduced_time, contact.scene.temperature.as_ref())?;
+        if self.progress.as_deref().is_some_and(|progress| !progress.fits()) {
+            return malformed("a run that no contact can continue");
+        }
         if contact.computation.state.region.is_shared() {
             if !region.covers() {
                 let saved = "a window of the grid (set Settings::window to false before it is saved)";
@@ -106,15 +110,6 @@ pub(crate) fn check_clocks(
     }
     let [saved, built] = texts_without_noise([reduced, built].map(|time| format!("reduced time {time:e} s")));
     Err(CheckpointError::OtherScene { what: "temperature", saved, built })
-}
-
-/// Rejects a reduced time that the temperature of the scene does not lead to, and a run that cannot be continued.
-pub(super) fn check_run(clock: &Clock, run: Option<&impl SavedRun>, scene: &Scene) -> Result<(), CheckpointError> {
-    check_clocks(clock.time, clock.reduced_time, scene.temperature.as_ref())?;
-    if run.is_some_and(|progress| !progress.fits()) {
-        return malformed("a run that no contact can continue");
-    }
-    Ok(())
 }
 
 /// Rejects a state on no cells that is not one of the contact.

@@ -84,7 +84,7 @@ impl Indenter {
         }
         let own = self.greatest_slope_and_relief(local(region));
         let [squared, relief] = own.map(|own| rows.greatest(own));
-        self.slopes = self.slopes_of(squared, relief, region.whole_grid()).into();
+        self.slopes = self.slopes_of(squared, relief, &region.whole).into();
         self
     }
 

@@ -69,6 +69,6 @@ impl ViscoelasticContact {
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
         let [load_now, motion_now] = self.load_and_motion();
         let pressed = (0..3).map(|k| 0.5 * (load[k] + load_now[k]) * (motion_now[k] - motion[k]));
-        work * self.grid().cell_area() * region.images() as f64 - pressed.sum::<f64>()
+        work * region.cell_area() - pressed.sum::<f64>()
     }
 }

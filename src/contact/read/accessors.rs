@@ -134,7 +134,7 @@ impl ViscoelasticContact {
     /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls harder than the wall presses.
     pub fn force(&self) -> f64 {
         let State { region, current, .. } = &self.computation.state;
-        current.sum * region.grid().cell_area() * region.images() as f64
+        current.sum * region.cell_area()
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\], Eq. 5 of the [paper](crate::paper).
@@ -191,7 +191,7 @@ impl ViscoelasticContact {
             sums
         };
         let [force, moment1, moment2, cells] = region.rows().merge(part, sum::add);
-        let area = grid.cell_area() * region.images() as f64;
+        let area = region.cell_area();
         // the moments of mirror images cancel
         let moment = |axis: usize, sum: f64| if region.folded()[axis] { 0.0 } else { sum * area };
         (force * area, [moment(0, moment1), moment(1, moment2)], region.images() * cells as usize)

@@ -126,7 +126,7 @@ impl ViscoelasticContact {
                     let convergence = Convergence::new(Vec::new(), tolerance, is_active_set, false).into();
                     Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
                 })?;
-            let area = self.grid().cell_area() * region.images() as f64;
+            let area = region.cell_area();
             matrix[0][j] = rows.sum(&q) * area;
             for i in (1..3).filter(|i| tilts(i - 1).is_some()) {
                 let moments: Vec<f64> = q.iter().enumerate().map(|(k, q)| q * motion(i, k)).collect();

@@ -37,7 +37,7 @@ pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Re
     }
     let Solution { pressure, attraction, .. } = solution;
     let tractions = rows.sum_of_pairs(pressure, attraction, |z, s| (z - s).abs());
-    let area = scene.grid.cell_area() * region.images() as f64;
+    let area = region.cell_area();
     let [length1, length2] = scene.grid.lengths();
     area * beyond / (area * tractions).max(law.energy(0.0) * length1.min(length2))
 }

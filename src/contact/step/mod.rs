@@ -192,7 +192,7 @@ impl ViscoelasticContact {
     pub(crate) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        let again = self.may_have_snapped().then(|| step.clone());
+        let again = self.passes().filter(|report| report.suspected).map(|_| step.clone());
         let reach = self.adopt(attempt, step, error.sizes)?;
         again.iter().try_for_each(|step| self.look_for_jump(step))?;
         let report = self.report(estimated.then_some(error.relative), reach);

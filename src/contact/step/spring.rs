@@ -34,11 +34,6 @@ fn springs<'a>(step: &'a Step<'_>) -> impl Iterator<Item = (usize, f64, f64)> + 
     })
 }
 
-/// Force over Σ p \[m²\].
-fn area(scene: &Scene, state: &State) -> f64 {
-    scene.grid.cell_area() * state.region.images() as f64
-}
-
 /// Estimated dω/dF, as of a circle with the area of the present contact in a step of compliance `c`.
 fn yielding(scene: &Scene, state: &State, c: f64) -> f64 {
     let pressed = (state.current.contact_cells.max(1) / scene.bodies).max(1) as f64;
@@ -55,7 +50,7 @@ pub(super) fn share_of_force(scene: &Scene, state: &State, step: &Step<'_>) -> f
 
 /// Writes the first forces to try to the free motions: those that the present pressure, and in a first contact the shape, suggest.
 pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<'_>, c: f64, trial: &mut Trial) {
-    let (area, rows, now) = (area(scene, state), state.region.rows(), &state.current.solution);
+    let (area, rows, now) = (state.region.cell_area(), state.region.rows(), &state.current.solution);
     for (body, give, drive) in springs(step) {
         let above = &trial.gap;
         let own = |k: usize| gap.owner(k) == body && above[k].is_finite();
@@ -100,7 +95,7 @@ pub(super) fn solve_with_springs(
     trial: &mut Trial,
     mut solve: impl FnMut(&mut Trial) -> Outcome,
 ) -> Outcome {
-    let (area, least) = (area(scene, state), yielding(scene, state, c));
+    let (area, least) = (state.region.cell_area(), yielding(scene, state, c));
     let one_cell = c / scene.grid.cell_area().sqrt();
     for tries in 0..MAX_FORCES {
         let outcome = solve(trial);

@@ -18,7 +18,7 @@ pub(crate) struct Window {
     pub(in crate::contact) kernel: LocalKernel,
     pub(in crate::contact) work: Workspace,
     /// The near field of the kernel, and its work space, where surfaces attract each other.
-    near: Option<(LocalKernel, Workspace)>,
+    pub(in crate::contact) near: Option<(LocalKernel, Workspace)>,
     /// The inverse of the near field, or of the kernel of periodic bodies, where surfaces attract each other.
     pub(in crate::contact) inverse: Option<PeriodInverse>,
     solver: ContactSolver,
@@ -61,11 +61,6 @@ impl Window {
         region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
         self.indenter = Some(Arc::clone(indenter));
-    }
-
-    /// Whether there is a near field.
-    pub(in crate::contact) fn has_near_field(&self) -> bool {
-        self.near.is_some()
     }
 
     /// Exchanges the kernel for the near field, if there is one, and back.

@@ -138,7 +138,7 @@ pub(in crate::contact) fn outgrown(
         radius = radius.max(distance(grid.center(k / m2, k % m2)));
     }
     let radius = radius + 0.5 * side1.hypot(side2);
-    let area = grid.cell_area() * region.images() as f64 / PI;
+    let area = region.cell_area() / PI;
     let least = |r: f64| {
         let lowered = if negative > 0.0 { negative / (r - radius).max(0.0) } else { 0.0 };
         area * (positive / (r + radius) - lowered)

@@ -206,9 +206,9 @@ impl Region {
         Extent { low: self.first, high: [0, 1].map(|axis| self.first[axis] + self.cells()[axis] - 1) }
     }
 
-    /// The grid that it is a part of.
-    pub(crate) fn whole_grid(&self) -> &Grid {
-        &self.whole
+    /// Area of a cell with its mirror images, force over Σ p \[m²\].
+    pub(crate) fn cell_area(&self) -> f64 {
+        self.whole.cell_area() * self.images() as f64
     }
 
     /// Its cell that is, or is the image of, a cell of the whole grid.

@@ -104,7 +104,8 @@ impl SpectralOperator {
     pub(super) fn convolve_shared(&self, shares: &Shares, input: &[f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             let mut all = std::mem::take(&mut work.column.all);
-            shares.rows.gather_rows(input, &mut all, |rank| shares.rows.of(rank).len());
+            let own = |rank| shares.rows.of(rank).len();
+            shares.rows.gather(input.iter().copied(), own, |found| all.copy_from_slice(found));
             self.convolve_column(column, &all, &mut work.column);
             self.read_column(column, &work.column, &mut all);
             work.column.all = all;

@@ -84,11 +84,6 @@ fn set_pair(stress: &mut Stress, pair: usize, Complex64 { re, im }: Complex64) {
     }
 }
 
-/// The two components of a pair, as real and imaginary part.
-fn pair_of(components: [f64; 6], pair: usize) -> Complex64 {
-    Complex64::new(components[2 * pair], components[2 * pair + 1])
-}
-
 /// Writes a pair of components at all distances, positive and negative, within the period.
 fn write_mirrored(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out: &mut [Complex64]) {
     let cells = grid.cells();
@@ -108,7 +103,7 @@ fn write_mirrored(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usi
                 for (axis, _) in [up, left].into_iter().enumerate().filter(|mirrored| mirrored.1) {
                     values.iter_mut().zip(SIGNS[axis]).for_each(|(value, sign)| *value *= sign);
                 }
-                *out = pair_of(values, pair);
+                *out = Complex64::new(values[2 * pair], values[2 * pair + 1]);
             }
         }
     });

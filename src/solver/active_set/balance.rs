@@ -75,7 +75,7 @@ impl ActiveSet {
                 // the iterations may have begun from a cold start: another one could lead to the same state
                 press_everywhere(problem, body, &mut self.set, solution);
             } else {
-                cold_start(problem, body, &mut self.set, solution, |_, _| ())?;
+                cold_start(problem, body, &mut self.set, solution)?;
             }
             self.set.keep_pressed(problem, body, &solution.pressure);
             solve.convolve();

@@ -10,7 +10,7 @@ impl ActiveSet {
     /// Sets A to {p > 0}, or to the cells that are likely to be in contact, and balances the pressure on A. Other cells that
     /// carry pressure are to leave. Fails with the body whose load no pressure can balance.
     pub(super) fn start(&mut self, solve: &mut Solve<'_>) -> Result<(), usize> {
-        let Solve { problem, solution, work, .. } = solve;
+        let Solve { problem, solution, .. } = solve;
         (self.energy, self.search_length, self.was_cut) = (0.0, f64::INFINITY, false);
         for_each_band([&mut self.set.member], |first, [member]| {
             for (k, member) in (first..).zip(member) {
@@ -29,18 +29,7 @@ impl ActiveSet {
             }
             // a guess without positive pressure may hold negative ones, which v includes
             reset |= problem.rows().any(solution.pressure.iter().any(|&p| p != 0.0));
-            // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
-            let sharpen = |set: &ContactSet, solution: &mut Solution| {
-                let (cells, punch) = (|| set.cells(problem, body), &mut self.buffer);
-                punch.fill(0.0);
-                cells().for_each(|k| punch[k] = solution.pressure[k]);
-                self.preconditioner.filter(punch, work);
-                solution.counts.preconditioner_applications += 1;
-                let sum = |field: &[f64]| set.sum_of(problem, body, |k| field[k].max(0.0));
-                let scale = sum(&solution.pressure) / sum(punch);
-                cells().for_each(|k| solution.pressure[k] = scale * punch[k].max(0.0));
-            };
-            cold_start(problem, body, &mut self.set, solution, sharpen)?;
+            cold_start(problem, body, &mut self.set, solution)?;
             self.set.keep_pressed(problem, body, &solution.pressure);
             reset |= self.set.count_under(body) > 0;
         }

@@ -144,7 +144,8 @@ impl Level {
         let Level { height, cells: [_, columns], ref kept, ref mut value, ref mut local, .. } = *self;
         let Some(local) = local else { return compute_rows(pass, buffers, value, kept.start, columns) };
         compute_rows(pass, buffers, local, blocks_of(rows.own(), height).start, columns);
-        rows.gather_rows(local, value, |rank| columns * blocks_of(rows.of(rank), height).len());
+        let count = |rank| columns * blocks_of(rows.of(rank), height).len();
+        rows.gather(local.iter().copied(), count, |all| value.copy_from_slice(all));
     }
 
     /// Multiplies all values by the factor of the attenuation, if it acts on this level.

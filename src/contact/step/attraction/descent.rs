@@ -138,7 +138,7 @@ impl AttractedStep<'_> {
             Load::Approach { .. } => [1.0 / (c * compliance), 0.0],
             Load::Force { .. } => [0.0, wanted.total / cells],
             Load::Spring { stiffness, drive, .. } => {
-                let of_mean = 1.0 / (c * compliance + cells * self.area() / stiffness);
+                let of_mean = 1.0 / (c * compliance + cells * self.state.region.cell_area() / stiffness);
                 [of_mean, of_mean * (drive - self.step.indenter.gap().datum)]
             }
         };
@@ -232,7 +232,9 @@ impl Descent<'_> {
                 && gradient.at_wall == 0.0
                 && gradient.attraction <= CARRIED * pull
             {
-                return Err(AdhesionError::PulledOff { time, force: -pull * self.problem.area() }.into());
+                return Err(
+                    AdhesionError::PulledOff { time, force: -pull * self.problem.state.region.cell_area() }.into()
+                );
             }
             self.own.report.passes += 1;
             self.counts.iterations += 1;

@@ -68,7 +68,7 @@ impl AttractedStep<'_> {
             Load::Force { .. } => -wanted.total * motion.at(wanted.point),
             Load::Spring { stiffness, drive, .. } => {
                 let extended = drive - self.step.indenter.gap().datum - motion.approach;
-                0.5 * stiffness * extended * extended / self.area()
+                0.5 * stiffness * extended * extended / self.state.region.cell_area()
             }
             Load::Approach { .. } => 0.0,
         };
@@ -141,7 +141,7 @@ impl AttractedStep<'_> {
     /// The work of the spring on a way, over the area of a cell.
     fn of_spring(&self, moved: f64) -> f64 {
         if let Load::Spring { stiffness, .. } = self.step.loads[0] {
-            stiffness / self.area() * moved * moved
+            stiffness / self.state.region.cell_area() * moved * moved
         } else {
             0.0
         }
@@ -155,11 +155,11 @@ impl AttractedStep<'_> {
         let [[before, _], [now, scale]] = ends.map(|(solution, motion)| self.energy_of(solution, motion, &trial.gap));
         let [convex, softened] = self.bends_up(&trial.gap, ends);
         let report = &mut own.report;
-        report.released = self.area() * (before - now);
-        report.unaccounted = report.released - 0.5 * self.area() * (convex + softened);
+        report.released = self.state.region.cell_area() * (before - now);
+        report.unaccounted = report.released - 0.5 * self.state.region.cell_area() * (convex + softened);
         report.bend = 1.0 + softened / convex;
         let much = LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0));
-        report.suspected = report.may_jump(self.area() * much) && !self.is_first(trial);
+        report.suspected = report.may_jump(self.state.region.cell_area() * much) && !self.is_first(trial);
     }
 }
 

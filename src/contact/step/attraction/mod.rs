@@ -128,7 +128,11 @@ impl AttractedStep<'_> {
         trial.free[0] = self.wanted;
         self.open_gap(window, trial);
         begin(self.state, trial, self.step);
-        self.guess(window, trial, counts);
+        if self.state.is_undisturbed() {
+            self.first_guess(window, trial, counts);
+        } else {
+            self.extrapolate(trial);
+        }
         let Window { kernel, work, .. } = &mut *window;
         let Solution { pressure, attraction, potential, .. } = &mut trial.solution;
         let InPasses { image, .. } = own.in_passes();
@@ -176,7 +180,7 @@ impl AttractedStep<'_> {
             // no wall holds what pulls, or what turns a body off that tilts freely: it peels
             let peels = matches!(outcome, Outcome::Unbalanced(_)) && wanted.total <= 0.0;
             if plain && (!carried || peels) {
-                let force = wanted.total * self.area();
+                let force = wanted.total * self.state.region.cell_area();
                 return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
             }
             if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
@@ -205,7 +209,7 @@ impl AttractedStep<'_> {
             exact = (EXACT * self.law.range() / found.displaced).clamp(LEAST_EXACT, 1.0);
             inner = (INNER * exact * change).min(LOOSEST);
             // the force of the spring, too
-            let scale = (trial.free[0].total * self.area()).max(pulled);
+            let scale = (trial.free[0].total * self.state.region.cell_area()).max(pulled);
             trial.solution.residual = trial.solution.residual.max(trial.springs[0].missing / scale);
             let (s, g) = (&mut trial.solution.attraction, &trial.gap);
             let next = own.extrapolation(self.state, s, g);
@@ -234,14 +238,6 @@ impl AttractedStep<'_> {
     fn open_gap(&self, window: &Window, trial: &mut Trial) {
         let (state, initial) = (self.state, window.gap(&self.step.indenter));
         self.bodies.fill_gap(initial, &state.history, &state.current.solution.pressure, &mut trial.gap);
-    }
-
-    /// Writes z, s and K (z − s) of the guess of passes.
-    fn guess(&self, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
-        if self.state.is_undisturbed() {
-            return self.first_guess(window, trial, counts);
-        }
-        self.extrapolate(trial);
     }
 
     /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s has changed much.
@@ -310,7 +306,7 @@ impl AttractedStep<'_> {
         if wanted.tilts() {
             trial.solution.motions[0] = region.modes(trial.free[0]).coefficients(motion);
         }
-        sum * self.area()
+        sum * self.state.region.cell_area()
     }
 
     /// One contact problem with the attraction of the trial, which pulls with the force `pulled` \[N\].
@@ -333,7 +329,7 @@ impl AttractedStep<'_> {
     /// Lays a body on its spring: what is left of the imbalance becomes an error of the gap, which a stiff spring would multiply.
     fn hold_by_spring(&self, trial: &mut Trial) {
         let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
-        let force = self.area() * net_sum(&self.state.region.rows(), &trial.solution);
+        let force = self.state.region.cell_area() * net_sum(&self.state.region.rows(), &trial.solution);
         trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
     }
 
@@ -341,11 +337,6 @@ impl AttractedStep<'_> {
     fn limit(&self) -> f64 {
         let tolerance = self.stop.tolerance;
         (CHANGE * tolerance).min((SHARE * tolerance).max(MOST_CHANGE))
-    }
-
-    /// Force over Σ p \[m²\].
-    fn area(&self) -> f64 {
-        self.scene.grid.cell_area() * self.state.region.images() as f64
     }
 }
 

@@ -39,7 +39,7 @@ impl AttractedStep<'_> {
         let Some(mut inverse) = window.inverse.take() else { return Ok(false) };
         self.begin_in_gap(window, trial);
         (own.softness, own.exactness, own.softest) = (0.0, 1.0, None);
-        let (near, balance) = (window.has_near_field(), self.balance(window, &inverse));
+        let (near, balance) = (window.near.is_some(), self.balance(window, &inverse));
         let mut descent = Descent { problem: self, balance, inverse: &mut inverse, own, window, trial, counts };
         let solved = if near { descent.run_in_rounds() } else { descent.run().map(|()| true) };
         window.inverse = Some(inverse);

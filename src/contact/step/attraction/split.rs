@@ -18,10 +18,6 @@ const LEFT: f64 = 0.16;
 const COARSE: f64 = 1e-2;
 
 impl ViscoelasticContact {
-    pub(in crate::contact) fn may_have_snapped(&self) -> bool {
-        self.computation.trial.passes.as_ref().is_some_and(|own| own.report.suspected)
-    }
-
     /// Looks whether surfaces snapped within the step that was accepted last. The state is as it was; after an error it is the one before the step.
     ///
     /// # Errors
