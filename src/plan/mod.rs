@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod builder;
+mod cells;
 mod convergence;
 mod difference;
 mod domain;

@@ -123,6 +123,11 @@ impl Levels {
         self.history.stiffness_over(AT_ONCE) / self.history.stiffness_over(1.0)
     }
 
+    /// Takes quadratic steps as cells do.
+    pub(super) fn step_as_cells(&mut self) {
+        self.history.as_cells = true;
+    }
+
     /// Whether the body has no elastic response.
     pub(super) fn has_dashpot(&self) -> bool {
         self.history.rule().has_dashpot()
