@@ -99,7 +99,7 @@ impl StatesContact {
 
     /// With quadratic steps as cells take them: levels that are met in a step were at rest until then.
     pub(crate) fn with_steps_of_cells(mut self) -> StatesContact {
-        self.levels.step_as_cells();
+        self.levels.history.as_cells = true;
         self
     }
 

@@ -51,7 +51,7 @@ struct Group {
 #[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Levels {
-    history: GroupHistory,
+    pub(super) history: GroupHistory,
     groups: Vec<Group>,
     /// Number of groups from which on they are merged.
     merge_from: usize,
@@ -121,11 +121,6 @@ impl Levels {
             return 1.0;
         }
         self.history.stiffness_over(AT_ONCE) / self.history.stiffness_over(1.0)
-    }
-
-    /// Takes quadratic steps as cells do.
-    pub(super) fn step_as_cells(&mut self) {
-        self.history.as_cells = true;
     }
 
     /// Whether the body has no elastic response.
