@@ -424,7 +424,7 @@ pub(super) fn keep_their_promise(scenes: impl Iterator<Item = Scene>, limit: u64
     ratios.print("planning over the run", 3);
     assert!(failed.is_empty(), "{} of {count} plans:\n{}", failed.len(), failed.join("\n"));
     assert!(run > 0, "no plan was run");
-    assert!(of_few <= known / 2, "{of_few} radii of few cells, {known} known");
+    assert!(of_few <= known / 10, "{of_few} radii of few cells, {known} known");
     // a few scenes have no median to speak of
     assert!(ratios.count() < 8 || ratios.quantile(0.5) <= MOST_PLANNING, "{}", ratios.quantile(0.5));
 }
