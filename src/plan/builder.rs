@@ -204,13 +204,28 @@ impl<'a> PlanBuilder<'a> {
             let across = laws.across_for(&converged.wanted).max(FEWEST_ACROSS);
             (across, size.cells(across))
         };
-        let mut laws = converged.laws;
-        let (mut across, mut sides) = needed(&laws);
-        let too_many = sides[0].max(sides[1]) > MOST_PLANNED_CELLS;
-        if too_many {
-            laws = laws.without_pressure();
-            (across, sides) = needed(&laws);
-        }
+        let (laws, steps) = (converged.laws, &converged.steps);
+        // rings of a half-space tell what cells lose of a peak; what cells lose of an elastic pressure is seen on any body
+        let is_half_space = body.kernel.is_none() && !body.sides.iter().any(|side| *side != Side::Found);
+        let is_known = is_half_space || steps.trace.is_none_or(|trace| trace.pressure_amplification <= AS_ELASTIC);
+        let at_rim = steps.trace.is_some_and(|trace| !trace.cells.converges);
+        let sides_for_pressure = needed(&laws).1;
+        let doubt = match () {
+            () if sides_for_pressure[0].max(sides_for_pressure[1]) > MOST_PLANNED_CELLS => {
+                Some("it needs more than 8192 cells along a side")
+            }
+            () if !is_known => Some(
+                "the body is no half-space and has crept: what cells lose of its pressure is known of elastic contacts alone",
+            ),
+            () if at_rim => Some("it is at the rim of a contact that grows fast, narrower than cells"),
+            () if !laws.pressure.converges => {
+                Some("it is no smooth peak, as at an edge, a tip or a contact of few cells")
+            }
+            () if steps.resolve_pressure(accuracy) => None,
+            () => Some("it is a peak in time, or at a fast rim, that steps do not resolve"),
+        };
+        let laws = if doubt.is_none() { laws } else { laws.without_pressure() };
+        let (across, sides) = needed(&laws);
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_PLANNED_CELLS {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
@@ -218,25 +233,9 @@ impl<'a> PlanBuilder<'a> {
         }
         let grid = size.grid(across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
-        let steps = &converged.steps;
-        // rings of a half-space tell what cells lose of a peak; what cells lose of an elastic pressure is seen on any body
-        let is_half_space = body.kernel.is_none() && !body.sides.iter().any(|side| *side != Side::Found);
-        let is_known = is_half_space || steps.trace.is_none_or(|trace| trace.pressure_amplification <= AS_ELASTIC);
-        let converges = laws.pressure.converges && steps.resolve_pressure(accuracy) && is_known;
-        let at_rim = steps.trace.is_some_and(|trace| !trace.cells.converges);
-        let doubt = match () {
-            () if converges => None,
-            () if too_many => Some("it needs more than 8192 cells along a side"),
-            () if !is_known => Some(
-                "the body is no half-space and has crept: what cells lose of its pressure is known of elastic contacts alone",
-            ),
-            () if at_rim => Some("it is at the rim of a contact that grows fast, narrower than cells"),
-            () if laws.pressure.converges => Some("it is a peak in time, or at a fast rim, that steps do not resolve"),
-            () => Some("it is no smooth peak, as at an edge, a tip or a contact of few cells"),
-        };
         let mesh_error = MeshError {
             approach: laws.main.at(across).max(laws.singular.at(across)),
-            max_pressure: converges.then(|| laws.pressure.at(across) + laws.at_rim.at(across)),
+            max_pressure: doubt.is_none().then(|| laws.pressure.at(across) + laws.at_rim.at(across)),
             pressure_field: laws.field.at(across).min(1.0),
             rim_pressure: laws.field_rim.at(across).min(1.0),
             area: 2.0 * laws.radius.at(across),

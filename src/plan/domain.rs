@@ -6,6 +6,8 @@ use crate::error::{Error, Result, StepError};
 use crate::extent::Extent;
 use crate::{Grid, InfluenceKernel};
 
+/// Cells across the widest contact on the coarsest mesh, where the steps are found.
+pub(super) const LEAST_ACROSS: f64 = 16.0;
 /// Growth factor of a domain whose edge the contact reaches on a finer mesh, and the greatest number of growths.
 const GROWTH: f64 = 1.2;
 const MAX_GROWTHS: u32 = 5;

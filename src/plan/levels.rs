@@ -9,12 +9,14 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result, StepError};
 use crate::load::{Load, Tilt};
-use crate::plan::difference::{Differences, relative};
+use crate::plan::cells::{FewCells, LevelState, cells, highest_of};
+use crate::plan::difference::{Differences, greatest, relative};
+use crate::plan::domain::LEAST_ACROSS;
 use crate::plan::error_law::ErrorLaw;
 use crate::plan::rings::Rings;
 use crate::plan::scene::{Run, StepState, TrialScene};
 use crate::solver::RigidMotion;
-use crate::states::{ElasticStates, StatesContact};
+use crate::states::{ElasticStates, StatesContact, unless_refused};
 
 /// Number of parts of a step of the run that is taken as exact, fewer where all parts would be more than so many: their
 /// groups of levels are as many.
@@ -43,23 +45,20 @@ const STAGNANT: f64 = 0.7;
 const MOST_REFERENCES: usize = 3;
 /// Steps that end under a pressure greater than this part of the greatest of the run stay where they are, with the steps before.
 const NEAR: f64 = 0.8;
-const MOST_ADDED: usize = 2;
+const MOST_ADDED: usize = 6;
 const ALWAYS_ADDED: usize = 48;
-/// Cells across the widest contact that are tried for a pressure at a growing rim, and a factor on what they are found to lose of it.
-const TRIED_ACROSS: [f64; 9] = [16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0];
-const SAFETY: f64 = 2.0;
-/// The pressure of an outermost cell is at most so many times the mean over its width: it is the greatest just before the next cell joins.
-const OVERSHOOT: f64 = 2.0;
-/// Where a pressure beside the middle comes as near the greatest as this, cells that join one after another scatter it: with 85 and 92 of them
-/// across by up to 2.9e-3, twice this factor times their number to the power −3/2.
-const BESIDE: f64 = 0.98;
-const OF_JOINS: f64 = 1.25;
+/// Part of the width of a cell over whose mean cells show a narrow peak beside the middle: trial runs show little more than this mean.
+const BLUR: f64 = 0.1;
 
 /// Depth and area of the elastic contact by its level, through a few states.
 pub(super) struct Curve {
     states: Arc<ElasticStates>,
     /// Whether the contact is a line, whose half width is proportional to the area.
     pub(super) line: bool,
+    /// Pressure in the middle of an elastic contact, over that of its rings.
+    unit: f64,
+    /// Power of the radius that the depth of large contacts is: 1 of a cone, 2 of a paraboloid.
+    pub(super) order: f64,
 }
 
 impl Curve {
@@ -78,12 +77,13 @@ impl Curve {
         let (first, last) = (*first?, *last?);
         // dln of a quantity over dln l
         let power = |[before, next]: [&[f64; 3]; 2], k: usize| (next[k] / before[k]).ln() / (next[0] / before[0]).ln();
-        let beyond = |end: [f64; 3], other: Option<&[f64; 3]>, ratio: f64| {
-            let [depth, area] = [1, 2].map(|k| other.map_or(PARABOLOID, |other| power([other, &end], k)));
+        let powers = |end, other: Option<&_>| [1, 2].map(|k| other.map_or(PARABOLOID, |other| power([other, end], k)));
+        let beyond = |end: [f64; 3], [depth, area]: [f64; 2], ratio: f64| {
             [ratio * end[0], end[1] * ratio.powf(depth), end[2] * ratio.powf(area)]
         };
-        let lowest = beyond(first, points.get(1), BELOW);
-        let highest = beyond(last, points.iter().rev().nth(1), BEYOND);
+        let of_large = powers(&last, points.iter().rev().nth(1));
+        let lowest = beyond(first, powers(&first, points.get(1)), BELOW);
+        let highest = beyond(last, of_large, BEYOND);
         points.insert(0, lowest);
         points.push(highest);
         let row = |(k, &[level, depth, area]): (usize, &[f64; 3])| {
@@ -93,7 +93,10 @@ impl Curve {
         };
         let at_rest = RigidMotion { approach: elastic.rest, tilt: [0.0; 2] };
         let states = ElasticStates::from_rows(points.iter().enumerate().map(row), at_rest, tilt)?;
-        Ok(Curve { states, line })
+        let mut curve = Curve { states, line, unit: 1.0, order: 2.0 * of_large[0] / of_large[1] };
+        curve.unit =
+            greatest(&elastic.states, |state| state.pressure) / curve.rings([(last[0], 1.0)].into_iter()).centre();
+        Ok(curve)
     }
 
     /// The contact of a scene on this curve, by the rule of adaptive steps.
@@ -117,9 +120,10 @@ impl Curve {
         if self.line { level.sqrt() } else { level.cbrt() }
     }
 
-    /// Takes steps, each in so many parts; returns the states at the ends of all parts.
-    fn follow(&self, scene: &TrialScene<'_>, legs: &[Leg], parts: u32) -> Result<Vec<LevelState>> {
-        let mut contact = self.contact(scene)?;
+    /// Takes steps, each in so many parts, or as `cells` of this width do; returns the states at the ends of all parts.
+    fn follow(&self, scene: &TrialScene<'_>, legs: &[Leg], parts: u32, cells: Option<f64>) -> Result<Vec<LevelState>> {
+        let contact = self.contact(scene)?;
+        let mut contact = if cells.is_some() { contact.with_steps_of_cells() } else { contact };
         let mut states = Vec::with_capacity(legs.len() * parts as usize);
         for &Leg { end: last, dt, load } in legs {
             let start = contact.time();
@@ -132,7 +136,11 @@ impl Curve {
                     Err(Error::Step(StepError::NoElasticResponse { .. })) if dt == 0.0 => {}
                     other => drop(other?),
                 }
-                states.push(LevelState { is_end: part == parts, is_by_force: load.is_force(), ..self.state(&contact) });
+                states.push(LevelState {
+                    is_end: part == parts,
+                    is_by_force: load.is_force(),
+                    ..self.state(&contact, BLUR * cells.unwrap_or(0.0))
+                });
             }
             if scene.next_corner(start) <= last {
                 contact.reset_differences();
@@ -145,15 +153,16 @@ impl Curve {
         Rings::new(groups.map(|(level, traction)| (level, traction, self.edge(level))), self.line)
     }
 
-    fn state(&self, contact: &StatesContact) -> LevelState {
+    fn state(&self, contact: &StatesContact, width: f64) -> LevelState {
         let (level, rings) = (contact.level(), self.rings(contact.tractions()));
-        let (peak, traction) = (rings.peak(0.0), contact.tractions().map(|(_, w)| w).fold(0.0, f64::max));
+        let (peak, traction) = (rings.peak(width), contact.tractions().map(|(_, w)| w).fold(0.0, f64::max));
         let elastic = self.rings([(level, 1.0)].into_iter()).centre();
         LevelState {
             time: contact.time(),
             is_end: true,
             is_by_force: true,
             level,
+            edge: self.edge(level),
             depth: contact.depth(),
             force: contact.force(),
             radius: self.radius(level),
@@ -168,7 +177,7 @@ impl Curve {
     /// Error in time of a trial run, and what its pressures are made of.
     pub(super) fn trace(&self, scene: &TrialScene<'_>, run: &Run) -> Result<Trace> {
         let legs = run.legs();
-        let [taken, exact] = [1, parts_of(legs.len())].map(|parts| self.follow(scene, &legs, parts));
+        let [taken, exact] = [1, parts_of(legs.len())].map(|parts| self.follow(scene, &legs, parts, None));
         let (taken, exact) = (taken?, exact?);
         // greatest values hold between the ends of steps, too
         let most = |of: fn(&LevelState) -> f64| exact.iter().map(|state| of(state).abs()).fold(0.0, f64::max);
@@ -177,9 +186,13 @@ impl Curve {
             let off = taken.iter().zip(ends()).map(|(taken, exact)| (of(taken) - of(exact)).abs()).fold(0.0, f64::max);
             relative(off, most(of))
         };
-        let (peak, force, edge) =
-            (most(|state| state.peak), most(|state| state.force), self.edge(most(|state| state.level)));
-        let highest = highest_of(&exact);
+        let (peak, force, wide) = (most(|state| state.peak), most(|state| state.force), 2.0 * most(|state| state.edge));
+        let (highest, width) = (highest_of(&exact), wide / LEAST_ACROSS);
+        let of_cells = unless_refused(self.follow(scene, &legs, 1, Some(width)).map(Some))?.unwrap_or_default();
+        let beside = run.states.iter().zip(&of_cells).filter(|(_, level)| level.peak > 0.0).map(|(state, level)| {
+            FewCells { across: 2.0 * level.edge / width, excess: state.pressure / (self.unit * level.peak) }
+        });
+        let beside: Vec<FewCells> = beside.collect();
         let counts = |(state, level): &(&StepState, &LevelState)| state.resolved && level.force > NEGLIGIBLE * force;
         let resolved = run.states.iter().zip(&taken).filter(counts);
         let rim = RIM_MARGIN * resolved.map(|(state, level)| (state.radius - level.radius).abs()).fold(0.0, f64::max);
@@ -192,7 +205,7 @@ impl Curve {
         let others = exact.iter().filter(|state| !state.is_by_force);
         Ok(Trace {
             error,
-            highest: [highest.map_or(0.0, |state| state.time), peak],
+            central: highest.filter(|state| state.rings.is_none()).map(|state| [state.time, state.peak]),
             level: highest.map_or(0.0, |state| state.level),
             levels: [
                 ends().map(|state| state.level).filter(|level| *level > 0.0).fold(f64::INFINITY, f64::min),
@@ -201,30 +214,41 @@ impl Curve {
             pressure_amplification: highest.map_or(1.0, |state| state.amplification).max(1.0),
             force_amplification: others.map(|state| relative(state.traction * state.level, force)).fold(1.0, f64::max),
             rim: relative(rim, most(|state| state.radius)),
-            cells: cells(&exact, highest, 2.0 * edge, CELLS_SHARE * scene.asked.accuracy.target()),
+            cells: cells(&exact, highest, &beside, wide, CELLS_SHARE * scene.asked.accuracy.target()),
         })
     }
 
     /// Times at which the steps of a run end besides, so that its greatest pressure is right, and what is left of its error: a rim that
-    /// joins in a long step carries too much. Steps before the greatest pressure are halved, and before every pressure that exceeds it.
-    pub(super) fn stops(&self, scene: &TrialScene<'_>, run: &Run, trace: &Trace) -> Result<(Vec<f64>, f64)> {
-        let (mut legs, mut stops, [mut time, mut peak]) = (run.legs(), Vec::new(), trace.highest);
+    /// joins in a long step carries too much. Steps before the greatest pressure are halved, and before every pressure that exceeds it, on so
+    /// many cells across the widest contact.
+    pub(super) fn stops(
+        &self,
+        scene: &TrialScene<'_>,
+        run: &Run,
+        trace: &Trace,
+        across: f64,
+    ) -> Result<(Vec<f64>, f64)> {
+        let (mut legs, mut stops, width) = (run.legs(), Vec::new(), 2.0 * self.edge(trace.levels[1]) / across);
+        let highest_in_parts = |legs: &[Leg]| {
+            let exact = self.follow(scene, legs, parts_of(legs.len()), None)?;
+            Ok::<_, Error>(highest_of(&exact).map_or([0.0; 2], |state| [state.time, state.blurred(BLUR * width)]))
+        };
+        let [mut time, mut peak] = trace.central.map_or_else(|| highest_in_parts(&legs), Ok)?;
         let (allowed, most) =
             (STEPS_SHARE * scene.asked.accuracy.target(), (1 + MOST_ADDED) * run.steps.len() + ALWAYS_ADDED);
-        let (mut error, mut references) = (trace.error.pressure, 0);
+        let (mut error, mut references) = (f64::INFINITY, 0);
         for round in 0..MOST_ROUNDS {
-            if error <= allowed || legs.len() > most {
-                break;
-            }
-            let taken = self.follow(scene, &legs, 1)?;
+            let taken = self.follow(scene, &legs, 1, Some(width))?;
             let highest = taken.iter().map(|state| state.peak).fold(0.0, f64::max);
             let before = std::mem::replace(&mut error, relative((highest - peak).abs(), peak));
             if round > 1 && error > STAGNANT * before.max(allowed) && references < MOST_REFERENCES {
                 // the parts of the first steps were too long themselves
-                let exact = self.follow(scene, &legs, parts_of(legs.len()))?;
-                [time, peak] = highest_of(&exact).map_or([0.0; 2], |state| [state.time, state.peak]);
+                [time, peak] = highest_in_parts(&legs)?;
                 error = relative((highest - peak).abs(), peak);
                 references += 1;
+            }
+            if error <= allowed || legs.len() > most {
+                break;
             }
             let exceeds = |k: &usize| taken[*k].peak > (1.0 + allowed) * peak;
             let mut ends: Vec<usize> = (0..legs.len()).filter(exceeds).collect();
@@ -252,7 +276,8 @@ impl Curve {
             return Ok((Vec::new(), error));
         }
         // adaptive steps on other cells end elsewhere: steps before great pressures stay where they are
-        for (end, _) in self.follow(scene, &legs, 1)?.iter().enumerate().filter(|(_, state)| state.peak >= NEAR * peak)
+        for (end, _) in
+            self.follow(scene, &legs, 1, Some(width))?.iter().enumerate().filter(|(_, state)| state.peak >= NEAR * peak)
         {
             stops.extend(legs[..=end].iter().rev().filter(|leg| leg.dt > 0.0).take(HALVED).map(|leg| leg.end));
         }
@@ -265,11 +290,6 @@ impl Curve {
 /// Number of parts of each of so many steps.
 fn parts_of(steps: usize) -> u32 {
     (MAX_PARTS / steps.max(1)).clamp(MIN_PARTS, PARTS) as u32
-}
-
-/// The first state with the greatest pressure.
-fn highest_of(states: &[LevelState]) -> Option<&LevelState> {
-    states.iter().reduce(|highest, state| if state.peak > highest.peak { state } else { highest })
 }
 
 /// A step: its end, its length and the load there.
@@ -304,55 +324,12 @@ impl Run {
     }
 }
 
-/// A state of a contact on levels.
-struct LevelState {
-    time: f64,
-    /// Whether it is the state at the end of a step, not within one.
-    is_end: bool,
-    is_by_force: bool,
-    level: f64,
-    depth: f64,
-    force: f64,
-    radius: f64,
-    /// The greatest pressure, in a unit of its own, and where it is not in the middle the groups that it is made of.
-    peak: f64,
-    /// Its distance from the middle, as an edge of levels.
-    place: f64,
-    rings: Option<Rings>,
-    /// Greatest w of a level.
-    traction: f64,
-    /// This w times the pressure in the middle of the elastic contact, over the greatest pressure.
-    amplification: f64,
-}
-
-/// What cells lose of the `highest` pressure of a run, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than
-/// is allowed, and whose outermost cells never exceed it. In the middle they lose what they lose of an elastic contact.
-fn cells(all: &[LevelState], highest: Option<&LevelState>, wide: f64, allowed: f64) -> ErrorLaw {
-    let Some(highest) = highest else { return ErrorLaw::ZERO };
-    let of_rim =
-        || all.iter().filter(|state| OVERSHOOT * state.peak > highest.peak).filter_map(|state| state.rings.as_ref());
-    if of_rim().next().is_none() {
-        return ErrorLaw::ZERO;
-    }
-    let is_beside = all.iter().any(|state| state.rings.is_some() && state.peak > BESIDE * highest.peak);
-    let law = |across: f64| {
-        let width = wide / across;
-        let blurred = highest.rings.as_ref().map_or(highest.peak, |rings| rings.peak(width).pressure);
-        let exceeds = of_rim().any(|rings| OVERSHOOT * rings.outermost(width) > highest.peak);
-        let of_joins = if is_beside { OF_JOINS * across.powf(-1.5) } else { 0.0 };
-        let (error, converges) = ((SAFETY * (1.0 - blurred / highest.peak)).max(of_joins), !exceeds);
-        ErrorLaw { error, order: 1.0, across, converges: converges && error <= allowed }
-    };
-    let mut tried = TRIED_ACROSS.into_iter().map(law);
-    tried.find(|law| law.converges).unwrap_or(ErrorLaw { converges: false, ..ErrorLaw::ZERO })
-}
-
 /// A run on levels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trace {
     pub(super) error: Differences,
-    /// Time and size of the greatest pressure.
-    highest: [f64; 2],
+    /// Time and size of the greatest pressure, if it is in the middle.
+    central: Option<[f64; 2]>,
     /// The level at which the pressure is greatest, and the least and the greatest level of a contact.
     pub(super) level: f64,
     pub(super) levels: [f64; 2],

@@ -3,14 +3,12 @@
 use crate::Grid;
 use crate::error::Result;
 use crate::plan::difference::{Differences, greatest, relative};
-use crate::plan::domain::ContactSize;
+use crate::plan::domain::{ContactSize, LEAST_ACROSS};
 use crate::plan::error_law::{ErrorLaw, ORDERS};
 use crate::plan::fields::PlannedField;
 use crate::plan::scene::{Run, StepState};
 
-/// Cells across the widest contact on the coarsest mesh, where the steps are found, and on the finest that a plan computes, unless it
-/// could not be planned then.
-pub(super) const LEAST_ACROSS: f64 = 16.0;
+/// Cells across the widest contact on the finest mesh that a plan computes, unless it could not be planned then.
 const MOST_ACROSS: f64 = 128.0;
 /// Most cells along a side of a domain in which the contact is small, for example far off the centre.
 const MOST_TRIAL_CELLS: f64 = 2048.0;

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod builder;
+mod cells;
 mod convergence;
 mod difference;
 mod domain;
@@ -87,7 +88,7 @@ pub struct Plan {
     /// The grid.
     pub grid: Grid,
     /// Times at which steps end besides, for [`Run::stop_at`](crate::run::Run::stop_at): with them the run has the greatest pressure that is
-    /// promised. Approach and force do not need them. \[s\]
+    /// promised; none where it is not. Approach and force do not need them. \[s\]
     pub stops: Vec<f64>,
     /// The accuracy.
     pub accuracy: Accuracy,

@@ -1,16 +1,17 @@
 //! The pressure of a contact on levels over the distance from its middle.
 
 /// Number of distances from the edge at which the pressure is looked at, over the radius, and the ratio of two of them.
-const PLACES: f64 = 28.0;
+const PLACES: i32 = 28;
 const RATIO: f64 = 0.75;
 /// Number of parts between two of them beside the highest.
-const FINER: f64 = 4.0;
+const FINER: i32 = 4;
+/// Least height of an inner edge over the pressure around it that is looked at, as a part of the greatest pressure.
+const STANDS_OUT: f64 = 1e-3;
 
 /// What a group of levels adds to the pressure of a contact.
 #[derive(Debug, Clone, Copy)]
 struct Ring {
     share: f64,
-    inner: f64,
     outer: f64,
 }
 
@@ -38,7 +39,7 @@ impl Rings {
         let (mut bottom, mut inner) = (0.0, 0.0_f64);
         let ring = |(level, traction, outer): (f64, f64, f64)| {
             let width = outer.powi(power) - inner.powi(power);
-            let ring = Ring { share: traction * (level - bottom) / width, inner, outer };
+            let ring = Ring { share: traction * (level - bottom) / width, outer };
             (bottom, inner) = (level, outer);
             (width > 0.0).then_some(ring)
         };
@@ -64,7 +65,12 @@ impl Rings {
             };
             if edge > 0.0 { (integral(place + 0.5 * width) - integral(place - 0.5 * width)) / width } else { 0.0 }
         };
-        self.rings.iter().map(|ring| ring.share * (of_disc(ring.outer) - of_disc(ring.inner))).sum()
+        let mut inner = 0.0;
+        let part = |ring: &Ring| {
+            let before = std::mem::replace(&mut inner, of_disc(ring.outer));
+            ring.share * (inner - before)
+        };
+        self.rings.iter().map(part).sum()
     }
 
     /// The mean pressure over this width of the rim.
@@ -72,21 +78,24 @@ impl Rings {
         self.mean(self.edge - 0.5 * width, width)
     }
 
-    /// The greatest mean pressure over a width: of the places looked at, and of places between the highest and its neighbours.
+    /// The greatest pressure: in the middle, or as a mean over a width elsewhere. Places are looked at, nearer to each other towards the rim, and inner
+    /// edges of groups that carry more than those inside them, where the pressure has a kink; then places around the highest.
     pub(super) fn peak(&self, width: f64) -> Peak {
-        let distance = |place: f64| self.edge * (1.0 - RATIO.powf(place));
-        let at = |place: f64| self.mean(distance(place), width);
-        let (mut highest, mut pressure) = (0.0, at(0.0));
-        for parts in [1.0, FINER] {
-            let (middle, reach) = (highest, if parts == 1.0 { PLACES } else { FINER - 1.0 });
-            let mut part = if parts == 1.0 || middle == 0.0 { 0.0 } else { -reach };
-            while part <= reach {
-                let (place, found) = (middle + part / parts, at(middle + part / parts));
-                (highest, pressure) = if found > pressure { (place, found) } else { (highest, pressure) };
-                part += 1.0;
-            }
-        }
-        Peak { pressure, place: distance(highest), is_central: highest == 0.0 }
+        let of = |place: f64| (place, if place == 0.0 { self.centre() } else { self.mean(place, width) });
+        let higher = |a: (f64, f64), b: (f64, f64)| if b.1 > a.1 { b } else { a };
+        let places = (0..=PLACES).map(|k| self.edge * (1.0 - RATIO.powi(k)));
+        let least = STANDS_OUT * self.centre();
+        let stands_out = |pair: &&[Ring]| {
+            let [inside, ring] = [pair[0], pair[1]];
+            (ring.share - inside.share) * (ring.outer * ring.outer - inside.outer * inside.outer).sqrt() > least
+        };
+        // the pressure falls from a kink more slowly to the outside
+        let kinks = self.rings.windows(2).filter(stands_out).map(|pair| pair[0].outer + 0.5 * width);
+        let highest = places.chain(kinks).map(of).fold((0.0, 0.0), higher);
+        let nearer = |part: i32| self.edge - (self.edge - highest.0) * RATIO.powf(f64::from(part) / f64::from(FINER));
+        let around = (1 - FINER..FINER).map(nearer).filter(|place| *place > 0.0);
+        let (place, pressure) = around.map(of).fold(highest, higher);
+        Peak { pressure, place, is_central: place == 0.0 }
     }
 }
 

@@ -58,7 +58,7 @@ impl Steps {
     }
 
     /// Shortens the steps while the error of approach or force, or of the greatest pressure on cells, exceeds its share and falls with the
-    /// steps. On levels more steps before the greatest pressure are enough for that.
+    /// steps. On levels [more steps before the greatest pressure](Steps::stop_before_peaks) are enough for that.
     pub(super) fn find(scene: &TrialScene<'_>, grid: &Grid, curve: Option<&Curve>) -> Result<Steps> {
         let target = scene.asked.accuracy.target();
         let mut steps = Steps::with_tolerance(scene, grid, curve, scene.asked.accuracy.step_tolerance())?;
@@ -76,11 +76,16 @@ impl Steps {
                 Err(error) => return Err(error),
             }
         }
-        if let (Some(curve), Some(trace), Some(error)) = (curve, &steps.trace, steps.error.as_mut()) {
-            let found = unless_refused(curve.stops(scene, &steps.run, trace).map(Some))?;
-            (steps.stops, error.pressure) = found.unwrap_or((Vec::new(), error.pressure));
-        }
         Ok(steps)
+    }
+
+    /// Ends more steps before the greatest pressure of a run on levels, on so many cells across the widest contact.
+    pub(super) fn stop_before_peaks(&mut self, scene: &TrialScene<'_>, curve: &Curve, across: f64) -> Result<()> {
+        if let (Some(trace), Some(error)) = (&self.trace, self.error.as_mut()) {
+            let found = curve.stops(scene, &self.run, trace, across);
+            (self.stops, error.pressure) = unless_refused(found.map(Some))?.unwrap_or((Vec::new(), error.pressure));
+        }
+        Ok(())
     }
 
     /// Number of steps over the number in the trial run.

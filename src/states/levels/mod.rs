@@ -51,7 +51,7 @@ struct Group {
 #[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Levels {
-    history: GroupHistory,
+    pub(super) history: GroupHistory,
     groups: Vec<Group>,
     /// Number of groups from which on they are merged.
     merge_from: usize,
