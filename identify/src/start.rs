@@ -125,9 +125,11 @@ fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
     }
     let names = model.parameters();
     let has_times = names.iter().any(|name| name.starts_with("tau"));
+    // other moduli are in units of the first
+    let first = names.iter().position(|name| is_modulus(name));
     let values = |index: usize| -> Vec<f64> {
         match names[index].as_str() {
-            _ if index == 0 => vec![1.0],
+            _ if Some(index) == first => vec![1.0],
             name if is_modulus(name) => ratios.to_vec(),
             name if name.starts_with("tau") => (0..TIMES).map(|k| time((k as f64 + 0.5) / TIMES as f64)).collect(),
             _ if has_times => vec![0.35, 0.7],

@@ -9,6 +9,7 @@ use crate::experiment::Curve;
 use crate::fit::Fit;
 use crate::identification::Identification;
 use crate::model::Model;
+use crate::parameters::PerCurve;
 use crate::problem::Problem;
 use crate::start::starts;
 use crate::statistics::{is_flat, scatter};
@@ -39,7 +40,7 @@ impl Identification {
         let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
         self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
-        if self.finds_noise(&problem) {
+        if self.fits_correlation() || self.robust || self.finds_deviations(&problem) {
             for _ in 0..MAX_ROUNDS {
                 let mut next = problem.clone();
                 // a minimum that is kept keeps the weights that it is of
@@ -82,8 +83,11 @@ impl Identification {
     /// # Errors
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
+        let list = |each: &PerCurve| each.each("list of a parameter", curves.len()).map(drop);
+        let suited =
+            self.noise.suits(curves.len()).and_then(|()| self.chosen.0.iter().try_for_each(|(_, of)| list(of)));
         let fit = |(index, curve): (usize, &Curve)| {
-            let fit = self.of_curve(index).fit(std::slice::from_ref(curve));
+            let fit = suited.clone().and_then(|()| self.of_curve(index).fit(std::slice::from_ref(curve)));
             done(&fit);
             fit
         };

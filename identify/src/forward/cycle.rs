@@ -283,7 +283,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
             }
             let depth = if self.springs() {
                 let deepest = z.value().max(released.value());
-                let limit = tip.last_depth() + (released - start.0).value();
+                let limit = tip.last_depth + (released - start.0).value();
                 let end = if width.is_some() {
                     after
                 } else if deepest > limit {
