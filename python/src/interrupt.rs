@@ -68,10 +68,8 @@ fn is_ctrl_c(raised: &PyErr) -> bool {
 
 /// Sends Ctrl-C once more, which Python handles when the call has returned.
 fn signal_again() -> PyResult<()> {
-    Python::attach(|py| {
-        let signal = py.import("signal")?;
-        signal.call_method1("raise_signal", (signal.getattr("SIGINT")?,)).map(drop)
-    })
+    // signal.raise_signal would handle it at once
+    Python::attach(|py| py.import("_thread")?.call_method0("interrupt_main").map(drop))
 }
 
 /// Listens for Ctrl-C, and to a report of progress that may end a call, between two problems.

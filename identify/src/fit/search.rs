@@ -9,7 +9,6 @@ use crate::experiment::Curve;
 use crate::fit::Fit;
 use crate::identification::Identification;
 use crate::model::Model;
-use crate::parameters::PerCurve;
 use crate::problem::Problem;
 use crate::start::starts;
 use crate::statistics::{is_flat, scatter};
@@ -83,9 +82,8 @@ impl Identification {
     /// # Errors
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
-        let list = |each: &PerCurve| each.each("list of a parameter", curves.len()).map(drop);
-        let suited =
-            self.noise.suits(curves.len()).and_then(|()| self.chosen.0.iter().try_for_each(|(_, of)| list(of)));
+        let lists = self.chosen.0.iter().map(|(_, of)| of.each("list of a parameter", curves.len()).map(drop));
+        let suited: Result<()> = self.noise.suits(curves.len()).and_then(|()| lists.collect());
         let fit = |(index, curve): (usize, &Curve)| {
             let fit = suited.clone().and_then(|()| self.of_curve(index).fit(std::slice::from_ref(curve)));
             done(&fit);
