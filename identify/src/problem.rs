@@ -200,6 +200,8 @@ impl Problem {
         let mut own = values.to_vec();
         if self.model.has_equilibrium() {
             let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
+            // a start that is not allowed is not at the limit, where no search leaves
+            let relaxing = if values[0] < values[1] { values[1] } else { relaxing };
             if self.parameters[0].is_free {
                 own[0] = relaxing / self.fall(values);
             } else if self.parameters[1].is_free {

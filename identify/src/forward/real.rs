@@ -1,6 +1,6 @@
 //! Numbers that carry derivatives.
 
-use std::ops::{Add, AddAssign, Div, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use viscocontact::numeric::root;
 
@@ -110,13 +110,6 @@ operator!(Add, add, |a, b| a.value + b.value, |_sum, k| a.slopes[k] + b.slopes[k
 operator!(Sub, sub, |a, b| a.value - b.value, |_rest, k| a.slopes[k] - b.slopes[k]);
 operator!(Mul, mul, |a, b| a.value * b.value, |_product, k| a.slopes[k] * b.value + a.value * b.slopes[k]);
 operator!(Div, div, |a, b| a.value / b.value, |quotient, k| (a.slopes[k] - quotient * b.slopes[k]) / b.value);
-
-impl<const N: usize> AddAssign for Real<N> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
 
 #[cfg(test)]
 mod tests {
