@@ -159,10 +159,7 @@ impl Problem<'_> {
             let residual = self.solve_on(&balance, allowed, part, bodies, &mut p, &mut found);
             let left = balance.rms(&residual);
             found.residual = if left > 0.0 { tolerance * left / allowed } else { 0.0 };
-            let height = |k: usize| {
-                let motion = found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
-                found.displacement[k] + gap[k] - motion
-            };
+            let height = |k: usize| found.displacement[k] + gap[k] - found.motion.at(grid.center(k / n2, k % n2));
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
             let deep = -(SLACK * allowed).max(CERTAIN * left);
