@@ -20,7 +20,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// From the covariance (JᵀJ)⁻¹ of the coordinates over σ², and the derivatives of the parameters by them.
-    pub(crate) fn new(problem: &Problem, inverse: Mat<f64>, scales: &Mat<f64>, sigma: f64) -> Bounds {
+    pub(crate) fn new(problem: &Problem, inverse: &Mat<f64>, scales: &Mat<f64>, sigma: f64) -> Bounds {
         let names: Vec<String> = problem.free().map(|of| of.name.clone()).collect();
         let covariance = scales * inverse * scales.transpose();
         let row = |i: usize| (0..names.len()).map(|j| sigma * sigma * covariance[(i, j)]).collect();

@@ -43,8 +43,8 @@ const SLOW_ENOUGH: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub struct Identification {
     model: Model,
-    chosen: Chosen,
-    noise: Noise,
+    pub(crate) chosen: Chosen,
+    pub(crate) noise: Noise,
     sigma: Option<f64>,
     pub(crate) robust: bool,
 }
@@ -131,11 +131,14 @@ impl Identification {
     pub(crate) fn of_curve(&self, curve: usize) -> Identification {
         let mut alone = self.clone();
         alone.chosen.0.iter_mut().for_each(|(_, each)| *each = each.of(curve));
+        if let Noise::Covariance(matrices) = &mut alone.noise {
+            *matrices = matrices.get(curve).cloned().into_iter().collect();
+        }
         alone
     }
 
     /// Force and depth at each sample of an experiment, for parameters of the material by name. The contact point is 0 unless it is
-    /// fixed.
+    /// fixed, or the search for it has a start.
     ///
     /// # Errors
     /// If a parameter is missing or not allowed, or the tip goes beyond its last elastic state.
@@ -147,7 +150,8 @@ impl Identification {
     }
 
     /// Cramér–Rao bounds of an experiment before it is made: the least standard deviations with which its parameters can be
-    /// found, with noise of standard deviation `sigma` \[N\]. `values` are the expected parameters of the material.
+    /// found, with noise of standard deviation `sigma` \[N\]; 1, whatever is given, where [`Noise::Covariance`] has the noise in N². `values` are the
+    /// expected parameters of the material.
     ///
     /// ```
     /// use viscocontact_identify::{Experiment, Identification, Model, Protocol};
@@ -174,7 +178,8 @@ impl Identification {
         let values = self.given(&problem, values)?;
         let coordinates = problem.coordinates(&values);
         let inverse = inverse_gram(&problem.jacobian(&coordinates)?, 0.0)?;
-        Ok(Bounds::new(&problem, inverse, &problem.scales(&coordinates), sigma))
+        let sigma = if let Noise::Covariance(_) = self.noise { 1.0 } else { sigma };
+        Ok(Bounds::new(&problem, &inverse, &problem.scales(&coordinates), sigma))
     }
 
     pub(crate) fn sigma(&self) -> Option<f64> {
@@ -214,6 +219,7 @@ impl Identification {
         if let Some(sigma) = self.sigma {
             positive("standard deviation of the noise", sigma)?;
         }
+        self.noise.suits(curves.len())?;
         Problem::new(self.model, &self.chosen, curves, &self.noise)
     }
 

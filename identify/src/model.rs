@@ -1,6 +1,6 @@
 //! Relaxation models of the contact modulus.
 
-use crate::error::Result;
+use crate::error::{Result, positive, within};
 
 /// How the contact modulus relaxes. Times are in seconds and moduli in pascals; a modulus here is the modulus of the
 /// contact, E* = 2G/(1 − ν) for a rigid tip.
@@ -50,7 +50,7 @@ pub enum Model {
 }
 
 /// A relaxation law of a user. A name tells how a parameter is searched for, and between which starts: moduli begin with `E`, times with `tau`,
-/// exponents between 0 and 1 with any other letter.
+/// exponents between 0 and 1 with any other letter. Of the two first parameters `E0` and `Einf`, the second is at most the first.
 ///
 /// ```
 /// use viscocontact_identify::{Law, Model};
@@ -94,6 +94,15 @@ pub enum Scale {
 }
 
 impl Scale {
+    /// Accepts values that have a coordinate on this scale.
+    pub(crate) fn check(self, field: &'static str, value: f64) -> Result<f64> {
+        match self {
+            Scale::Logarithm => positive(field, value),
+            Scale::Logit => within(field, value, value > 0.0 && value < 1.0, "> 0 and < 1"),
+            Scale::Linear => within(field, value, true, "finite"),
+        }
+    }
+
     pub(crate) fn forward(self, value: f64) -> f64 {
         match self {
             Scale::Logarithm => value.ln(),
@@ -139,9 +148,12 @@ impl Model {
     /// E(t) of given parameters, evaluated as a fit does for data of the same time.
     ///
     /// # Errors
-    /// If the number of parameters differs, one is not finite and positive, an exponent is not below 1, or Einf is above E0.
+    /// If the number of parameters differs, one is not finite and positive, an exponent is not below 1, or Einf is above E0; if the time is negative or
+    /// not finite.
     pub fn modulus(&self, parameters: &[f64], t: f64) -> Result<f64> {
-        Ok(self.prony(parameters, [t.max(f64::MIN_POSITIVE); 2])?.modulus(t))
+        within("time", t, t >= 0.0, "finite and >= 0")?;
+        // the rates for shorter times are not finite
+        Ok(self.prony(parameters, [t.max(1e-300); 2])?.modulus(t))
     }
 
     /// The model of which this one is the next generalisation, in a chain whose first link is the elastic body.

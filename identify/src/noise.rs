@@ -23,6 +23,13 @@ pub enum Noise {
     Covariance(Vec<Vec<f64>>),
 }
 
+impl Noise {
+    /// Refuses covariance matrices of another number of curves.
+    pub(crate) fn suits(&self, curves: usize) -> Result<()> {
+        if let Noise::Covariance(all) = self { same_length("covariance matrices", all.len(), curves) } else { Ok(()) }
+    }
+}
+
 /// Makes the noise of one curve white: r ↦ L⁻¹ r where L Lᵀ is the covariance, up to a factor.
 #[derive(Clone, Debug)]
 pub(crate) enum Whitening {

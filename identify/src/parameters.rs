@@ -49,19 +49,17 @@ impl PerCurve {
         PerCurve(own.map_or_else(Vec::new, |own| vec![*own]))
     }
 
-    /// The parameter of each of so many curves, all of them numbers.
-    fn each(&self, field: &'static str, curves: usize) -> Result<impl Iterator<Item = Nuisance>> {
+    /// The parameter of each of so many curves.
+    pub(crate) fn each(&self, field: &'static str, curves: usize) -> Result<impl Iterator<Item = Nuisance>> {
         if self.0.len() != 1 {
             same_length(field, self.0.len(), curves)?;
-        }
-        for nuisance in &self.0 {
-            if let Nuisance::Fixed(value) | Nuisance::FittedFrom(value) = *nuisance {
-                within(field, value, true, "finite")?;
-            }
         }
         Ok(self.0.iter().copied().cycle().take(curves))
     }
 }
+
+/// What refusals call a parameter of the material.
+const OF_MATERIAL: &str = "parameters of the material";
 
 /// A property of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,22 +121,24 @@ pub(crate) struct Parameter {
 }
 
 impl Parameter {
-    fn new(name: String, kind: Kind, scale: Scale, unit: f64, nuisance: Nuisance) -> Parameter {
+    fn new(name: String, kind: Kind, scale: Scale, unit: f64, nuisance: Nuisance) -> Result<Parameter> {
         let (is_free, given) = match nuisance {
             Nuisance::Fixed(value) => (false, Some(value)),
             Nuisance::Fitted => (true, None),
             Nuisance::FittedFrom(value) => (true, Some(value)),
         };
-        Parameter { name, kind, scale, unit, is_free, given }
+        let field = if let Kind::Measurement(property, _) = kind { property.name() } else { OF_MATERIAL };
+        given.map(|value| scale.check(field, value)).transpose()?;
+        Ok(Parameter { name, kind, scale, unit, is_free, given })
     }
 
     /// The parameters of a model, of which some are set.
     pub(crate) fn of_material(model: Model, chosen: &Chosen) -> Result<Vec<Parameter>> {
         let parameter = |name: String| {
-            let set = chosen.of(&name).map(|set| set.each("parameters of the material", 1)).transpose()?;
+            let set = chosen.of(&name).map(|set| set.each(OF_MATERIAL, 1)).transpose()?;
             let nuisance = set.and_then(|mut set| set.next()).unwrap_or(Nuisance::Fitted);
             let scale = Model::scale(&name);
-            Ok(Parameter::new(name, Kind::Material, scale, 1.0, nuisance))
+            Parameter::new(name, Kind::Material, scale, 1.0, nuisance)
         };
         model.parameters().into_iter().map(parameter).collect()
     }
@@ -194,7 +194,7 @@ impl Chosen {
                 let is_only = is_common || curves.len() == 1;
                 let name = if is_only { property.name().into() } else { format!("{} {curve}", property.name()) };
                 let kind = Kind::Measurement(property, (!is_common).then_some(curve));
-                all.push(Parameter::new(name, kind, scale, unit, nuisance));
+                all.push(Parameter::new(name, kind, scale, unit, nuisance)?);
             }
         }
         Ok(all)

@@ -4,6 +4,7 @@ use viscocontact::plot::{COLORS, Chart, Legend, Picture, Quantity, Scale, Style}
 
 use crate::error::Result;
 use crate::fit::Fit;
+use crate::series::times;
 use crate::statistics::WITHIN_95;
 
 /// Points of a curve of the modulus.
@@ -55,10 +56,9 @@ impl Fit {
 
     /// The contact modulus over time with its band of 95 %, from the shortest sampling interval to the length of the curves.
     pub fn modulus_chart(&self) -> Chart {
-        let [first, last] = self.problem.window;
-        let times = (0..=POINTS).map(|k| first * (last / first).powf(k as f64 / POINTS as f64));
+        let times = times(self.problem.window, POINTS).into_iter();
         let band: Vec<(f64, [f64; 2])> = times.map(|time| (time, self.modulus_band(time))).collect();
-        let falls_by_decades = band[0].1[0] > 10.0 * band[POINTS].1[0];
+        let falls_by_decades = band[0].1[0] > 10.0 * band[POINTS - 1].1[0];
         let (scale, modulus) = if falls_by_decades {
             (Scale::LogLog, Quantity::from("E* [Pa]"))
         } else {

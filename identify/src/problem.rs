@@ -24,7 +24,7 @@ const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.
-const WIDTH: f64 = 1e-5;
+pub(crate) const WIDTH: f64 = 1e-5;
 
 /// One curve of a problem.
 #[derive(Clone, Debug)]
@@ -169,11 +169,6 @@ impl Problem {
         self.parameters.iter().filter(|parameter| parameter.is_free)
     }
 
-    /// Whether E0 and Einf are parameters of the material.
-    fn has_equilibrium(&self) -> bool {
-        self.parameters.len() > 1 && self.parameters[1].name == "Einf"
-    }
-
     /// The factor by which a part of the modulus falls to the middle of the data, or nearly so: it is better known there than at the time 0.
     fn fall(&self, values: &[f64]) -> f64 {
         let of = |name: &str| self.parameters.iter().position(|parameter| parameter.name == name).map(|at| values[at]);
@@ -190,7 +185,7 @@ impl Problem {
             false => parameter.given.unwrap_or(f64::NAN),
         };
         let mut values: Vec<f64> = self.parameters.iter().map(value).collect();
-        if self.has_equilibrium() {
+        if self.model.has_equilibrium() {
             if self.parameters[0].is_free {
                 values[0] = values[1] + values[0] * self.fall(&values);
             } else if self.parameters[1].is_free {
@@ -203,8 +198,10 @@ impl Problem {
     /// Coordinates of the free parameters of given values.
     pub(crate) fn coordinates(&self, values: &[f64]) -> Vec<f64> {
         let mut own = values.to_vec();
-        if self.has_equilibrium() {
+        if self.model.has_equilibrium() {
             let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
+            // a start that is not allowed is not at the limit, where no search leaves
+            let relaxing = if values[0] < values[1] { values[1] } else { relaxing };
             if self.parameters[0].is_free {
                 own[0] = relaxing / self.fall(values);
             } else if self.parameters[1].is_free {
@@ -216,7 +213,7 @@ impl Problem {
     }
 
     /// Values of all parameters where a coordinate is larger by some width.
-    fn moved(&self, coordinates: &[f64], column: usize, width: f64) -> Vec<f64> {
+    pub(crate) fn moved(&self, coordinates: &[f64], column: usize, width: f64) -> Vec<f64> {
         let mut moved = coordinates.to_vec();
         moved[column] += width;
         self.values(&moved)
@@ -386,7 +383,7 @@ impl Problem {
                 let mut forces = Vec::with_capacity(part.len());
                 self.respond(curve, &derived, shift, spring, |contact| forces.push(contact.force()))?;
                 for (lane, &(column, _)) in lanes.iter().enumerate() {
-                    put(column, forces.iter().map(|force| force.slope(lane)).collect());
+                    put(column, forces.iter().map(|force| force.slopes[lane]).collect());
                 }
             }
             row += part.len();

@@ -133,8 +133,9 @@ impl Protocol {
             Load::Spring { drive, .. } => Ok(drive),
             _ => Err(Error::DrivenByForce { time }),
         };
-        let drive = times.iter().map(drive).collect::<Result<_>>()?;
-        Protocol::new(times, drive)
+        let drive = times.iter().map(drive).collect::<Result<_>>();
+        history.failure().map_or(Ok(()), |failure| Err(viscocontact::Error::from(failure)))?;
+        Protocol::new(times, drive?)
     }
 
     /// The drive of this protocol at `samples` equal intervals, as an instrument records it: a corner between two samples is

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use crate::error::{Error, Result};
 use crate::fit::{Estimate, Fit, FitWarning};
-use crate::model::Model;
+use crate::model::{Model, Scale};
 
 /// The numbers of a fit without its curves: what a table of results contains.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,14 +142,15 @@ impl Summary {
 /// The unit of a parameter.
 fn unit(name: &str) -> &'static str {
     match name.split(' ').next().unwrap_or_default() {
-        "stiffness" => "N/m",
+        "stiffness" | "tilt" => "N/m",
         "contact" => "m",
         "offset" => "N",
         "drift" => "N/s",
-        "tilt" => "N/m",
         "drag" => "N s/m",
-        "alpha" => "1",
-        other if other.starts_with("tau") => "s",
-        _ => "Pa",
+        other => match Model::scale(other) {
+            Scale::Logit => "1",
+            _ if other.starts_with("tau") => "s",
+            _ => "Pa",
+        },
     }
 }

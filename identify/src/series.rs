@@ -86,7 +86,7 @@ impl Prony {
 }
 
 /// Times between two, at equal distances of their logarithms.
-fn times([first, last]: [f64; 2], count: usize) -> Vec<f64> {
+pub(crate) fn times([first, last]: [f64; 2], count: usize) -> Vec<f64> {
     (0..count).map(|k| first * (last / first).powf(k as f64 / (count - 1) as f64)).collect()
 }
 
@@ -96,17 +96,20 @@ impl Model {
         Ok(self.sums(&[parameters.to_vec()], window)?.swap_remove(0))
     }
 
+    /// Whether the first parameters are E0 and Einf.
+    pub(crate) fn has_equilibrium(&self) -> bool {
+        self.parameters().starts_with(&["E0".into(), "Einf".into()])
+    }
+
     /// Refuses parameters outside their ranges.
     fn check(&self, parameters: &[f64]) -> Result<()> {
         let names = self.parameters();
         same_length("parameters", parameters.len(), names.len())?;
         for (name, &value) in names.iter().zip(parameters) {
-            match Model::scale(name) {
-                Scale::Logit => within("exponent", value, value > 0.0 && value < 1.0, "> 0 and < 1")?,
-                _ => within("modulus or time", value, value > 0.0, "finite and > 0")?,
-            };
+            let scale = Model::scale(name);
+            scale.check(if scale == Scale::Logit { "exponent" } else { "modulus or time" }, value)?;
         }
-        if names.get(1).is_some_and(|name| name == "Einf") {
+        if self.has_equilibrium() {
             within("Einf", parameters[1], parameters[1] <= parameters[0], "at most E0")?;
         }
         if let Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff } = *self {

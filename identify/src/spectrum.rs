@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::fit::Fit;
 use crate::forward::Real;
 use crate::problem::Problem;
-use crate::series::Prony;
+use crate::series::{Prony, times};
 
 /// Relaxation times per decade.
 const PER_DECADE: f64 = 5.0;
@@ -151,10 +151,9 @@ impl Fit {
 
 /// Rates from 0 to twice the fastest that samples show.
 fn rates([shortest, longest]: [f64; 2]) -> Vec<f64> {
-    let [first, last] = [(0.5 * shortest).log10(), (3.0 * longest).log10()];
-    let count = ((last - first) * PER_DECADE).ceil() as usize;
-    let time = |k: usize| 10.0_f64.powf(first + (last - first) * k as f64 / count as f64);
-    std::iter::once(0.0).chain((0..=count).map(|k| 1.0 / time(k))).collect()
+    let ends = [0.5 * shortest, 3.0 * longest];
+    let count = ((ends[1] / ends[0]).log10() * PER_DECADE).ceil() as usize;
+    std::iter::once(0.0).chain(times(ends, count + 1).into_iter().map(|time| 1.0 / time)).collect()
 }
 
 /// A relaxation, shared out to the nearest rates, of which the first is 0.

@@ -76,7 +76,11 @@ fn is_modulus(name: &str) -> bool {
 fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
     let mut sum = f64::INFINITY;
     for _ in 0..rounds {
-        let prony = problem.prony(values)?;
+        // of E0 and Einf, the one that is free may be beyond the other
+        let prony = problem.prony(values).or_else(|_| {
+            values.copy_from_slice(&problem.values(&problem.coordinates(values)));
+            problem.prony(values)
+        })?;
         let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
         for (curve, part) in problem.parts.iter().enumerate() {
             let samples = problem.samples(curve, values, &prony)?;
@@ -125,9 +129,11 @@ fn candidates(model: Model, [shortest, longest]: [f64; 2]) -> Vec<Vec<f64>> {
     }
     let names = model.parameters();
     let has_times = names.iter().any(|name| name.starts_with("tau"));
+    // other moduli are in units of the first
+    let first = names.iter().position(|name| is_modulus(name));
     let values = |index: usize| -> Vec<f64> {
         match names[index].as_str() {
-            _ if index == 0 => vec![1.0],
+            _ if Some(index) == first => vec![1.0],
             name if is_modulus(name) => ratios.to_vec(),
             name if name.starts_with("tau") => (0..TIMES).map(|k| time((k as f64 + 0.5) / TIMES as f64)).collect(),
             _ if has_times => vec![0.35, 0.7],

@@ -145,12 +145,12 @@ pub fn hold_relaxation(curve: &Curve, contact_point: f64, correction: RampCorrec
     // the drive is linear in time around the first touch
     let share = (contact_point - drive[touch]) / (drive[touch + 1] - drive[touch]);
     let touched = times[touch] + share.clamp(0.0, 1.0) * (times[touch + 1] - times[touch]);
-    let ramp = (times[start] - touched) / time;
+    // a jump at the first time has none
+    let ramp = ((times[start] - touched) / time).max(f64::MIN_POSITIVE);
     let factor = match correction {
         RampCorrection::Step => 1.0,
         RampCorrection::HalfRamp => (0.5 * ramp).exp(),
-        RampCorrection::Factor if ramp > 0.0 => ramp / -(-ramp).exp_m1(),
-        RampCorrection::Factor => 1.0,
+        RampCorrection::Factor => ramp / -(-ramp).exp_m1(),
     };
     Ok(HoldRelaxation { equilibrium, relaxing: at_end * factor, time })
 }
@@ -175,15 +175,16 @@ pub struct LoadingModulus {
 /// the shape of the curve.
 ///
 /// # Errors
-/// If the loading has fewer than five points; [`Error::BeyondStates`].
+/// If the loading has fewer than five points; [`Error::BeyondStates`]; [`Error::NoContact`] where the force does not rise with the depth.
 pub fn loading_modulus(curve: &Curve, contact_point: Option<f64>) -> Result<LoadingModulus> {
     let end = curve.hold().0;
     enough(end + 1)?;
     let give = 1.0 / curve.experiment.stiffness;
     let contact_point = contact_point.unwrap_or_else(|| curve.elastic_contact_point(give, true));
     curve.experiment.level_within(range(&depths(curve, contact_point)[..=end])[1])?;
-    let [offset, modulus, _] = curve.elastic_law(contact_point, give, true);
-    Ok(LoadingModulus { modulus, offset, contact_point })
+    let [offset, modulus, sum] = curve.elastic_law(contact_point, give, true);
+    let law = LoadingModulus { modulus, offset, contact_point };
+    sum.is_finite().then_some(law).ok_or(Error::NoContact { curve: 0 })
 }
 
 /// Depth at each time \[m\].

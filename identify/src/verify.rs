@@ -17,7 +17,7 @@ pub struct Verification {
 }
 
 impl Fit {
-    /// Computes a curve of the fit once more, with the identified material, by the stepper in space: a check of tip, layer and
+    /// Computes a curve of the fit once more, with the identified material (of the Poisson's ratio that the elastic states tell, else incompressible), by the stepper in space: a check of tip, layer and
     /// elastic states that shares only the material with the fit. `scene` has the tip and the body of the elastic states, on a
     /// grid of choice. The difference contains the error of the mesh: twice as many cells along each side about halve it.
     ///
@@ -40,7 +40,7 @@ impl Fit {
     pub fn verify(&self, curve: usize, scene: &Builder) -> Result<Verification> {
         let experiment = self.experiment(curve)?;
         let (contact_point, stiffness) = (self.contact_point(curve), self.problem.stiffness(curve, &self.values));
-        let mut contact = scene.clone().material(self.material()?).build()?;
+        let mut contact = scene.clone().material(self.prony().material_on(experiment.tip())?).build()?;
         let (times, samples) = (experiment.protocol().times(), self.samples(curve));
         let (mut force, mut before) = (Vec::with_capacity(times.len()), times[0]);
         for (&time, &drive) in times.iter().zip(experiment.protocol().drive()) {

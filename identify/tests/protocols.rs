@@ -1,4 +1,4 @@
-use viscocontact::load::{Load, LoadHistory, StepLoad};
+use viscocontact::load::{FnHistory, Load, LoadHistory, StepLoad};
 use viscocontact::prelude::*;
 use viscocontact_identify::{Error, Experiment, Identification, Model, Protocol, Result, Sample};
 
@@ -118,5 +118,9 @@ fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
     assert!(matches!(Protocol::staircase(&[], 1.0, 1.0, 0.1), Err(Error::TooFewPoints { .. })));
     let force = StepLoad::new(Load::force(1.0))?;
     assert!(matches!(Protocol::sampled(&force, vec![0.0, 1.0]), Err(Error::DrivenByForce { time: 0.0 })));
+    // the error of a history of the user, not what stands for its load
+    let failing = FnHistory::fallible(|_| Err::<Load, _>("no data"));
+    let error = Protocol::sampled(&failing, vec![0.0, 1.0]).expect_err("the history failed");
+    assert!(matches!(error, Error::Contact(viscocontact::Error::User(_))), "{error}");
     Ok(())
 }

@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
-use viscocontact_identify::{Curve, Experiment, Identification, Law, Model, Nuisance, Protocol};
+use viscocontact_identify::{Curve, Error, Experiment, Identification, Law, Model, Nuisance, Protocol};
 
 use crate::random::normal;
 use crate::scenes::scene;
@@ -132,7 +132,17 @@ fn laws_of_other_kinds_are_found() {
         parameters: &["E0", "tau"],
         modulus: |of, t| of[0] / (1.0 + 0.2 * (t / of[1]).ln_1p()),
     };
-    let cases: [(Model, &[f64]); 3] = [
+    // whatever the order and the names of parameters
+    let power = Law { name: "power", parameters: &["alpha", "E1"], modulus: |of, t| of[1] * (t + 1e-4).powf(-of[0]) };
+    let solid =
+        Law { name: "solid", parameters: &["E1", "Einf", "tau"], modulus: |of, t| of[1] + of[0] * (-t / of[2]).exp() };
+    let cases: [(Model, &[f64]); 9] = [
+        (Model::Elastic, &[1.0e3]),
+        (Model::Maxwell, &[1.0e3, 0.3]),
+        (Model::Prony(2), &[5.0e2, 1.0e3, 0.05, 2.0e3, 0.6]),
+        (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6]),
+        (Model::Custom(power), &[0.2, 1.0e3]),
+        (Model::Custom(solid), &[5.0e2, 1.0e3, 0.3]),
         (Model::Stretched, &[4.0e3, 1.0e3, 0.3, 0.6]),
         (Model::PowerLawSolid { cutoff: 1e-6 }, &[1.0e3, 0.4, 5.0e2]),
         (Model::Custom(logarithmic), &[4.0e3, 0.05]),
@@ -143,6 +153,15 @@ fn laws_of_other_kinds_are_found() {
     for (model, truth) in cases {
         let (fitting, names) = (Identification::new(model), model.parameters());
         let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(truth.iter().copied()).collect();
+        let [first, soon] = [0.0, 1e-9].map(|t| model.modulus(truth, t).unwrap());
+        assert!(first.is_finite() && first >= soon && soon > 0.0, "{model}: {first} {soon}");
+        if let Model::Stretched | Model::FractionalZener | Model::Custom(_) = model {
+            let exact = if let Model::Custom(law) = model { (law.modulus)(truth, 0.0) } else { truth[0] };
+            assert!((first / exact - 1.0).abs() < 1e-6, "{model}: {first} at once, {exact}");
+        }
+        for time in [-1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(model.modulus(truth, time), Err(Error::OutOfRange { field: "time", .. })), "{model}");
+        }
         let samples = fitting.respond(&experiment, &named).unwrap();
         let force = samples.iter().map(|sample| sample.force).collect();
         let fit = fitting.fit(&[Curve::new(experiment.clone(), force).unwrap()]).unwrap();
@@ -152,5 +171,5 @@ fn laws_of_other_kinds_are_found() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 9);
+    assert_eq!(compared, 26);
 }

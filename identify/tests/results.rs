@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{
-    Curve, Error, Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol, Result, Summary,
+    Curve, Error, Experiment, Fit, FitWarning, Identification, Model, Noise, Nuisance, Protocol, Result, Summary,
 };
 
 use rand_chacha::ChaCha8Rng;
@@ -66,6 +66,28 @@ fn each_curve_has_its_own_spring_contact_point_and_start() -> Result<()> {
     // a list that is too short, and a name of nothing
     let short = starts.fit_each(&[curve(0, moduli[0])?, curve(1, moduli[1])?, curve(0, moduli[0])?], |_| ());
     assert!(matches!(short[2], Err(Error::WrongLength { .. })), "{:?}", short[2]);
+    // and lists that are too long
+    let three = zener.clone().contact_point(vec![Nuisance::Fitted; 3]);
+    let matrices = zener.clone().noise(Noise::Covariance(vec![vec![1.0]; 3]));
+    for long in [three, matrices] {
+        let curves = [curve(0, moduli[0])?, curve(1, moduli[1])?];
+        let each = long.fit_each(&curves, |_| ());
+        assert!(each.iter().all(|fit| matches!(fit, Err(Error::WrongLength { len: 3, expected: 2, .. }))), "{each:?}");
+        assert!(matches!(long.fit(&curves), Err(Error::WrongLength { len: 3, expected: 2, .. })));
+    }
+    // values without a coordinate, known or as a start
+    for (name, values) in
+        [("stiffness", [0.0, -0.1]), ("E0", [0.0, -1.0]), ("tau", [0.0, f64::NAN]), ("contact point", [f64::NAN; 2])]
+    {
+        for of in values.into_iter().flat_map(|value| [Nuisance::Fixed(value), Nuisance::FittedFrom(value)]) {
+            let with = zener.clone().parameter(name, of);
+            let experiment = curve(0, moduli[0])?.experiment().clone();
+            let body = [("E0", 1.0e3), ("Einf", 3.0e2), ("tau", 0.4)];
+            for refused in [with.fit(&[curve(0, moduli[0])?]).map(drop), with.respond(&experiment, &body).map(drop)] {
+                assert!(matches!(refused, Err(Error::OutOfRange { .. })), "{name} {of:?}: {refused:?}");
+            }
+        }
+    }
     let nothing = zener.clone().parameter("colour", Nuisance::Fitted).fit(&[curve(0, moduli[0])?]);
     assert!(matches!(nothing, Err(Error::UnknownParameter { .. })));
     let warning = FitWarning::AtLimit { parameter: "Einf".into(), limit: "Einf = 0: no equilibrium" };
@@ -73,8 +95,8 @@ fn each_curve_has_its_own_spring_contact_point_and_start() -> Result<()> {
     Ok(())
 }
 
-/// Two fits of a noisy curve.
-fn fits() -> Result<[Fit; 2]> {
+/// Fits of a noisy curve.
+fn fits() -> Result<[Fit; 3]> {
     let experiment =
         Experiment::new(Protocol::trapezoid(1.0e-6, [0.5, 2.0, 0.5], 0.01)?, ElasticStates::sphere(5.0e-6)?);
     let zener = Identification::new(Model::Zener);
@@ -82,7 +104,8 @@ fn fits() -> Result<[Fit; 2]> {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let force = exact.iter().map(|sample| sample.force + 1.0e-10 * normal(&mut rng)).collect();
     let curve = [Curve::new(experiment, force)?];
-    Ok([zener.fit(&curve)?, Identification::new(Model::PowerLaw { cutoff: 1.0e-4 }).fit(&curve)?])
+    let fit = |model: Model| Identification::new(model).fit(&curve);
+    Ok([zener.fit(&curve)?, fit(Model::PowerLaw { cutoff: 1.0e-4 })?, fit(Model::Stretched)?])
 }
 
 #[test]
@@ -94,7 +117,7 @@ fn a_table_holds_every_parameter_to_the_last_bit() -> Result<()> {
     let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
     let expected =
         summaries.iter().flat_map(|summary| summary.estimates.iter().map(move |estimate| (summary, estimate)));
-    assert_eq!(rows.len(), 5);
+    assert_eq!(rows.len(), 9);
     for (row, (summary, estimate)) in rows.iter().zip(expected) {
         let number = |column: usize| row[column].parse::<f64>().expect("a number");
         assert_eq!((&row[0], &row[2]), (summary.model.to_string().as_str(), estimate.name.as_str()));
@@ -105,7 +128,7 @@ fn a_table_holds_every_parameter_to_the_last_bit() -> Result<()> {
         );
     }
     let units: Vec<&str> = rows.iter().map(|row| &row[4]).collect();
-    assert_eq!(units, ["Pa", "Pa", "s", "Pa", "1"]);
+    assert_eq!(units, ["Pa", "Pa", "s", "Pa", "1", "Pa", "Pa", "s", "1"]);
     assert_eq!((&rows[0][0], &rows[4][0]), ("Zener", "PowerLaw"));
     // the power law misses these data
     assert!(rows[0][10].is_empty() && rows[4][10].contains("residuals"), "{rows:?}");
@@ -153,7 +176,7 @@ fn json_has_the_same_numbers() -> Result<()> {
 #[cfg(feature = "plot")]
 #[test]
 fn pictures_show_each_curve_and_refuse_others() -> Result<()> {
-    let [fit, _] = fits()?;
+    let [fit, ..] = fits()?;
     let picture = fit.picture(0)?;
     assert_eq!(picture.size(), [3600, 800]);
     // all of it is not one colour

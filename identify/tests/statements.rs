@@ -78,6 +78,75 @@ fn a_given_covariance_is_the_noise_it_describes() {
             assert!((a.deviation / b.deviation - 1.0).abs() < 1e-4, "φ = {phi}: {a:?} {b:?}");
         }
         assert!((given.aicc() - other.aicc()).abs() < 1e-3, "{} {}", given.aicc(), other.aicc());
+        // a given coefficient is none that was fitted
+        assert!((given.probability() / other.probability() - 1.0).abs() < 1e-3, "φ = {phi}");
+    }
+    // each curve has its own, fitted alone or not
+    let quiet = (0..count * count).map(|k| if k % (count + 1) == 0 { 1e-4 } else { 0.0 }).collect::<Vec<f64>>();
+    let loud: Vec<f64> = quiet.iter().map(|entry| 100.0 * entry).collect();
+    let (zener, both) = (Identification::new(Model::Zener), [curve.clone(), curve.clone()]);
+    let each = zener.noise(Noise::Covariance(vec![quiet, loud])).fit_each(&both, |_| {});
+    let [quiet, loud] = [0, 1].map(|k| each[k].as_ref().unwrap().estimate("E0").unwrap().deviation);
+    assert!((loud / quiet / 10.0 - 1.0).abs() < 1e-6, "{quiet} {loud}");
+}
+
+/// A curve of an elastic body, fitted by models that contain it at the limit E0 = Einf: their modulus is as uncertain as that of the elastic model, and
+/// a parameter next to the limit, the other one known, is not certain.
+#[test]
+fn nothing_is_certain_at_a_limit() {
+    let times: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
+    let drive = times.iter().map(|t| t.min(1.0)).collect();
+    let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), ElasticStates::sphere(9.0 / 16.0).unwrap());
+    let exact = Identification::new(Model::Elastic).respond(&experiment, &[("E", 1.0)]).unwrap();
+    let mut at_limit = [0; 2];
+    for seed in 0..6 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let force = exact.iter().map(|sample| sample.force + 0.01 * normal(&mut rng)).collect();
+        let curve = [Curve::new(experiment.clone(), force).unwrap()];
+        let elastic = Identification::new(Model::Elastic).fit(&curve).unwrap().estimates()[0].deviation;
+        for (model, exponent) in [(Model::Zener, ""), (Model::Stretched, "beta"), (Model::FractionalZener, "alpha")] {
+            let mut fitting = Identification::new(model).fix("tau", 0.3);
+            if !exponent.is_empty() {
+                fitting = fitting.fix(exponent, 0.5);
+            }
+            let fit = fitting.fit(&curve).unwrap();
+            let is_at_limit = fit.estimate("E0").unwrap().limit.is_some();
+            at_limit[0] += usize::from(is_at_limit);
+            for time in [0.01, 0.1, 1.0] {
+                let ratio = fit.modulus_band(time)[1] / elastic;
+                assert!((0.9..10.0).contains(&ratio), "{model}, {seed}: {ratio} at {time}, at the limit {is_at_limit}");
+            }
+            for (known, other) in [("E0", "Einf"), ("Einf", "E0")] {
+                let fit = fitting.clone().fix(known, 1.0).fit(&curve).unwrap();
+                let estimate = fit.estimate(other).unwrap();
+                let [low, high] = estimate.interval;
+                at_limit[1] += usize::from(estimate.limit.is_some());
+                assert!(estimate.deviation > 1e-4 && low < 0.9999 * high, "{model}, {seed}: {estimate:?}");
+                assert!(estimate.limit.is_none_or(|limit| limit.ends_with("no relaxation")), "{estimate}");
+                let [low, high] = fit.profile_interval(other, 0.95).unwrap();
+                assert!(low > 0.8 && high < 1.25 && low < 0.9999 * high, "{model}, {seed}: {low} to {high}");
+            }
+        }
+    }
+    println!("at the limit: {at_limit:?} of 18 and 36");
+    assert!(at_limit[0] > 3 && at_limit[1] > 6);
+}
+
+/// As many parameters as samples are no good model, however small the sum of squares.
+#[test]
+fn a_saturated_model_is_not_ranked_first() {
+    for count in [4, 5] {
+        let times: Vec<f64> = (0..count).map(f64::from).collect();
+        let drive = times.iter().map(|t| 1.0 + t).collect();
+        let force = times.iter().map(|t| 1.0 + t - 0.02 * t * t).collect();
+        let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), ElasticStates::punch(0.5).unwrap());
+        let curve = Curve::new(experiment, force).unwrap();
+        let fit = |model: Model| Identification::new(model).fit(std::slice::from_ref(&curve));
+        let best = ranked([fit(Model::Zener), fit(Model::Elastic)]).unwrap();
+        let found: Vec<_> = best.iter().map(|(fit, more, weight)| (fit.model(), *more, *weight)).collect();
+        assert_eq!(found, [(Model::Elastic, 0.0, 1.0), (Model::Zener, f64::INFINITY, 0.0)]);
+        let alone = ranked([fit(Model::Zener), fit(Model::Zener)]).unwrap();
+        assert!(alone.iter().all(|(fit, more, weight)| (fit.aicc(), *more, *weight) == (f64::INFINITY, 0.0, 0.5)));
     }
 }
 

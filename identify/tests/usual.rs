@@ -124,5 +124,12 @@ fn curves_without_the_part_that_is_read_are_refused() -> Result<()> {
     let swept = Sweep::new(Grid::square(32, 4.0e-6)?, &Sphere::new(RADIUS)?).run(Reach::Approach(0.1e-6))?;
     let beyond = Curve::new(Experiment::new(curve.experiment().protocol().clone(), swept), curve.force().to_vec())?;
     assert!(matches!(loading_modulus(&beyond, Some(0.0)), Err(Error::BeyondStates { .. })));
+    // no elastic law has forces that fall, or a contact beyond the curve
+    let falling = Curve::new(curve.experiment().clone(), curve.force().iter().map(|force| -force).collect())?;
+    for read in
+        [loading_modulus(&falling, None), loading_modulus(&falling, Some(0.0)), loading_modulus(&curve, Some(0.3e-6))]
+    {
+        assert!(matches!(read, Err(Error::NoContact { .. })), "{read:?}");
+    }
     Ok(())
 }

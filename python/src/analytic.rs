@@ -5,9 +5,10 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::analytic as an;
+use viscocontact::load::LoadHistory;
 
 use crate::arrays::mapped;
-use crate::errors::OrRaise;
+use crate::errors::{Kept, OrRaise, nothing_raised};
 use crate::grid::Grid;
 use crate::loads::history;
 use crate::materials::Material;
@@ -31,28 +32,34 @@ pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyR
 /// >>> round(ball.contact_radius(0.0), 6)
 /// 0.001233
 #[pyclass(frozen, module = "viscocontact")]
-pub struct GrowingSphere(an::GrowingSphere);
+pub struct GrowingSphere {
+    sphere: an::GrowingSphere,
+    load: Arc<dyn LoadHistory>,
+}
 
 #[pymethods]
 impl GrowingSphere {
     #[new]
     fn new(radius: f64, material: &Material, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
-        an::GrowingSphere::new(radius, &material.material, history(load)?).or_raise().map(GrowingSphere)
+        let load = history(load)?;
+        let sphere = an::GrowingSphere::new(radius, &material.material, Arc::clone(&load));
+        nothing_raised(load.failure())?;
+        Ok(GrowingSphere { sphere: sphere.or_raise()?, load })
     }
 
     /// Contact radius [m] at times [s].
     fn contact_radius<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.contact_radius(t))
+        mapped("t", t, |t| self.sphere.contact_radius(t), || self.load.failure())
     }
 
     /// Approach [m] at times [s].
     fn approach<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.approach(t))
+        mapped("t", t, |t| self.sphere.approach(t), || self.load.failure())
     }
 
     /// Pressure [Pa] at distances from the centre [m] and one time [s].
     fn pressure<'py>(&self, r: &Bound<'py, PyAny>, t: f64) -> PyResult<Bound<'py, PyAny>> {
-        mapped("r", r, |r| self.0.pressure(r, t))
+        mapped("r", r, |r| self.sphere.pressure(r, t), || self.load.failure())
     }
 }
 
@@ -280,9 +287,9 @@ pub fn persson_friction(
 ) -> PyResult<(f64, f64)> {
     let velocity = crate::sliding::velocity(velocity)?;
     let surface = Arc::clone(&surface.geometry);
-    let theory = py.detach(|| {
-        an::PerssonFriction::new(&grid.0, &*surface, |omega| complex(&modulus, omega), pressure, velocity, gamma)
-    });
-    let theory = theory.or_raise()?;
+    let kept = Kept::default();
+    let modulus = |omega| complex(&modulus, omega, &kept);
+    let theory = py.detach(|| an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
+    let theory = kept.raise_or(theory.or_raise())?;
     Ok((theory.friction, theory.contact_share))
 }

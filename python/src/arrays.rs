@@ -5,6 +5,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use viscocontact::UserError;
+
+use crate::errors::nothing_raised;
 
 /// Any array of Python.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -16,7 +19,11 @@ pub fn values(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<
     // NumPy takes an iterator, as of `zip`, for one value
     let listed = object.hasattr(intern!(py, "__next__"))?.then(|| py.get_type::<PyList>().call1((object,)));
     let listed = listed.transpose()?;
-    let array = numpy.call_method1(intern!(py, "asarray"), (listed.as_ref().unwrap_or(object),))?;
+    let object = listed.as_ref().unwrap_or(object);
+    // an array without its mask has values where none are
+    let is_masked = object.hasattr(intern!(py, "filled"))?
+        && numpy.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "isMaskedArray"), (object,))?.is_truthy()?;
+    let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
     let options = PyDict::new(py);
     options.set_item("casting", "same_kind")?;
     options.set_item("copy", false)?;
@@ -25,8 +32,16 @@ pub fn values(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<
         let kind = array.getattr("dtype").map_or_else(|_| "?".to_owned(), |kind| kind.to_string());
         PyTypeError::new_err(format!("{name}: an array of real numbers is needed, not of {kind}"))
     })?;
+    let array = if is_masked {
+        let mask = numpy.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "getmaskarray"), (object,))?;
+        numpy.call_method1(intern!(py, "where"), (mask, f64::NAN, array))?
+    } else {
+        array
+    };
     let array = array.cast::<PyArrayDyn<f64>>()?;
-    Ok((array.readonly().as_array().iter().copied().collect(), array.shape().to_vec()))
+    // another thread may be writing into it
+    let readable = array.try_readonly().map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;
+    Ok((readable.as_array().iter().copied().collect(), array.shape().to_vec()))
 }
 
 /// The values of a sequence of numbers, none of them NaN.
@@ -41,12 +56,31 @@ pub fn column(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
 
 /// The rows of a table of so many columns, none of its numbers NaN.
 pub fn table<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; N]>> {
-    let (values, shape) = values(name, object)?;
+    rows(name, values(name, object)?)
+}
+
+fn rows<const N: usize>(name: &str, (values, shape): (Vec<f64>, Vec<usize>)) -> PyResult<Vec<[f64; N]>> {
     if shape.len() != 2 || shape[1] != N {
         return Err(PyValueError::new_err(format!("{name}: the shape (n, {N}) is needed, the array has {shape:?}")));
     }
     no_nan(name, &values)?;
     Ok(values.as_chunks::<N>().0.to_vec())
+}
+
+/// Vectors of the plane: pairs, or a sequence of numbers along x1.
+pub fn vectors(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 2]>> {
+    let (values, shape) = values(name, object)?;
+    if shape.len() != 1 {
+        return rows(name, (values, shape));
+    }
+    no_nan(name, &values)?;
+    Ok(values.into_iter().map(|along| [along, 0.0]).collect())
+}
+
+/// A number; no array, of one value or more.
+pub fn number(object: &Bound<'_, PyAny>) -> Option<f64> {
+    let axes = object.getattr(intern!(object.py(), "ndim")).and_then(|axes| axes.extract::<usize>());
+    if axes.unwrap_or(0) == 0 { object.extract().ok() } else { None }
 }
 
 pub fn pairs(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
@@ -102,12 +136,27 @@ pub fn columns<'py>(
     Ok(all)
 }
 
-/// A function of one number, at a number or at each value of an array: a number or an array of the same shape.
-pub fn mapped<'py>(name: &str, at: &Bound<'py, PyAny>, of: impl Fn(f64) -> f64) -> PyResult<Bound<'py, PyAny>> {
+/// A function of one number, at a number or at each value of an array: a number or an array of the same shape. Where functions of the user have a
+/// part in it, `failure` is what keeps their error: the NaN that stands for a value is none.
+pub fn mapped<'py>(
+    name: &str,
+    at: &Bound<'py, PyAny>,
+    of: impl Fn(f64) -> f64 + Sync,
+    failure: impl FnOnce() -> Option<UserError>,
+) -> PyResult<Bound<'py, PyAny>> {
     let py = at.py();
-    if let Ok(number) = at.extract::<f64>() {
-        return Ok(of(number).into_pyobject(py)?.into_any());
+    if let Some(number) = number(at) {
+        let value = of(number);
+        nothing_raised(failure())?;
+        return Ok(value.into_pyobject(py)?.into_any());
     }
     let (values, shape) = values(name, at)?;
-    Ok(to_array(py, values.into_iter().map(of).collect(), &shape)?.into_any())
+    let values = py.detach(|| values.into_iter().map(&of).collect());
+    nothing_raised(failure())?;
+    Ok(to_array(py, values, &shape)?.into_any())
+}
+
+/// Where no function of the user has a part.
+pub fn never() -> Option<UserError> {
+    None
 }

@@ -10,7 +10,7 @@ use viscocontact::UserError;
 use viscocontact::adhesion::{self as ad, Attraction as Law};
 
 use crate::arrays::mapped;
-use crate::errors::{OrRaise, no_violation, raise};
+use crate::errors::{OrRaise, no_violation, nothing_raised};
 use crate::recipe::Recipe;
 
 /// A law of the attraction between surfaces: traction [Pa] over gap [m].
@@ -53,7 +53,7 @@ fn made(
             given.set_item(name, value)?;
         }
     }
-    Ok(Attraction { law, recipe: Recipe::new(py, maker, (work,))?.with_keywords(Some(&given)) })
+    Ok(Attraction { law, recipe: Recipe::new(py, maker, (work,))?.with_keywords(Some(&given))? })
 }
 
 #[pymethods]
@@ -110,40 +110,46 @@ impl Attraction {
         let recipe = Recipe::new(py, "function", (traction.clone_ref(py), energy.clone_ref(py)))?;
         let law = OwnLaw { traction, energy, failure: Mutex::default() };
         let _ = (law.traction(0.0), law.energy(0.0));
-        match law.failure() {
-            Some(failure) => Err(raise(&failure.into())),
-            None => Ok(Attraction { law: Arc::new(law), recipe }),
-        }
+        nothing_raised(law.failure())?;
+        Ok(Attraction { law: Arc::new(law), recipe })
     }
 
     /// Checks the laws of attractions: a traction that falls with the gap, and the energy its integral. Raises ValueError with the first
     /// violation.
     fn check(&self, py: Python<'_>) -> PyResult<()> {
         let verdict = py.detach(|| ad::laws::all(&*self.law));
-        self.law.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+        no_violation(self.law.failure(), verdict)
     }
 
     /// Traction [Pa] at gaps [m].
     fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("gap", gap, |gap| self.law.traction(gap))
+        mapped("gap", gap, |gap| self.law.traction(gap), || self.law.failure())
     }
 
     /// Energy [J/m²] that opens the gap [m] to infinity.
     fn energy<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("gap", gap, |gap| self.law.energy(gap))
+        mapped("gap", gap, |gap| self.law.energy(gap), || self.law.failure())
     }
 
     /// Tabor's number of a sphere of `radius` [m] on a body of contact `modulus` E* [Pa].
     fn tabor_number(&self, radius: f64, modulus: f64) -> PyResult<f64> {
-        ad::tabor_number(&*self.law, radius, modulus).or_raise()
+        let number = ad::tabor_number(&*self.law, radius, modulus);
+        nothing_raised(self.law.failure())?;
+        number.or_raise()
     }
 }
 
 getters! {Attraction.law, of:
     /// Work of separation [J/m²].
-    work: f64 = of.work();
+    work: PyResult<f64> = {
+        let work = of.work();
+        nothing_raised(of.failure()).map(|()| work)
+    };
     /// Range: work over the greatest traction [m].
-    range: f64 = of.range();
+    range: PyResult<f64> = {
+        let range = of.range();
+        nothing_raised(of.failure()).map(|()| range)
+    };
 }
 
 made_by_calls!(Attraction);

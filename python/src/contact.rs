@@ -129,7 +129,8 @@ impl ViscoelasticContact {
     ) -> PyResult<ViscoelasticContact> {
         let builder = builder(grid.get(), &geometry, material.get(), options)?;
         let contact = py.detach(|| builder.build()).or_raise()?;
-        Ok(ViscoelasticContact::of(contact, Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options)))
+        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options)?;
+        Ok(ViscoelasticContact::of(contact, recipe))
     }
 
     /// Advances by `dt` [s] to a state that carries `load`: a `Load`, or a sequence with one for each body. `dt` = 0 is a jump.
@@ -150,7 +151,7 @@ impl ViscoelasticContact {
         self.compute(py, |contact, cancel| contact.step_unless(cancel, dt, &loads)).map(StepReport)
     }
 
-    /// A step in which the indenter and the grid move over the bodies by whole cells along x1 and x2. Needs frame="indenter".
+    /// A step in which the indenter and the grid move over the bodies by whole cells along x1 and x2. Needs frame="indenter". Ctrl-C waits for its end.
     fn step_over(
         &mut self,
         py: Python<'_>,
@@ -163,7 +164,7 @@ impl ViscoelasticContact {
     }
 
     /// A step at whose end `shape` is where `position(t)` [m] puts it, a function of time that returns (x1, x2), or a pair of start
-    /// [m] and velocity [m/s]; `track` adds the gap of a fixed shape. The bodies do not move.
+    /// [m] and velocity [m/s]; `track` adds the gap of a fixed shape. The bodies do not move. Ctrl-C waits for the end of the step.
     ///
     /// Returns the report and (position, lateral force [N], power [W]).
     #[pyo3(signature = (shape, position, dt, load, *, track=None))]

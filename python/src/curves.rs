@@ -11,7 +11,7 @@ use viscocontact::load::LoadHistory as _;
 use viscocontact_identify as id;
 
 use crate::arrays::{Array, column, to_array};
-use crate::errors::{OrRaise, choice, no_exception, raised_number};
+use crate::errors::{OrRaise, choice, raised_number};
 use crate::loads::{Load, LoadHistory};
 use crate::measured::text_table;
 use crate::states::ElasticStates;
@@ -176,9 +176,7 @@ impl Curve {
     /// True
     fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Py<PyAny>) -> PyResult<Bound<'py, PyDict>> {
         let area = |h: f64| raised_number(Python::attach(|py| area.call1(py, (h,))?.extract(py)), f64::NAN);
-        let of = py.detach(|| id::usual::oliver_pharr(&self.0, contact_point, area)).or_raise();
-        no_exception()?;
-        let of = of?;
+        let of = py.detach(|| id::usual::oliver_pharr(&self.0, contact_point, area)).or_raise()?;
         Ok(dict! { py;
             "stiffness": of.stiffness,
             "contact_depth": of.contact_depth,

@@ -1,8 +1,9 @@
 //! Errors of the crate as the exceptions that a Python programmer expects, in the crate's words.
 
+use std::cell::RefCell;
 use std::error::Error as StdError;
 use std::io;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::create_exception;
 use pyo3::exceptions::{
@@ -10,7 +11,7 @@ use pyo3::exceptions::{
     PyPermissionError, PyRuntimeError, PyValueError,
 };
 use pyo3::prelude::*;
-use viscocontact::{Error, ErrorKind};
+use viscocontact::{Error, ErrorKind, UserError};
 use viscocontact_identify::Error as IdentifyError;
 
 create_exception!(
@@ -26,31 +27,33 @@ create_exception!(
     "A search did not converge, or needs shorter steps than there are. The message says which, with its numbers."
 );
 
-/// Raises the errors of both crates.
+/// Raises the errors of both crates, at the end of a call: first what a function of the user raised in it, whether the crate noticed or not.
 pub trait OrRaise<T> {
     fn or_raise(self) -> PyResult<T>;
 }
 
 impl<T> OrRaise<T> for Result<T, Error> {
     fn or_raise(self) -> PyResult<T> {
-        self.map_err(|error| raise(&error))
+        let result = self.map_err(|error| raise(&error));
+        no_exception().and(result)
     }
 }
 
 impl<T> OrRaise<T> for Result<T, IdentifyError> {
     fn or_raise(self) -> PyResult<T> {
-        self.map_err(|error| match &error {
+        let result = self.map_err(|error| match &error {
             IdentifyError::Contact(error) => raise(error),
             IdentifyError::NotConverged { .. } => ConvergenceError::new_err(in_python(error)),
             IdentifyError::Unwritable { .. } => PyOSError::new_err(with_causes(&error)),
             _ => PyValueError::new_err(with_causes(&error)),
-        })
+        });
+        no_exception().and(result)
     }
 }
 
 /// The exception of an error: that of the user's own function, if it raised one; else by kind.
 pub fn raise(error: &Error) -> PyErr {
-    if let Some(raised) = raised().or_else(|| raised_by_user(error)) {
+    if let Some(raised) = raised_by_user(error) {
         return raised;
     }
     let text = with_causes(error);
@@ -119,29 +122,56 @@ fn raised_by_user(error: &Error) -> Option<PyErr> {
     None
 }
 
-/// The last exception of a Python function for which the crate has no way to return an error; the function then gives NaN, which the
-/// crate refuses.
+/// The value of a Python function for which the crate has no way to return an error, and which the crate calls on the thread of the call: NaN where the
+/// function raised, whose exception the call raises at its end.
 pub fn raised_number<T>(result: PyResult<T>, nan: T) -> T {
     result.unwrap_or_else(|error| {
-        *RAISED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+        RAISED.set(Some(error));
         nan
     })
 }
 
-/// Raises the exception of a function whose NaN the crate does not look at.
+/// Raises what a function of the user raised in this call.
 pub fn no_exception() -> PyResult<()> {
-    raised().map_or(Ok(()), Err)
+    RAISED.take().map_or(Ok(()), Err)
 }
 
-static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
+thread_local! {
+    /// What a function of the user raised in the call under way on this thread.
+    static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
+}
 
-fn raised() -> Option<PyErr> {
-    RAISED.lock().unwrap_or_else(PoisonError::into_inner).take()
+/// Raises what a function of the user raised in this call, or the error that the object of this function keeps.
+pub fn nothing_raised(failure: Option<UserError>) -> PyResult<()> {
+    no_exception()?;
+    failure.map_or(Ok(()), |failure| Err(raise(&failure.into())))
+}
+
+/// The exception of a Python function that the crate may call on any of its threads.
+#[derive(Clone, Default)]
+pub struct Kept(Arc<Mutex<Option<PyErr>>>);
+
+impl Kept {
+    /// NaN in place of a value that the function could not give, whose exception is kept.
+    pub fn number<T>(&self, result: PyResult<T>, nan: T) -> T {
+        result.unwrap_or_else(|error| {
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            nan
+        })
+    }
+
+    /// Raises it in place of the result of the call.
+    pub fn raise_or<T>(&self, result: PyResult<T>) -> PyResult<T> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(result, Err)
+    }
 }
 
 /// Raises the violation of a law of a trait, or what a function of the user raised meanwhile.
-pub fn no_violation(verdict: Result<(), viscocontact::rheology::laws::Violation>) -> PyResult<()> {
-    no_exception()?;
+pub fn no_violation(
+    failure: Option<UserError>,
+    verdict: Result<(), viscocontact::rheology::laws::Violation>,
+) -> PyResult<()> {
+    nothing_raised(failure)?;
     verdict.map_err(|violation| PyValueError::new_err(violation.to_string()))
 }
 

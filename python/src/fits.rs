@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
-use crate::arrays::{Array, mapped, to_array};
+use crate::arrays::{Array, mapped, never, to_array};
 use crate::errors::{OrRaise, in_python};
 use crate::grid::Grid;
 use crate::materials::Material;
@@ -33,12 +33,17 @@ getters! {Estimate, of:
     name: &str = &of.name;
     /// Its value, in SI units.
     value: f64 = of.value;
-    /// Standard deviation: relative for moduli, times and stiffness.
+    /// Standard deviation on its `scale`: relative for moduli, times and stiffness, of ln(x/(1 − x)) for exponents, else in the unit of the value. Infinite
+    /// of a parameter without effect at its `limit`.
     deviation: f64 = of.deviation;
     /// The same from the scatter of the residuals, without an assumption on the noise.
     robust_deviation: f64 = of.robust_deviation;
     /// Interval of 95 %.
     interval: (f64, f64) = of.interval.into();
+    /// The scale of the deviations: "logarithm", "logit" (ln(x/(1 − x)), of exponents) or "linear".
+    scale: String = format!("{:?}", of.scale).to_lowercase();
+    /// The limit at which the parameter is, where the model is a simpler one; None elsewhere.
+    limit: Option<&'static str> = of.limit;
 }
 
 /// The result of a fit: `fit["E0"]` is the estimate of a parameter.
@@ -54,7 +59,7 @@ impl Fit {
         })
     }
 
-    /// Covariance of two parameters, of logarithms where deviations are relative; None without one of them.
+    /// Covariance of two parameters on their scales (`Estimate.scale`); None without one of them.
     fn covariance(&self, one: &str, other: &str) -> Option<f64> {
         self.0.covariance(one, other)
     }
@@ -66,12 +71,12 @@ impl Fit {
 
     /// The contact modulus E*(t) [Pa] at times after a sudden step [s].
     fn modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.modulus(t))
+        mapped("t", t, |t| self.0.modulus(t), never)
     }
 
     /// The relative standard deviation of `modulus`.
     fn modulus_deviation<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.modulus_band(t)[1])
+        mapped("t", t, |t| self.0.modulus_band(t)[1], never)
     }
 
     /// The shear modulus [Pa] for a known Poisson's ratio, at a time [s].

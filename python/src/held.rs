@@ -46,6 +46,10 @@ impl Times {
         Ok(Times(self.0.clone().and(other.unwrap_or_default())))
     }
 
+    fn __radd__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
+        self.__add__(other)
+    }
+
     fn __repr__(&self) -> &'static str {
         "Times(...)"
     }

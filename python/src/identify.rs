@@ -23,6 +23,9 @@ fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCur
 
 /// What is known of a property of the measurement: None (fixed at 0 by default), a number (fixed), True (fitted), or ("from", start).
 fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisance>> {
+    if given.is_none() {
+        return Ok(None);
+    }
     if let Ok(fitted) = given.extract::<bool>() {
         return Ok(fitted.then_some(id::Nuisance::Fitted));
     }
@@ -117,6 +120,13 @@ impl Identification {
             identification = identification.known_sigma(sigma);
         }
         let names = identification.model().parameters();
+        if let (Some(fix), Some(start)) = (fix, start) {
+            for name in start.keys() {
+                if fix.contains(&name)? {
+                    return Err(PyTypeError::new_err(format!("give {name} in fix or in start, not in both")));
+                }
+            }
+        }
         type Give = fn(id::Identification, &str, f64) -> id::Identification;
         for (given, give) in [(fix, id::Identification::fix as Give), (start, id::Identification::start)] {
             for (name, value) in given.map(named).transpose()?.unwrap_or_default() {

@@ -6,36 +6,45 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use viscocontact::Result;
 
-use crate::errors::OrRaise;
+use crate::errors::{OrRaise, no_exception};
 
 /// Time between two looks for a signal.
 const LISTEN: Duration = Duration::from_millis(50);
 
 /// Computes without the GIL. Python handles signals on the thread that called, so what is `slow` is computed on another one, while this
-/// one listens, and sets the flag of the computation where a handler raises: KeyboardInterrupt comes out. What is not slow is computed
-/// at once.
+/// one listens, and sets the flag of the computation where a handler raises: KeyboardInterrupt comes out, after the call where the computation had come to its end. What
+/// is not slow is computed at once.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     slow: bool,
     cancel: &AtomicBool,
     job: impl FnOnce() -> Result<T> + Send,
 ) -> PyResult<T> {
+    // of a call before this one
+    py.check_signals()?;
     if !slow {
         return py.detach(job).or_raise();
     }
     py.detach(|| {
         thread::scope(|scope| {
             let (send, receive) = channel();
-            let worker = scope.spawn(move || send.send(job()).is_ok());
+            let worker = scope.spawn(move || send.send((job(), no_exception())).is_ok());
             let mut raised = None;
             loop {
                 match receive.recv_timeout(LISTEN) {
-                    Ok(result) => {
+                    Ok((result, user)) => {
                         cancel.store(false, Ordering::Relaxed);
-                        return raised.map_or_else(|| Ok(result), Err);
+                        user?;
+                        return match raised {
+                            // what is done is done: the contact is where the result says, and the signal comes after the call
+                            Some(raised) if result.is_ok() && is_ctrl_c(&raised) => signal_again().map(|()| result),
+                            Some(raised) => Err(raised),
+                            None => Ok(result),
+                        };
                     }
                     Err(RecvTimeoutError::Disconnected) => {
                         let Err(panic) = worker.join() else { unreachable!("the result was sent") };
@@ -51,6 +60,16 @@ pub fn interruptible<T: Send>(
         })
     })?
     .or_raise()
+}
+
+fn is_ctrl_c(raised: &PyErr) -> bool {
+    Python::attach(|py| raised.is_instance_of::<PyKeyboardInterrupt>(py))
+}
+
+/// Sends Ctrl-C once more, which Python handles when the call has returned.
+fn signal_again() -> PyResult<()> {
+    // signal.raise_signal would handle it at once
+    Python::attach(|py| py.import("_thread")?.call_method0("interrupt_main").map(drop))
 }
 
 /// Listens for Ctrl-C, and to a report of progress that may end a call, between two problems.

@@ -1,6 +1,6 @@
 //! Influence kernels: the bodies.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use viscocontact::{self as vc, Axis};
 
 use crate::arrays::{Array, field, to_array};
-use crate::errors::OrRaise;
+use crate::errors::{Kept, OrRaise};
 use crate::grid::Grid;
 use crate::materials::Material;
 use crate::recipe::Recipe;
@@ -140,23 +140,21 @@ makers! {InfluenceKernel, py:
     /// Your own body: `coefficient(i, j)` [m] is the displacement, over the compliance, of a cell under a unit pressure on the cell
     /// that is i and j cells away.
     from_coefficients(grid: Bound<'_, Grid>, coefficient: Py<PyAny>) = {
-        let (on, raised) = (&grid.get().0, Mutex::new(None));
-        let call =
-            |i: isize, j: isize| caught(&raised, || Python::attach(|py| coefficient.call1(py, (i, j))?.extract(py)));
+        let (on, kept) = (&grid.get().0, Kept::default());
+        let value = |i: isize, j: isize| Python::attach(|py| coefficient.call1(py, (i, j))?.extract(py));
+        let call = |i: isize, j: isize| kept.number(value(i, j), f64::NAN);
         let kernel = py.detach(|| vc::InfluenceKernel::from_coefficients(on, call));
-        nothing_raised(raised)?;
-        kernel
+        kept.raise_or(Ok(kernel))?
     };
 
     /// Your own body, periodic along both axes: `compliance(q1, q2)` [m] is the displacement, over the compliance, under a wave of unit
     /// pressure of these wave numbers [rad/m].
     from_spectrum(grid: Bound<'_, Grid>, compliance: Py<PyAny>) = {
-        let (on, raised) = (&grid.get().0, Mutex::new(None));
-        let call =
-            |q1: f64, q2: f64| caught(&raised, || Python::attach(|py| compliance.call1(py, (q1, q2))?.extract(py)));
+        let (on, kept) = (&grid.get().0, Kept::default());
+        let value = |q1: f64, q2: f64| Python::attach(|py| compliance.call1(py, (q1, q2))?.extract(py));
+        let call = |q1: f64, q2: f64| kept.number(value(q1, q2), f64::NAN);
         let kernel = py.detach(|| vc::InfluenceKernel::from_spectrum(on, call));
-        nothing_raised(raised)?;
-        kernel
+        kept.raise_or(Ok(kernel))?
     };
 }
 
@@ -165,7 +163,7 @@ impl InfluenceKernel {
     /// K p [Pa·m] of a `pressure` [Pa], one value per cell: the displacement under it of a body of compliance 1/Pa.
     ///
     /// With `out`, an array of float64 of the shape of the grid, into it: no array is made.
-    /// Raises ValueError if the shape is another, a value is NaN, or `out` is read-only.
+    /// Raises ValueError if the shape is another, a value is NaN, or `out` is read-only or not contiguous in C order.
     #[pyo3(signature = (pressure, out=None))]
     fn convolve<'py>(
         &self,
@@ -195,8 +193,12 @@ impl InfluenceKernel {
                 array.shape()
             )));
         }
+        // a slice of NumPy is one of Fortran's order, too
+        if !array.is_c_contiguous() {
+            return Err(needed("a contiguous array in C order is needed".to_owned()));
+        }
         let mut writable = array.try_readwrite().map_err(|error| needed(error.to_string()))?;
-        convolve(writable.as_slice_mut().map_err(|_| needed("a contiguous array is needed".to_owned()))?)?;
+        convolve(writable.as_slice_mut().map_err(|error| needed(error.to_string()))?)?;
         drop(writable);
         Ok(array.clone())
     }
@@ -213,15 +215,3 @@ getters! {InfluenceKernel.kernel, of:
 }
 
 made_by_calls!(InfluenceKernel);
-
-/// NaN in place of a value that a function could not give, whose exception is kept.
-fn caught(raised: &Mutex<Option<PyErr>>, value: impl FnOnce() -> PyResult<f64>) -> f64 {
-    value().unwrap_or_else(|error| {
-        *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-        f64::NAN
-    })
-}
-
-fn nothing_raised(raised: Mutex<Option<PyErr>>) -> PyResult<()> {
-    raised.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
-}

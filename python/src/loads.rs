@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyTuple};
 use viscocontact::load::{self as ld, LoadHistory as History};
 
 use crate::arrays::column;
-use crate::errors::{OrRaise, no_violation, raise};
+use crate::errors::{OrRaise, no_violation, nothing_raised};
 use crate::recipe::Recipe;
 
 /// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
@@ -52,7 +52,7 @@ impl Load {
         if fixed.iter().flatten().any(|angle| *angle != 0.0) {
             keywords.set_item("tilt", PyTuple::new(py, fixed)?)?;
         }
-        Ok(Load { load, recipe: recipe.with_keywords(Some(&keywords)) })
+        Ok(Load { load, recipe: recipe.with_keywords(Some(&keywords))? })
     }
 }
 
@@ -185,9 +185,7 @@ impl LoadHistory {
     /// The load at a time [s].
     fn at(&self, py: Python<'_>, t: f64) -> PyResult<Load> {
         let load = self.history.at(t);
-        if let Some(failure) = self.history.failure() {
-            return Err(raise(&failure.into()));
-        }
+        nothing_raised(self.history.failure())?;
         Load::of(py, load)
     }
 
@@ -196,7 +194,7 @@ impl LoadHistory {
     fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
         let times = column("times", times)?;
         let verdict = py.detach(|| ld::laws::all(&*self.history, &times));
-        self.history.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+        no_violation(self.history.failure(), verdict)
     }
 }
 

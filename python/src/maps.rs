@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple};
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 use viscocontact::{FileError, TextFormat};
 
-use crate::arrays::{Array, mapped, plane, table, to_array};
+use crate::arrays::{Array, mapped, never, plane, table, to_array};
 use crate::errors::{OrRaise, choice, raise};
 use crate::grid::{Grid, PerAxis};
 use crate::shapes::Shape;
@@ -243,7 +243,7 @@ impl HeightMap {
 
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
     fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
-        mapped("x1", x1, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN))
+        mapped("x1", x1, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
     }
 
     /// The slopes along x1 and x2 at a point [m]; None where there is no height.
@@ -318,7 +318,7 @@ impl HeightMap {
             "seed": seed,
         };
         let map = HeightMap(Arc::new(rough.height_map().clone()));
-        let shape = Shape::made(py, "rough", (grid, longest, shortest), Arc::new(rough))?.with_keywords(&keywords);
+        let shape = Shape::made(py, "rough", (grid, longest, shortest), Arc::new(rough))?.with_keywords(&keywords)?;
         Py::new(py, PyClassInitializer::from(shape).add_subclass(map))
     }
 }

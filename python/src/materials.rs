@@ -107,7 +107,7 @@ impl Material {
                 keywords.set_item(name, value)?;
             }
         }
-        let recipe = Recipe::new(py, "", (rheology,))?.with_keywords(Some(&keywords));
+        let recipe = Recipe::new(py, "", (rheology,))?.with_keywords(Some(&keywords))?;
         Ok(Material { material: material.or_raise()?, recipe })
     }
 
@@ -128,7 +128,7 @@ impl Material {
 
     /// C(t) [1/Pa] at times [s], 1/E* of an elastic body: a float, or an array of the shape of `t`.
     fn contact_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.material.contact_compliance(t))
+        mapped("t", t, |t| self.material.contact_compliance(t), || self.material.failure())
     }
 }
 

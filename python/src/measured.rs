@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use viscocontact::input::{Delimiter, TextFormat, TextTable};
 use viscocontact::rheology::{self as rh, Experiment, Units};
 
@@ -15,7 +15,11 @@ use crate::materials::Tension;
 use crate::recipe::{Recipe, Reduced};
 use crate::rheology::Rheology;
 use crate::scene::unexpected;
+use crate::scratch::file_of;
 use crate::temperature::TimeTemperature;
+
+/// Temperatures that differ by less, relative, are the same.
+const SAME_TEMPERATURE: f64 = 1e-9;
 
 const EXPERIMENTS: [(&str, Experiment); 4] = [
     ("creep", Experiment::Creep),
@@ -40,6 +44,23 @@ pub struct Measurements {
 impl Measurements {
     fn by(recipe: Recipe, measurements: rh::Measurements) -> Measurements {
         Measurements { measurements, recipe }
+    }
+
+    /// The table of a file of this text.
+    fn read<'py>(
+        experiment: &str,
+        (path, text): (PathBuf, Bound<'py, PyBytes>),
+        units: Option<Bound<'py, PyAny>>,
+        reading: Option<Bound<'py, PyDict>>,
+    ) -> PyResult<Measurements> {
+        let py = text.py();
+        let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
+        let table = text_table(path, reading.as_ref())?;
+        let measurements = py.detach(|| rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
+        let keywords = reading.map_or_else(|| Ok(PyDict::new(py)), |reading| reading.copy())?;
+        keywords.set_item("units", units)?;
+        let recipe = Recipe::new(py, "_of_bytes", (experiment, text))?.with_keywords(Some(&keywords))?;
+        Ok(Measurements { measurements, recipe })
     }
 }
 
@@ -101,13 +122,22 @@ impl Measurements {
         units: Option<Bound<'_, PyAny>>,
         reading: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Measurements> {
-        let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
-        let table = text_table(path.clone(), reading.as_ref())?;
-        let measurements = py.detach(|| rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
-        let keywords = reading.map_or_else(|| Ok(PyDict::new(py)), |reading| reading.copy())?;
-        keywords.set_item("units", units)?;
-        let recipe = Recipe::new(py, "from_csv", (experiment, path))?.with_keywords(Some(&keywords));
-        Ok(Measurements { measurements, recipe })
+        // made again from what the file has now
+        let text = PyBytes::new(py, &std::fs::read(&path)?);
+        Measurements::read(experiment, (path, text), units, reading)
+    }
+
+    /// The table of a pickle.
+    #[staticmethod]
+    #[pyo3(signature = (experiment, text, *, units, **reading))]
+    fn _of_bytes(
+        experiment: &str,
+        text: Bound<'_, PyBytes>,
+        units: Option<Bound<'_, PyAny>>,
+        reading: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Measurements> {
+        let file = file_of(&text)?;
+        Measurements::read(experiment, (file.0.clone(), text), units, reading)
     }
 
     /// The same with the relative standard deviation of the values stated.
@@ -199,7 +229,7 @@ fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
 ///     The temperature of the curve [K].
 /// isotherms : sequence of (temperature [K], Measurements)
 /// law : TimeTemperature, optional
-///     A known law; else the shifts are found from the data.
+///     A known law of the same reference, without `vertical_shifts`; else the shifts are found from the data.
 /// vertical_shifts : bool
 ///     Whether the values may be shifted too.
 #[pyclass(frozen, module = "viscocontact")]
@@ -220,6 +250,17 @@ impl MasterCurve {
             .into_iter()
             .map(|(temperature, measured)| rh::Isotherm::new(temperature, measured.get().measurements.clone()));
         let isotherms = isotherms.collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        if let Some(law) = law {
+            let own = law.law.reference();
+            if (reference - own).abs() > SAME_TEMPERATURE * own {
+                return Err(PyValueError::new_err(format!(
+                    "reference = {reference} K is not that of the law, {own} K: give law.reference, and move the fitted body by law.at(body, {reference})"
+                )));
+            }
+            if vertical_shifts {
+                return Err(PyTypeError::new_err("give law or vertical_shifts: a known law shifts in time alone"));
+            }
+        }
         let curve = py.detach(|| match law {
             Some(law) => rh::MasterCurve::with_law(&law.law, isotherms),
             None if vertical_shifts => rh::MasterCurve::with_vertical_shifts(reference, isotherms),

@@ -120,7 +120,7 @@ impl Plan {
             keywords.set_item("temperature", temperature.clone_ref(py))?;
         }
         let parts = (Py::new(py, grid)?, self.parts.0.clone_ref(py), self.parts.1.clone_ref(py));
-        Ok(ViscoelasticContact::of(contact, Recipe::new(py, "", parts)?.with_keywords(Some(&keywords))))
+        Ok(ViscoelasticContact::of(contact, Recipe::new(py, "", parts)?.with_keywords(Some(&keywords))?))
     }
 
     fn __str__(&self) -> String {

@@ -2,7 +2,7 @@
 
 use pyo3::PyTypeInfo;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple, PyType};
+use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyTuple, PyType};
 
 /// A call of a class, or of one of its static methods.
 pub struct Recipe {
@@ -23,7 +23,8 @@ impl Recipe {
         maker: &'static str,
         arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
     ) -> PyResult<Recipe> {
-        Ok(Recipe { class: None, maker, arguments: arguments.into_pyobject(py)?.unbind(), keywords: None })
+        let arguments = own(arguments.into_pyobject(py)?.as_any())?.cast_into::<PyTuple>()?.unbind();
+        Ok(Recipe { class: None, maker, arguments, keywords: None })
     }
 
     /// A call of a method of another class than the object's.
@@ -40,8 +41,9 @@ impl Recipe {
         self.class.as_ref().map_or(object, |class| class.bind(py).clone())
     }
 
-    pub fn with_keywords(self, keywords: Option<&Bound<'_, PyDict>>) -> Recipe {
-        Recipe { keywords: keywords.map(|keywords| keywords.clone().unbind()), ..self }
+    pub fn with_keywords(self, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Recipe> {
+        let own = |keywords: &Bound<'_, PyDict>| Ok::<_, PyErr>(own(keywords)?.cast_into::<PyDict>()?.unbind());
+        Ok(Recipe { keywords: keywords.map(own).transpose()?, ..self })
     }
 
     pub fn again(&self, py: Python<'_>) -> Recipe {
@@ -77,6 +79,31 @@ impl Recipe {
         let dot = if self.maker.is_empty() { "" } else { "." };
         Ok(format!("{}{dot}{}({})", class.name()?, self.maker, shown.join(", ")))
     }
+}
+
+/// A value of a call as it is now: what the caller may change later is copied, down to the entries of sequences.
+fn own<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let py = value.py();
+    if let Ok(tuple) = value.cast_exact::<PyTuple>() {
+        let entries: Vec<_> = tuple.iter().map(|entry| own(&entry)).collect::<PyResult<_>>()?;
+        return Ok(PyTuple::new(py, entries)?.into_any());
+    }
+    if let Ok(list) = value.cast_exact::<PyList>() {
+        let entries: Vec<_> = list.iter().map(|entry| own(&entry)).collect::<PyResult<_>>()?;
+        return Ok(PyList::new(py, entries)?.into_any());
+    }
+    if let Ok(dict) = value.cast_exact::<PyDict>() {
+        let copy = PyDict::new(py);
+        dict.iter().try_for_each(|(key, entry)| copy.set_item(key, own(&entry)?))?;
+        return Ok(copy.into_any());
+    }
+    // arrays, and other sequences; objects of this package do not change
+    let is_fixed = value.is_instance_of::<PyString>() || value.is_instance_of::<PyBytes>() || value.is_callable();
+    let is_own = || value.get_type().module().is_ok_and(|module| module.to_string().starts_with("viscocontact"));
+    if is_fixed || !value.hasattr("__len__")? || is_own() {
+        return Ok(value.clone());
+    }
+    py.import("copy")?.call_method1("copy", (value,))
 }
 
 fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {

@@ -7,8 +7,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 
-use crate::arrays::{column, mapped, pairs, values};
-use crate::errors::{OrRaise, no_violation, raise};
+use crate::arrays::{column, mapped, never, pairs, values};
+use crate::errors::{OrRaise, no_violation};
 use crate::recipe::Recipe;
 
 /// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
@@ -143,22 +143,18 @@ impl Rheology {
     fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
         let times = column("times", times)?;
         let verdict = py.detach(|| rh::laws::all(&*self.body, &times));
-        self.body.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+        no_violation(self.body.failure(), verdict)
     }
 
     /// J(t) [1/Pa] at times [s]: a float, or an array of the shape of `t`.
     fn creep_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let compliance = mapped("t", t, |t| self.body.creep_compliance(t))?;
-        match self.body.failure() {
-            Some(failure) => Err(raise(&failure.into())),
-            None => Ok(compliance),
-        }
+        mapped("t", t, |t| self.body.creep_compliance(t), || self.body.failure())
     }
 
     /// G(t) [Pa] at times [s], without an immediate dashpot. Raises ValueError without an exponential series (`fitted`).
     fn relaxation_modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let spectrum = self.spectrum()?.relaxation();
-        mapped("t", t, |t| spectrum.modulus(t))
+        mapped("t", t, |t| spectrum.modulus(t), never)
     }
 
     /// G*(ω) = G′ + i G″ [Pa] at angular frequencies [rad/s], an array of complex numbers. Raises ValueError without an exponential

@@ -11,7 +11,7 @@ use viscocontact::{self as vc, ViscoelasticContact as InSpace};
 
 use crate::arrays;
 use crate::contact::ViscoelasticContact;
-use crate::errors::{Cancelled, OrRaise, choice, no_exception, raised_number};
+use crate::errors::{Cancelled, OrRaise, choice, raised_number};
 use crate::held::{Led, Options};
 use crate::recipe::Recipe;
 use crate::reports::StepReport;
@@ -81,7 +81,6 @@ impl Run {
     fn next(&self, py: Python<'_>) -> PyResult<Option<Report>> {
         py.check_signals()?;
         let report = with_contact!(self, py, borrow_mut, contact => { let mut contact = contact; contact.next(py, self.number)? });
-        no_exception()?;
         if let (Some(progress), Some(_)) = (&self.options.progress, &report) {
             let share = on_run!(self, py, run => run.progress().share_of_time());
             if progress.call1(py, (share,))?.extract::<bool>(py).is_ok_and(|goes_on| !goes_on) {

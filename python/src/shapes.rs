@@ -9,7 +9,7 @@ use vc::geometry::{self as geo, Geometry};
 use viscocontact as vc;
 
 use crate::arrays::{Array, cell_values, to_array};
-use crate::errors::{OrRaise, no_violation, raise};
+use crate::errors::{OrRaise, no_violation, nothing_raised};
 use crate::grid::Grid;
 use crate::recipe::Recipe;
 
@@ -43,10 +43,13 @@ impl Shape {
         Shape { geometry: Arc::new(geometry), recipe }
     }
 
-    pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> Shape {
-        Shape { recipe: self.recipe.with_keywords(Some(keywords)), ..self }
+    pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> PyResult<Shape> {
+        Ok(Shape { recipe: self.recipe.with_keywords(Some(keywords))?, ..self })
     }
 }
+
+/// Cells by which a point may be beside a grid.
+const RIM: f64 = 1e-9;
 
 /// A gap given cell by cell.
 #[derive(Debug)]
@@ -58,9 +61,14 @@ struct GapOnCells {
 impl Geometry for GapOnCells {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         let ([n1, n2], spacing) = (self.grid.cells(), self.grid.spacing());
-        let index =
-            |x: f64, axis: usize, n: usize| ((x / spacing[axis] + 0.5 * n as f64).floor().max(0.0) as usize).min(n - 1);
-        self.gap[index(x1, 0, n1) * n2 + index(x2, 1, n2)]
+        // there is nothing beside the grid; its rim is on it, but for rounding
+        let index = |x: f64, axis: usize, n: usize| {
+            let place = x / spacing[axis] + 0.5 * n as f64;
+            let is_inside = (-RIM..=n as f64 + RIM).contains(&place);
+            is_inside.then(|| (place.floor().max(0.0) as usize).min(n - 1))
+        };
+        let cell = index(x1, 0, n1).zip(index(x2, 1, n2));
+        cell.map_or(f64::INFINITY, |(i, j)| self.gap[i * n2 + j])
     }
 
     fn fill_gap_at(&self, grid: &vc::Grid, by: [f64; 2], gap: &mut [f64]) {
@@ -114,7 +122,7 @@ makers! {Shape, py:
 
 #[pymethods]
 impl Shape {
-    /// A gap [m] for each cell of `grid`: any array of its shape, `+inf` where there is nothing to touch.
+    /// A gap [m] for each cell of `grid`: any array of its shape, `+inf` where there is nothing to touch, as beside the grid.
     ///
     /// Raises ValueError if the shapes differ, or a value is NaN.
     ///
@@ -126,8 +134,7 @@ impl Shape {
     fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Bound<'_, PyAny>) -> PyResult<Shape> {
         let on = grid.get().0.clone();
         let values = crate::arrays::field("gap", &gap, on.cells())?;
-        let copy = to_array(py, values.clone(), &on.cells())?;
-        Shape::made(py, "gap_on", (grid, copy), Arc::new(GapOnCells { grid: on, gap: values }))
+        Shape::made(py, "gap_on", (grid, gap), Arc::new(GapOnCells { grid: on, gap: values }))
     }
 
     /// This shape with its origin at the point `by` [m].
@@ -152,16 +159,14 @@ impl Shape {
     /// the first violation.
     fn check(&self, py: Python<'_>, grid: &Grid) -> PyResult<()> {
         let verdict = py.detach(|| geo::laws::all(&*self.geometry, &grid.0));
-        self.geometry.failure().map_or_else(|| no_violation(verdict), |failure| Err(raise(&failure.into())))
+        no_violation(self.geometry.failure(), verdict)
     }
 
     /// The gap at the centres of the cells of a grid [m].
     fn gap<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<Array<'py>> {
         let mut gap = vec![0.0; grid.0.len()];
         py.detach(|| self.geometry.fill_gap(&grid.0, &mut gap));
-        if let Some(failure) = self.geometry.failure() {
-            return Err(raise(&failure.into()));
-        }
+        nothing_raised(self.geometry.failure())?;
         to_array(py, gap, &grid.0.cells())
     }
 }

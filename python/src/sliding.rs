@@ -10,8 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::{self as vc, sliding as sl};
 
+use crate::arrays::{number, vectors};
 use crate::contact::ViscoelasticContact;
-use crate::errors::{OrRaise, choice, raised_number};
+use crate::errors::{Kept, OrRaise, choice};
 use crate::grid::Grid;
 use crate::interrupt::{Listener, interruptible};
 use crate::loads::{Load, loads};
@@ -22,16 +23,16 @@ use crate::scene::builder;
 use crate::temperature::TimeTemperature;
 
 /// The complex number that a function in Python gives at a frequency.
-pub fn complex(function: &Py<PyAny>, omega: f64) -> Complex64 {
+pub fn complex(function: &Py<PyAny>, omega: f64, kept: &Kept) -> Complex64 {
     let value = Python::attach(|py| function.call1(py, (omega,))?.extract(py));
-    raised_number(value, Complex64::new(f64::NAN, f64::NAN))
+    kept.number(value, Complex64::new(f64::NAN, f64::NAN))
 }
 
 /// A velocity along x1, or along x1 and x2.
 pub fn velocity(given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
-    let along = given.extract::<f64>().map(|speed| [speed, 0.0]);
+    let along = number(given).map(|speed| [speed, 0.0]);
     let needed = "velocity: a speed along x1, or a pair along x1 and x2 [m/s], is needed";
-    along.or_else(|_| given.extract()).map_err(|_| PyTypeError::new_err(needed))
+    along.map_or_else(|| given.extract(), Ok).map_err(|_: PyErr| PyTypeError::new_err(needed))
 }
 
 /// The state of a steady motion, in numbers.
@@ -98,6 +99,8 @@ getters! {SlidingReport, of:
 pub struct SteadySliding {
     sliding: sl::SteadySliding,
     cancel: Arc<AtomicBool>,
+    /// What the modulus raised.
+    kept: Kept,
     /// A contact at rest of the same parts.
     recipe: Recipe,
 }
@@ -126,23 +129,28 @@ impl SteadySliding {
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SteadySliding> {
         let builder = builder(grid.get(), &geometry, material.get(), options)?;
+        let kept = Kept::default();
+        let raised = kept.clone();
         let sliding = match (base, modulus) {
             (None, None) => py.detach(|| builder.build_sliding()),
             (Some(base), None) => py.detach(|| builder.build_sliding_on(base.material.clone())),
-            (None, Some(modulus)) => py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega))),
+            (None, Some(modulus)) => {
+                py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised)))
+            }
             _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
         };
         let cancel = Arc::<AtomicBool>::default();
-        let sliding = sliding.or_raise()?.cancelled_by(Arc::clone(&cancel));
-        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options);
-        Ok(SteadySliding { sliding, cancel, recipe })
+        let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
+        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options)?;
+        Ok(SteadySliding { sliding, cancel, kept, recipe })
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
     /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
     fn at(&mut self, py: Python<'_>, velocity: &Bound<'_, PyAny>, load: &Load) -> PyResult<SlidingReport> {
         let (velocity, load) = (self::velocity(velocity)?, load.load);
-        interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load)).map(SlidingReport)
+        let found = interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load));
+        self.kept.raise_or(found).map(SlidingReport)
     }
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
@@ -161,10 +169,7 @@ impl SteadySliding {
         temperatures: Option<Vec<f64>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<SlidingTable> {
-        let velocities: Vec<[f64; 2]> = match crate::arrays::column("velocities", velocities) {
-            Ok(along) => along.into_iter().map(|v| [v, 0.0]).collect(),
-            Err(_) => crate::arrays::table("velocities", velocities)?,
-        };
+        let velocities = vectors("velocities", velocities)?;
         let mut sweep = sl::SlidingSweep::new(velocities, self::loads(loads)?);
         match (law, temperatures) {
             (None, None) => {}
@@ -172,10 +177,10 @@ impl SteadySliding {
             _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
         }
         let mut listener = Listener::new(progress);
-        let SteadySliding { sliding, cancel, .. } = self;
+        let SteadySliding { sliding, cancel, kept, .. } = self;
         let table =
             interruptible(py, true, cancel, || sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,))));
-        listener.result(table).map(SlidingTable)
+        listener.result(kept.raise_or(table)).map(SlidingTable)
     }
 
     /// The state found last as a contact to look at, by all that a `ViscoelasticContact` shows: patches, profiles, distributions, stress.

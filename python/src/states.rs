@@ -13,7 +13,7 @@ use viscocontact::run::Stepping;
 use viscocontact::states as st;
 use viscocontact::{self as vc};
 
-use crate::arrays::{Array, column, mapped, table, to_array};
+use crate::arrays::{Array, column, mapped, never, table, to_array};
 use crate::errors::OrRaise;
 use crate::grid::Grid;
 use crate::held::Led;
@@ -38,7 +38,7 @@ use crate::temperature::TemperatureHistory;
 #[pyclass(frozen, module = "viscocontact")]
 pub struct ElasticStates {
     pub states: Arc<st::ElasticStates>,
-    /// None of a sweep, whose pickle holds the states.
+    /// None of a sweep and of a file, whose pickles hold the states.
     recipe: Option<Recipe>,
 }
 
@@ -69,13 +69,16 @@ makers! {ElasticStates, py:
         let table: Vec<_> = table::<4>("rows", &rows)?.into_iter().map(|[a, b, c, d]| (a, b, c, d)).collect();
         st::ElasticStates::from_table(&table)
     };
-
-    /// Reads states that `save` has written. They hold no surface, so that `StatesContact.fields` is not possible.
-    load(path: PathBuf) = py.detach(|| read_states(&path));
 }
 
 #[pymethods]
 impl ElasticStates {
+    /// Reads states that `save` has written. They hold no surface, so that `StatesContact.fields` is not possible.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<ElasticStates> {
+        Ok(ElasticStates { states: py.detach(|| read_states(&path)).or_raise()?, recipe: None })
+    }
+
     /// The states of a shape on a grid, up to a `level` [m²], an `approach` [m], or what a `material` needs along a `load` to the time
     /// `until`.
     ///
@@ -168,22 +171,22 @@ impl ElasticStates {
 
     /// Approach of the elastic contact [m] at levels [m²].
     fn approach<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.approach(level))
+        mapped("level", level, |level| self.states.approach(level), never)
     }
 
     /// Level [m²] of the elastic contact at approaches [m]; NaN beyond the last state.
     fn level_at<'py>(&self, approach: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("approach", approach, |approach| self.states.level_at(approach))
+        mapped("approach", approach, |approach| self.states.level_at(approach), never)
     }
 
     /// Contact area [m²] at levels [m²].
     fn area<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.area(level))
+        mapped("level", level, |level| self.states.area(level), never)
     }
 
     /// Stiffness over the contact modulus [m] at levels [m²].
     fn stiffness<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.stiffness(level))
+        mapped("level", level, |level| self.states.stiffness(level), never)
     }
 
     /// The states as arrays: "level" [m²], "approach" [m], "stiffness" [m], "area" [m²], "cells", "patches".
@@ -203,7 +206,7 @@ impl ElasticStates {
 
     /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
     fn conductance<'py>(&self, level: &Bound<'py, PyAny>, resistivities: [f64; 2]) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.conductance(level, resistivities))
+        mapped("level", level, |level| self.states.conductance(level, resistivities), never)
     }
 
     /// The curves of many materials on this surface in one call.

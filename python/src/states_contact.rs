@@ -91,7 +91,7 @@ impl StatesContact {
             "merge_error": merge_error,
             "exact_states": exact_states,
         };
-        let recipe = Recipe::new(py, "", (states, material))?.with_keywords(Some(&keywords));
+        let recipe = Recipe::new(py, "", (states, material))?.with_keywords(Some(&keywords))?;
         Ok(StatesContact::of(contact, recipe))
     }
 

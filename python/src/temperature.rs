@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use viscocontact::rheology as rh;
 
-use crate::arrays::{mapped, pairs};
+use crate::arrays::{mapped, never, number, pairs};
 use crate::errors::{OrRaise, raised_number};
 use crate::recipe::Recipe;
 use crate::rheology::Rheology;
@@ -104,7 +104,7 @@ impl TemperatureHistory {
         corners: Vec<f64>,
     ) -> PyResult<TemperatureHistory> {
         let given = law.get().law.clone();
-        let history = if let Ok(constant) = temperature.extract::<f64>() {
+        let history = if let Some(constant) = number(&temperature) {
             rh::TemperatureHistory::constant(given, constant)
         } else if temperature.is_callable() {
             let function = temperature.clone().unbind();
@@ -127,7 +127,7 @@ impl TemperatureHistory {
 
     /// The temperature [K] at times [s].
     fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.history.at(t))
+        mapped("t", t, |t| self.history.at(t), never)
     }
 
     /// The reduced time between two times [s].

@@ -1,6 +1,7 @@
 """Contacts, runs, fields, errors, pickles."""
 
 import copy
+import itertools
 import math
 import os
 import pickle
@@ -65,6 +66,53 @@ def test_arrays_of_any_type_and_order(dtype, order):
     assert (vc.HeightMap(values, 1.0).heights == wanted).all()
 
 
+def test_a_mask_hides_its_values():
+    hidden = np.ma.masked_equal(np.ones((16, 16)), 2.0)
+    hidden[2, 3] = np.ma.masked
+    assert vc.HeightMap(hidden, 1e-3).missing == 1 == vc.HeightMap(hidden.astype("float32"), 1e-3).missing
+    assert vc.HeightMap(np.ma.masked_equal([[1, 2], [3, 4]], 4), 1e-3).missing == 1
+    with pytest.raises(ValueError, match="gap: value 35 .* is NaN"):
+        vc.Shape.gap_on(vc.Grid(16, 1.0), hidden)
+    with pytest.raises(ValueError, match="forces: value 1 .* is NaN"):
+        vc.LoadHistory.forces([0.0, 1.0], np.ma.masked_equal([1.0, 2.0], 2.0))
+
+
+class Early(np.ndarray):
+    """An array of NumPy before 2.4: one of a single value is a number, too."""
+
+    def __float__(self):
+        return float(self.item())
+
+
+def test_functions_of_numbers_and_arrays():
+    body = vc.Rheology.prony(1e6, [(1e6, 1.0)])
+    functions = [
+        body.creep_compliance,
+        body.relaxation_modulus,
+        RUBBER.contact_compliance,
+        vc.Attraction.exponential(0.05, 1.0).traction,
+        vc.TemperatureHistory(vc.TimeTemperature.arrhenius(1e5, 300.0), 300.0).at,
+        vc.ElasticStates.sphere(1e-2).approach,
+        vc.GrowingSphere(1e-2, RUBBER, vc.Load.force(1.0)).approach,
+    ]
+    for function in functions:
+        for number in (0.5, np.float64(0.5), np.array(0.5)):
+            assert isinstance(function(number), float)
+        for shape in ((1,), (1, 1), (2, 3), (0,)):
+            assert function(np.full(shape, 0.5).view(Early)).shape == shape
+        assert function([0.5]).tolist() == [function(0.5)]
+
+
+def test_there_is_nothing_beside_the_grid_of_a_gap():
+    x1, x2 = GRID.coordinates()
+    shape = vc.Shape.gap_on(GRID, (x1**2 + x2**2) / (2 * 10e-3))
+    assert (shape.gap(GRID) == shape.shifted((0, 0)).gap(GRID)).all()
+    moved = shape.shifted((1e-3, 0)).gap(GRID)
+    assert np.isinf(moved[:8]).all() and (moved[8:] == shape.gap(GRID)[:-8]).all()
+    wide = shape.gap(vc.Grid(64, 8e-3))
+    assert (wide[16:48, 16:48] == shape.gap(GRID)).all() and np.isinf(wide).sum() == 64**2 - 32**2
+
+
 def test_wrong_arrays_are_refused_by_name():
     grid, kernel = vc.Grid(16, 1.0), vc.InfluenceKernel.half_space(vc.Grid(16, 1.0))
     with pytest.raises(ValueError, match=r"gap: the shape \[16, 16\] of the grid is needed, the array has \[16, 15\]"):
@@ -89,6 +137,11 @@ def test_wrong_arrays_are_refused_by_name():
         vc.LoadHistory.forces([0.0, 1.0], [0.0, 1.0, 2.0])
     out = np.zeros((16, 16))
     assert kernel.convolve(np.ones((16, 16)), out=out) is out and out.min() > 0
+    with pytest.raises(ValueError, match="out: a contiguous array in C order"):
+        kernel.convolve(np.ones((16, 16)), out=np.zeros((16, 16), order="F"))
+    sliding = vc.SteadySliding(vc.Grid(16, 4e-3), BALL, RUBBER)
+    with pytest.raises(ValueError, match="velocities: value 1 .* is NaN"):
+        sliding.sweep([0.1, math.nan], vc.Load.force(0.1))
     out.flags.writeable = False
     with pytest.raises(ValueError, match="out: .*read-only|out: .*writ"):
         kernel.convolve(np.ones((16, 16)), out=out)
@@ -153,7 +206,34 @@ def test_an_exception_of_a_user_comes_out_as_itself():
 
     periodic = vc.InfluenceKernel.periodic(GRID)
     wave = vc.Shape.wavy((1e-6, 1e-6), (4e-3, 4e-3))
+    def late(t):
+        return vc.Load.force(1.0) if t < 0.5 else raises()
+
+    def watched():
+        run = ball().follow(vc.Load.force(1.0), 1.0)
+        run.stop_when(raises, up=1.0)
+        list(run)
+
+    near = vc.Attraction.function(lambda h: 1e3 if h < 1 else raises(), lambda h: 1e-6 if h < 1 else raises())
+    own = vc.Rheology.function(lambda t: 1e-6 if t < 0.5 else raises())
+    sphere = vc.GrowingSphere(1e-2, RUBBER, late)
+    modulus = vc.SteadySliding(GRID, wave, RUBBER, kernel=periodic, modulus=lambda w: 4e6 if w == 0 else raises())
     calls = [
+        lambda: near.traction(np.array([0.5, 2.0])),
+        lambda: near.traction(2.0),
+        lambda: near.energy(2.0),
+        lambda: own.creep_compliance([0.0, 1.0]),
+        lambda: vc.Material(own).contact_compliance([0.0, 1.0]),
+        lambda: vc.Material(own, nu=0.3).contact_compliance(1.0),
+        lambda: vc.TemperatureHistory(law, raises).at(1.0),
+        lambda: vc.TemperatureHistory(law, raises).at([1.0]),
+        lambda: vc.GrowingSphere(1e-2, RUBBER, raises),
+        lambda: sphere.contact_radius(1.0),
+        lambda: sphere.approach([0.0, 1.0]),
+        lambda: sphere.pressure(0.0, 1.0),
+        lambda: modulus.at((1.0, 0.0), vc.Load.force(1e-3)),
+        lambda: modulus.sweep([1.0, 2.0], [vc.Load.force(1e-3)]),
+        watched,
         lambda: list(ball().follow(raises, 1.0)),
         lambda: vc.ViscoelasticContact(GRID, vc.Shape.function(raises), RUBBER),
         lambda: vc.ViscoelasticContact(GRID, BALL, vc.Material(vc.Rheology.function(raises))).step(0.0, vc.Load.force(1.0)),
@@ -171,14 +251,47 @@ def test_an_exception_of_a_user_comes_out_as_itself():
     for call in calls:
         with pytest.raises(Mine, match="of the user"):
             call()
+        with pytest.raises(ValueError, match="sphere radius"):  # nothing is left for another call
+            vc.Shape.sphere(-1.0)
     with pytest.raises(TypeError, match="the load history returned .*float.* at 0 s, not a Load"):
         list(ball().follow(lambda t: 1.0, 1.0))
     assert list(ball().follow(vc.Load.force(1.0), 0.0))  # no exception of an earlier call is left
 
 
+def test_an_exception_comes_out_in_its_own_thread():
+    calls, waiting, done, raised = [], threading.Event(), threading.Event(), []
+
+    def quantity(contact):
+        calls.append(contact.time)
+        if len(calls) == 1:
+            raise Mine("of the user")
+        waiting.set()
+        done.wait(20.0)
+        return 0.0
+
+    def other():
+        run = ball().follow(vc.Load.force(1.0), 1.0)
+        run.stop_when(quantity, up=1.0)
+        try:
+            list(run)
+        except Mine:
+            raised.append("in its own")
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    assert waiting.wait(20.0)
+    reports = list(ball().follow(vc.Load.force(1.0), 1.0))
+    with pytest.raises(ValueError, match="sphere radius"):
+        vc.Shape.sphere(-1.0)
+    done.set()
+    thread.join()
+    assert reports and raised == ["in its own"]
+
+
 def test_a_run_shows_its_contact_and_ends_with_a_step():
     contact, seen, areas = ball(), [], []
-    run = contact.follow([(0, vc.Load.force(0)), (1, vc.Load.force(1))], 2.0, stop_at=[0.3], progress=seen.append)
+    stops = [0.3] + vc.Times.every(5.0)
+    run = contact.follow([(0, vc.Load.force(0)), (1, vc.Load.force(1))], 2.0, stop_at=stops, progress=seen.append)
     for report in run:
         areas.append((report.time, contact.contact_area))
         assert contact.time == report.time
@@ -239,6 +352,53 @@ def test_pickles(thing):
         assert (again.gap(GRID) == thing.gap(GRID)).all()
     if isinstance(thing, vc.Material):
         assert again.contact_compliance(5.0) == thing.contact_compliance(5.0)
+
+
+# what an array or a list makes, and a number of it
+MADE_OF = {
+    "terms": (lambda a: vc.Rheology.prony(1e6, a), [[1e6, 0.1]], lambda of: of.creep_compliance(1.0)),
+    "a table of shifts": (lambda a: vc.TimeTemperature.table(a, 300.0), [[290.0, 10.0], [300.0, 1.0]], lambda of: of.shift_factor(295.0)),
+    "forces": (lambda a: vc.LoadHistory.forces([0.0, 1.0], a), [0.0, 1.0], lambda of: repr(of.at(0.5))),
+    "creep": (
+        lambda a: vc.Measurements.creep([0.1, 1, 10, 100], a).fit(),
+        [1e-6, 1.2e-6, 1.5e-6, 1.6e-6],
+        lambda of: of.creep_compliance(1.0),
+    ),
+    "states": (lambda a: vc.ElasticStates.from_table(a), [[1e-8, 1e-6, 1e-3, 1e-7], [2e-8, 1.5e-6, 1.2e-3, 2e-7]], lambda of: of.approach(1.5e-8)),
+    "a temperature": (
+        lambda a: vc.TemperatureHistory(vc.TimeTemperature.arrhenius(1e5, 300.0), a),
+        [[0.0, 300.0], [1.0, 310.0]],
+        lambda of: of.at(0.5),
+    ),
+    "a gap": (lambda a: vc.Shape.gap_on(vc.Grid(2, 1.0), a), [[0.0, 1.0], [2.0, 3.0]], lambda of: of.gap(vc.Grid(2, 1.0)).tolist()),
+    "heights": (lambda a: vc.HeightMap(a, 1.0), [[0.0, 1.0], [2.0, 3.0]], lambda of: of.heights.tolist()),
+    "a geometry": (
+        lambda a: vc.ViscoelasticContact(vc.Grid(8, 1e-3), np.asarray(a), RUBBER, edge="allow"),
+        np.add.outer(np.arange(-3.5, 4) ** 2, np.arange(-3.5, 4) ** 2) * 1e-6,
+        lambda of: of.initial_gap.tolist() if hasattr(of, "initial_gap") else of.step(0.0, vc.Load.force(1e-3)).approach,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", MADE_OF, ids=list(MADE_OF))
+@pytest.mark.parametrize("kind", ["array", "list"])
+def test_a_pickle_holds_what_was_given(case, kind):
+    make, given, number = MADE_OF[case]
+    given = np.array(given) if kind == "array" else np.array(given).tolist()
+    thing, again = make(given), make(given)
+    wanted, text = number(again), repr(thing)
+    if kind == "array":
+        given *= 3.0
+    else:
+        for k, entry in enumerate(given):
+            if isinstance(entry, list):
+                entry[-1] *= 3.0
+            else:
+                given[k] = 3.0 * entry
+        given.append(given[0])
+    pickled = pickle.loads(pickle.dumps(thing))
+    assert repr(pickled) == text == repr(thing)
+    assert number(pickled) == wanted
 
 
 def test_a_pickled_contact_goes_on_bit_by_bit(tmp_path):
@@ -312,6 +472,28 @@ def test_ctrl_c():
             vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=1e-4)
 
     assert interrupted(sweep) < 5.0 and interrupted(plan) < 5.0
+    # a step that waits for its end is reported: no bytecode runs between the steps
+    grid = vc.Grid(256, 1e-3)
+    rough = vc.HeightMap.rough(grid, 0.5e-3, 4e-5, rms_slope=0.3, seed=1)
+    moving = vc.ViscoelasticContact(grid, rough, RUBBER, kernel=vc.InfluenceKernel.periodic(grid), frame="indenter", tolerance=1e-12)
+    moving.step(0.0, vc.Load.force(0.02))
+    reports, each = [], [itertools.repeat(value) for value in ((1, 0), 0.5, vc.Load.force(0.02))]
+    interrupted(lambda: reports.extend(map(moving.step_over, *each)))
+    assert reports and moving.time == 0.5 * len(reports)
+
+
+def test_an_array_that_another_thread_writes_is_refused():
+    grid = vc.Grid(512, 1.0)
+    kernel, out, seen = vc.InfluenceKernel.half_space(grid), np.zeros((512, 512)), []
+    thread = threading.Thread(target=lambda: [kernel.convolve(np.ones((512, 512)), out=out) for _ in range(5)])
+    thread.start()
+    while thread.is_alive():
+        try:
+            vc.Shape.gap_on(grid, out)
+        except ValueError as error:
+            seen.append(str(error))
+    thread.join()
+    assert seen and all(text.startswith("gap: ") for text in seen)
 
 
 def test_the_gil_is_free():

@@ -1,6 +1,7 @@
 """States, sliding, attraction, plans, identification, writers, maps."""
 
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -31,6 +32,8 @@ def test_states_of_a_sweep(tmp_path):
     assert contact.fields()["pressure"].shape == contact.pressure.shape == (48, 48)
     states.save(tmp_path / "states.npz")
     again = vc.ElasticStates.load(tmp_path / "states.npz")
+    (tmp_path / "states.npz").unlink()
+    assert (pickle.loads(pickle.dumps(again)).table()["level"] == again.table()["level"]).all()
     assert (again.table()["level"] == states.table()["level"]).all() and len(again) == len(states)
 
 
@@ -114,6 +117,15 @@ def test_identification():
         with pytest.raises(ValueError, match="E1.*E0, Einf, tau"):
             vc.Identification("zener", **{given: {"E1": 1.0}})
     assert [type(one) for one in zener.fit_each([curve, curve])] == [vc.Fit, vc.Fit]
+    assert (fit["tau"].scale, fit["contact point"].scale, fit["tau"].limit) == ("logarithm", "linear", None)
+    # one of a list may be left as it is; a parameter is known or begins somewhere
+    first, second = vc.Identification("zener", offset=[True, None]).fit_each([curve, curve])
+    assert (len(first.estimates), len(second.estimates)) == (4, 3)
+    with pytest.raises(TypeError, match="give E0 in fix or in start"):
+        vc.Identification("zener", fix={"E0": 1.0}, start={"E0": 2.0})
+    for stiffness in (-0.1, 0.0):
+        with pytest.raises(ValueError, match="stiffness = .* must be finite and > 0"):
+            vc.Identification("zener", stiffness=stiffness).respond(experiment, truth)
 
 
 def test_writers(tmp_path):
@@ -168,7 +180,17 @@ def test_measured_materials(tmp_path):
     assert [row[1] for row in curve.shift_factors] == pytest.approx([law.shift_factor(T) for T, _ in isotherms], rel=0.05)
     rows = "\n".join(f"{t},{truth.creep_compliance(t)}" for t in (0.1, 0.3, 1.0, 3.0, 10.0, 100.0))
     (tmp_path / "creep.csv").write_text("t [s],J [1/Pa]\n" + rows)
-    fitted = vc.Measurements.from_csv("creep", tmp_path / "creep.csv").fit()
+    table = vc.Measurements.from_csv("creep", tmp_path / "creep.csv")
+    fitted = table.fit()
+    (tmp_path / "creep.csv").write_text("t [s],J [1/Pa]\n1,1\n")
+    for body in (fitted, table.fit()):
+        assert pickle.loads(pickle.dumps(body)).creep_compliance(1.0) == fitted.creep_compliance(1.0)
+    known = vc.MasterCurve(300.0, isotherms, law=law).fit()
+    assert known.creep_compliance(2.0) == pytest.approx(truth.creep_compliance(2.0), rel=1e-3)
+    with pytest.raises(ValueError, match="reference = 333.15 K is not that of the law, 300 K: give law.reference"):
+        vc.MasterCurve(333.15, isotherms, law=law)
+    with pytest.raises(TypeError, match="give law or vertical_shifts"):
+        vc.MasterCurve(300.0, isotherms, law=law, vertical_shifts=True)
     assert fitted.creep_compliance(1.0) == pytest.approx(truth.creep_compliance(1.0), rel=1e-3)
     assert fitted.fit_report
 

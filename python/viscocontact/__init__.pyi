@@ -20,7 +20,8 @@ _Tilts: TypeAlias = Sequence[float | None]
 _Quantity: TypeAlias = Literal["von_mises", "tresca", "mean", "principal_1", "principal_3"]
 _Field: TypeAlias = Literal["pressure", "gap", "displacement", "traction"]
 _StrPath: TypeAlias = str | os.PathLike[str]
-_GeometryLike: TypeAlias = Shape | ArrayLike | Sequence[Shape]
+# a list of lists is no gap: an array is
+_GeometryLike: TypeAlias = Shape | NDArray[Any] | Sequence[Shape]
 _LoadLike: TypeAlias = Load | LoadHistory | Sequence[tuple[float, Load]] | Callable[[float], Load]
 _TimesLike: TypeAlias = Times | ArrayLike
 _ModelLike: TypeAlias = str | tuple[Literal["prony"], int] | tuple[Literal["power_law"], float]
@@ -250,6 +251,10 @@ class Estimate:
     def robust_deviation(self) -> float: ...
     @property
     def interval(self) -> tuple[float, float]: ...
+    @property
+    def scale(self) -> Literal["logarithm", "logit", "linear"]: ...
+    @property
+    def limit(self) -> str | None: ...
 
 @final
 class Experiment:

@@ -1,6 +1,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::UserError;
 use crate::error::{Error, MaterialError, Result, poisson_ratio, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Tension, is_known, may_follow};
 
@@ -298,6 +299,11 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
+    /// The error of a rheology of the user, as [`Rheology::failure`]: NaN stands for the value that it could not give.
+    pub fn failure(&self) -> Option<UserError> {
+        self.bodies.iter().find_map(|body| body.rheology.failure())
+    }
+
     /// Accepts rheologies whose times are not NaN.
     pub(crate) fn validate(&self) -> Result<()> {
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
@@ -323,8 +329,7 @@ impl Material {
         let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
         let (value, previous) =
             self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
-        let failure = self.bodies.iter().find_map(|body| body.rheology.failure());
-        Err(failure.map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
+        Err(self.failure().map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
     }
 
     /// [`Material::contact_spectrum`], which `what` needs.

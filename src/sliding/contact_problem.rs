@@ -26,8 +26,10 @@ const FIRST_PART: f64 = 0.3;
 const SLACK: f64 = 10.0;
 /// A negative pressure of this part of the greatest is rounding.
 const ROUNDING: f64 = 1e-9;
-/// The least range of the gap in contact, over the range of the whole gap.
+/// The least range of the gap in contact, over the range of the whole gap, or of the displacement.
 const FLAT: f64 = 1e-4;
+/// No residual is less than this part of the greatest displacement that the pressure could have.
+const LEAST: f64 = 4.0 * f64::EPSILON;
 
 /// Gap and load.
 #[derive(Clone, Copy)]
@@ -112,6 +114,12 @@ impl<'a> Balance<'a> {
     }
 }
 
+/// The least and the greatest finite value.
+fn range(values: &[f64]) -> [f64; 2] {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)]
+}
+
 impl Problem<'_> {
     /// Whether another thread ends the search.
     pub(super) fn is_cancelled(&self) -> bool {
@@ -129,6 +137,7 @@ impl Problem<'_> {
         if !pressed.contains(&true) {
             pressed = self.lowest();
         }
+        let compliance = bodies.greatest_compliance();
         let mut found = Found { pressure: guess.to_vec(), ..Found::default() };
         let (hasher, mut tried, mut stands) = (BuildHasherDefault::<DefaultHasher>::default(), HashSet::new(), false);
         while found.sets < MOST_SETS && !self.is_cancelled() {
@@ -141,17 +150,16 @@ impl Problem<'_> {
                 pressed = gap.iter().map(|&h| h <= low).collect();
             }
             let balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
-            let allowed = tolerance * self.unit(&balance);
             let mut p = balance.of(&found.pressure);
             balance.bring(&mut p, balance.modes.load().map(|unit| unit * free.total));
+            found.displacement = bodies.displacement(&balance.field(&p, cells));
+            let least = LEAST * compliance * p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+            let allowed = (tolerance * self.unit(&balance, &found.displacement)).max(least);
             let part = if stands { 0.0 } else { ROUGHLY };
             let residual = self.solve_on(&balance, allowed, part, bodies, &mut p, &mut found);
             let left = balance.rms(&residual);
-            found.residual = tolerance * left / allowed;
-            let height = |k: usize| {
-                let motion = found.motion.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
-                found.displacement[k] + gap[k] - motion
-            };
+            found.residual = if left > 0.0 { tolerance * left / allowed } else { 0.0 };
+            let height = |k: usize| found.displacement[k] + gap[k] - found.motion.at(grid.center(k / n2, k % n2));
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
             let deep = -(SLACK * allowed).max(CERTAIN * left);
@@ -191,8 +199,8 @@ impl Problem<'_> {
         found
     }
 
-    /// Solves for the pressure on a set down to the root mean square of the residual that is `allowed`, or to a `part` of the first one. Returns the residual left,
-    /// and writes displacement and motion.
+    /// Solves for the pressure on a set, of which the displacement is known, down to the root mean square of the residual that is `allowed`, or to a `part` of the
+    /// first one. Returns the residual left, and writes displacement and motion.
     fn solve_on(
         &self,
         balance: &Balance<'_>,
@@ -206,7 +214,6 @@ impl Problem<'_> {
         let mut cycle = 0;
         loop {
             cycle += 1;
-            found.displacement = bodies.displacement(&balance.field(pressure, cells));
             let mut residual = balance.of(self.gap);
             residual.iter_mut().zip(&balance.set).for_each(|(gap, &k)| *gap = -(found.displacement[k] + *gap));
             found.motion = balance.modes.physical(balance.bring(&mut residual, [0.0; 3]));
@@ -224,17 +231,18 @@ impl Problem<'_> {
                 balance.bring(&mut image, [0.0; 3]);
                 (!self.is_cancelled()).then_some([better, image])
             });
+            found.displacement = bodies.displacement(&balance.field(pressure, cells));
         }
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps
-    /// where the contact is flat.
-    fn unit(&self, balance: &Balance<'_>) -> f64 {
+    /// where the contact is flat, and of the displacement, where a face has no other gap.
+    fn unit(&self, balance: &Balance<'_>, displacement: &[f64]) -> f64 {
         let mut heights = balance.of(self.gap);
         balance.bring(&mut heights, [0.0; 3]);
-        let finite = || self.gap.iter().copied().filter(|h| h.is_finite());
-        let [low, high] = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
-        balance.rms(&heights).max(FLAT * (high - low)).max(ROUNDING * high.abs())
+        let [low, high] = range(self.gap);
+        let [least, most] = range(displacement);
+        balance.rms(&heights).max(FLAT * (high - low)).max(ROUNDING * high.abs()).max(FLAT * (most - least))
     }
 
     /// The cells of a first set: the lowest ones, those below zero under a given approach.

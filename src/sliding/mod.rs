@@ -258,8 +258,8 @@ impl SteadySliding {
         let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
         let (gap, n2) = (self.contact.initial_gap(), grid.cells()[1]);
         let datum = gap.datum;
-        let lower = |k: usize| lowered.at([grid.coordinate(0, k / n2), grid.coordinate(1, k % n2)]);
-        let heights: Vec<f64> = gap.above.iter().enumerate().map(|(k, h)| h - lower(k)).collect();
+        let lower = |(k, height): (usize, &f64)| height - lowered.at(grid.center(k / n2, k % n2));
+        let heights: Vec<f64> = gap.above.iter().enumerate().map(lower).collect();
         let mean = heights.iter().sum::<f64>() / heights.len() as f64;
         if !free.translation && mean <= 0.0 && self.contact.kernel().mean_is_held() {
             let approach = lowered.approach + datum;

@@ -170,6 +170,11 @@ impl MovingBodies {
         self.inverse.apply(displacement)
     }
 
+    /// The greatest displacement under a pressure of waves of 1 Pa \[m/Pa\].
+    pub(super) fn greatest_compliance(&self) -> f64 {
+        self.response.factors.iter().map(|factor| factor.norm()).fold(0.0, f64::max)
+    }
+
     /// Whether the bodies have nothing but waves of the grid.
     pub(super) fn are_periodic(&self) -> bool {
         self.response.plane.periods() == self.response.cells

@@ -3,7 +3,7 @@
 use crate::common::builder_of;
 use std::f64::consts::PI;
 
-use viscocontact::analytic::SlidingLimits;
+use viscocontact::analytic::{RigidPunch, SlidingLimits};
 use viscocontact::prelude::*;
 
 /// A rolling cylinder against its closed form, at memories from a hundredth of the contact to 10⁵ times its length; the error falls with the mesh.
@@ -90,5 +90,67 @@ fn balls_and_cylinders_reach_the_slow_and_the_fast_limit_in_order() {
         let order = (greater / less / log).ln() / f64::ln(far / near).abs();
         println!("line {line}, fast {fast}: remainders {greater:e} {less:e}, order {order}");
         assert!(orders.contains(&order) && less < most, "line {line}, fast {fast}: {greater:e} {less:e} {order}");
+    }
+}
+
+/// A flat face has no gap that the contact closes: under a force it is in the state of the approach that is found, whatever the bodies, at rest and in
+/// motion, and at rest on a half-space in the closed form, eccentric or not.
+#[test]
+fn a_flat_face_under_a_force_is_that_under_its_approach() {
+    let (radius, force, modulus) = (1e-3, 1.0, 4.0e6);
+    let body = || Material::incompressible(Zener::relaxing(2.0e6, 1.0e6, 0.01).unwrap());
+    let square = Grid::square(40, 4e-3).unwrap();
+    let (line, strip) =
+        (Grid::new([96, 1], [4e-3, 1.0]).unwrap(), FlatPunch::rectangular([2.0 * radius, 2.0]).unwrap());
+    let round = FlatPunch::circular(radius).unwrap();
+    let layer = Layer::bonded_to_rigid(1e-3, 0.5).unwrap();
+    let bodies: [(&Grid, InfluenceKernel, &dyn Geometry); 5] = [
+        (&square, InfluenceKernel::half_space(&square).unwrap(), &round),
+        (&square, InfluenceKernel::periodic(&square).unwrap(), &round),
+        (&square, InfluenceKernel::periodic_along(&square, Axis::X1, 1.0).unwrap(), &round),
+        (&square, InfluenceKernel::layer(&square, layer).unwrap(), &round),
+        (&line, InfluenceKernel::line(&line, 100.0).unwrap(), &strip),
+    ];
+    for (number, (grid, kernel, punch)) in bodies.into_iter().enumerate() {
+        for tolerance in [1e-6, 1e-10] {
+            let mut sliding = builder_of(punch, grid.clone(), body())
+                .kernel(kernel.clone())
+                .settings(Settings::default().with_tolerance(tolerance))
+                .build_sliding()
+                .unwrap();
+            for speed in [0.0, 1e-3, 0.1, 1e3] {
+                let mut at = |load: Load| {
+                    sliding.at([speed, 0.0], load).unwrap_or_else(|e| panic!("{number} {speed} {load}: {e}"))
+                };
+                let found = at(Load::force(force));
+                let same = at(Load::approach(found.approach));
+                println!("{number}, {speed} m/s: {found} {}, {} {}", found.approach, found.sets, found.transforms);
+                assert!((same.force / force - 1.0).abs() < 1e-6, "{number} {speed}: {same}");
+                assert!((same.friction() - found.friction()).abs() < 1e-6, "{number} {speed}: {found} {same}");
+                assert!((0.0..=1.5 * tolerance).contains(&found.residual), "{found:?}");
+                assert_eq!(found.contact_cells, same.contact_cells);
+            }
+        }
+    }
+    // a face all over a period closes without displacement
+    let flat = FnGeometry::new(|_, _| 0.0);
+    let mut sliding = builder_of(&flat, square.clone(), body())
+        .kernel(InfluenceKernel::periodic(&square).unwrap())
+        .build_sliding()
+        .unwrap();
+    for speed in [0.0, 0.1] {
+        let found = sliding.at([speed, 0.0], Load::force(force)).unwrap();
+        assert!(found.contact_cells == 1600 && found.friction().abs() < 1e-9, "{found:?}");
+    }
+    // relaxed, with the modulus 4 G
+    let grid = Grid::square(128, 2.5e-3).unwrap();
+    let mut sliding = builder_of(&round, grid, body()).build_sliding().unwrap();
+    for eccentricity in [0.0, 0.2e-3] {
+        let exact = RigidPunch::new(radius, modulus, force, eccentricity).unwrap();
+        let report = sliding.at([0.0; 2], Load::eccentric_force(force, [eccentricity, 0.0])).unwrap();
+        let tilt = sliding.contact().tilt()[0];
+        println!("{eccentricity}: {} {}, {tilt} {}", report.approach, exact.approach, exact.tilt);
+        assert!((report.approach / exact.approach - 1.0).abs() < 0.02, "{report:?}");
+        assert!((tilt.abs() - exact.tilt.abs()).abs() <= 0.05 * exact.tilt.abs() + 1e-12, "{tilt} {exact:?}");
     }
 }

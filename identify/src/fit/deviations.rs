@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use super::LITTLE;
 use crate::bounds::inverse_gram;
 use crate::error::Result;
 use crate::model::Scale;
@@ -46,11 +47,11 @@ pub(super) fn inverse(free: &[Parameter], jacobian: &Mat<f64>, sigma: f64) -> Re
     Ok((inverse, limits))
 }
 
-/// What the limit of a parameter is.
-pub(super) fn limit(name: &str, value: f64) -> &'static str {
+/// What the limit of a parameter is, which moves by so much with its coordinate.
+pub(super) fn limit(name: &str, value: f64, scale: f64) -> &'static str {
     match name {
-        "E0" => "E0 = Einf: no relaxation",
-        "Einf" => "Einf = 0: no equilibrium",
+        "Einf" if scale >= LITTLE => "Einf = 0: no equilibrium",
+        "E0" | "Einf" => "E0 = Einf: no relaxation",
         "alpha" | "beta" if value < 0.5 => "an exponent of 0: no relaxation",
         "alpha" | "beta" => "an exponent of 1: one relaxation time",
         "stiffness" => "a rigid spring",

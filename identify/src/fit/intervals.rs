@@ -25,13 +25,12 @@ impl Fit {
         within("confidence", confidence, confidence > 0.0 && confidence < 1.0, "> 0 and < 1")?;
         let names = || self.estimates.iter().map(|e| e.name.clone()).collect::<Vec<_>>().join(", ");
         let unknown = || Error::UnknownParameter { name: name.to_string(), names: names() };
-        let deviation = self.estimate(name).ok_or_else(unknown)?.deviation;
         let mut problem = self.problem.clone();
         let threshold = (self.sigma * student(confidence, self.freedom.max(1.0))).powi(2);
-        let index = problem.parameters.iter().position(|parameter| parameter.name == name).ok_or_else(unknown)?;
+        let index = problem.parameters.iter().position(|of| of.is_free && of.name == name).ok_or_else(unknown)?;
         let Parameter { scale, unit, .. } = problem.parameters[index];
         // at a limit, a factor of e
-        let deviation = deviation.min(unit);
+        let deviation = self.estimate(name).map_or(unit, |own| own.deviation.min(unit));
         problem.parameters[index].is_free = false;
         let centre = scale.forward(self.values[index]);
         let mut limits = [0.0; 2];

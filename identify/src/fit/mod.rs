@@ -9,6 +9,7 @@ mod variants;
 
 use std::sync::atomic::Ordering;
 
+use faer::{Col, Mat};
 use viscocontact::rheology::Material;
 
 use crate::bounds::Bounds;
@@ -18,7 +19,7 @@ use crate::forward::Sample;
 use crate::identification::Identification;
 use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
-use crate::problem::{Part, Problem};
+use crate::problem::{Part, Problem, WIDTH};
 use crate::series::Prony;
 use crate::statistics::{correlation_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
@@ -40,7 +41,7 @@ pub struct Estimate {
     pub value: f64,
     /// The scale of the deviations.
     pub scale: Scale,
-    /// Standard deviation on that scale: relative for moduli, times and stiffness.
+    /// Standard deviation on that scale: relative for moduli, times and stiffness, of ln(α/(1 − α)) for exponents, in the unit of the value for the others.
     pub deviation: f64,
     /// The same from the scatter of the residuals as it is, without the assumption on the noise (sandwich estimate, with the correlations
     /// of neighbours after Newey & West 1987).
@@ -63,8 +64,9 @@ pub struct Fit {
     pub(crate) values: Vec<f64>,
     prony: Prony,
     estimates: Vec<Estimate>,
-    /// Covariance of the estimates.
+    /// Covariance of the estimates, and of the coordinates.
     spread: Bounds,
+    of_coordinates: Mat<f64>,
     samples: Vec<Vec<Sample>>,
     forces: Vec<Vec<f64>>,
     /// Measured less modelled force, by curve.
@@ -103,7 +105,7 @@ impl Fit {
             false => jacobian,
         };
         let (inverse, limits) = inverse(&free, all, sigma)?;
-        let spread = Bounds::new(&problem, inverse, &scales, sigma);
+        let spread = Bounds::new(&problem, &inverse, &scales, sigma);
         // of slow residuals so many are independent, and their standard deviation is known as that of half as many (F. E. Satterthwaite, 1946)
         let independent = |part: &Part| {
             let phi = part.whitening.correlation().unwrap_or_default();
@@ -117,8 +119,9 @@ impl Fit {
         let quantile = student(0.95, freedom.max(1.0));
         let at = (0..values.len()).filter(|&k| problem.parameters[k].is_free);
         let estimate = |((k, parameter), at): ((usize, &Parameter), usize)| {
-            // a coordinate at its limit may have any value
+            // a coordinate at its limit may have any value, and a parameter that nothing else moves, too
             let is_known = (0..count).all(|j| !limits[j] || scales[(k, j)].abs() < LITTLE);
+            let is_known = is_known && !(limits[k] && spread.covariance[k][k] == 0.0);
             let known = |variance: f64| if is_known { variance.sqrt() } else { f64::INFINITY };
             let (value, deviation) = (values[at], known(spread.covariance[k][k]));
             let on_scale = parameter.scale.forward(value);
@@ -129,7 +132,7 @@ impl Fit {
                 deviation,
                 robust_deviation: known(sandwich[(k, k)]),
                 interval: [-quantile, quantile].map(|quantile| parameter.scale.back(on_scale + quantile * deviation)),
-                limit: limits[k].then(|| limit(&parameter.name, value)),
+                limit: limits[k].then(|| limit(&parameter.name, value, scales[(k, k)])),
             }
         };
         let estimates = free.iter().enumerate().zip(at).map(estimate).collect();
@@ -141,6 +144,7 @@ impl Fit {
             samples.push(response);
             forces.push(force);
         }
+        let of_coordinates = inverse * faer::Scale(sigma * sigma);
         let curves = problem.parts.iter().map(|part| part.curve.clone()).collect();
         let (identification, iterations) = (identification.clone(), minimum.steps);
         Ok(Fit {
@@ -151,6 +155,7 @@ impl Fit {
             prony,
             estimates,
             spread,
+            of_coordinates,
             samples,
             forces,
             residuals,
@@ -194,20 +199,17 @@ impl Fit {
 
     /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\].
     pub fn modulus_band(&self, t: f64) -> [f64; 2] {
-        let names = self.model().parameters();
-        // derivatives of ln E by the free parameters of the material
-        let slope = |estimate: &Estimate| {
-            let at = names.iter().position(|name| *name == estimate.name)?;
-            let of = |shift: f64| {
-                let mut moved = self.values.clone();
-                moved[at] = estimate.scale.back(estimate.scale.forward(moved[at]) + shift);
-                Some(self.problem.prony(&moved).ok()?.modulus(t).ln())
-            };
-            Some((of(1e-5)? - of(-1e-5)?) / 2e-5).filter(|slope| slope.is_finite())
+        let coordinates = self.problem.coordinates(&self.values);
+        let log_modulus = |column: usize, width: f64| {
+            let moved = self.problem.prony(&self.problem.moved(&coordinates, column, width));
+            moved.map_or(f64::NAN, |moved| moved.modulus(t).ln())
         };
-        let slopes: Vec<f64> = self.estimates.iter().map(|estimate| slope(estimate).unwrap_or_default()).collect();
-        let row = |(slope, row): (&f64, &Vec<f64>)| slope * row.iter().zip(&slopes).map(|(c, s)| c * s).sum::<f64>();
-        let variance: f64 = slopes.iter().zip(&self.spread.covariance).map(row).sum();
+        // derivatives of ln E by the coordinates, which may all be moved either way
+        let slopes = Col::from_fn(coordinates.len(), |column| {
+            let slope = (log_modulus(column, WIDTH) - log_modulus(column, -WIDTH)) / (2.0 * WIDTH);
+            if slope.is_finite() { slope } else { 0.0 }
+        });
+        let variance = slopes.transpose() * &self.of_coordinates * &slopes;
         [self.modulus(t), variance.max(0.0).sqrt()]
     }
 
@@ -294,18 +296,21 @@ impl Fit {
     /// Probability of correlations of the residuals as great, if the model is right (Ljung & Box 1978): a small one means that the model is wrong, of
     /// the material or of the noise.
     pub fn probability(&self) -> f64 {
-        let is_fitted = |part: &&Part| part.whitening.correlation().is_some();
         let mut white = self.residuals.clone();
         white.iter_mut().zip(&self.problem.parts).for_each(|(residuals, part)| part.whiten(residuals));
-        correlation_test(&white, self.problem.parts.iter().filter(is_fitted).count())
+        correlation_test(&white, if self.identification.fits_correlation() { self.curves.len() } else { 0 })
     }
 
-    /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better.
+    /// Akaike's criterion, corrected for the number of samples (Hurvich & Tsai 1989). Less is better; it is infinite where there are hardly more samples than
+    /// parameters.
     pub fn aicc(&self) -> f64 {
         let (points, known) = (self.problem.len() as f64, self.identification.sigma());
         // of each curve
         let of_noise = usize::from(known.is_none()) + usize::from(self.identification.fits_correlation());
         let count = (self.estimates.len() + of_noise * self.curves.len()) as f64;
+        if points <= count + 1.0 {
+            return f64::INFINITY;
+        }
         let misfit = match known {
             Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
             None => points * ((self.sum / points).ln() + 1.0),

@@ -162,7 +162,8 @@ pub fn ranked(candidates: impl IntoIterator<Item = Result<Fit>>) -> Result<Vec<(
     if fits.len() > 1 && !fits.iter().all(is_same) {
         return Err(Error::OtherData);
     }
-    let differences: Vec<f64> = fits.iter().map(|fit| fit.aicc() - best.aicc()).collect();
+    // equal infinities do not differ: NaN is less than 0 here
+    let differences: Vec<f64> = fits.iter().map(|fit| (fit.aicc() - best.aicc()).max(0.0)).collect();
     let weight = |difference: f64| (-0.5 * difference).exp();
     let total: f64 = differences.iter().copied().map(weight).sum();
     Ok(fits.into_iter().zip(differences).map(|(fit, more)| (fit, more, weight(more) / total)).collect())

@@ -20,13 +20,8 @@ const REJECTED: f64 = 4.685;
 const MEDIAN: f64 = 0.6745;
 
 impl Identification {
-    /// Whether something of the noise is found from the residuals of a fit, and changes the fit.
-    pub(super) fn finds_noise(&self, problem: &Problem) -> bool {
-        self.fits_correlation() || self.robust || self.finds_deviations(problem)
-    }
-
     /// Whether each curve has a standard deviation of its own.
-    fn finds_deviations(&self, problem: &Problem) -> bool {
+    pub(super) fn finds_deviations(&self, problem: &Problem) -> bool {
         self.sigma().is_none() && problem.parts.len() > 1
     }
 
@@ -74,10 +69,8 @@ impl Identification {
                 if self.robust && deviation > 0.0 { (1.0 - u * u).max(0.0) } else { 1.0 }
             };
             let weights: Vec<f64> = own.iter().map(|&r| weight(r)).collect();
-            if self.robust {
-                let change = weights.iter().zip(&part.outliers).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-                is_found &= change < FOUND;
-            }
+            let change = weights.iter().zip(&part.outliers).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            is_found &= change < FOUND;
             part.outliers = weights;
         }
         Ok(is_found & self.balance(problem, &deviations))

@@ -39,7 +39,7 @@ impl Identification {
         let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
         self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
-        if self.finds_noise(&problem) {
+        if self.fits_correlation() || self.robust || self.finds_deviations(&problem) {
             for _ in 0..MAX_ROUNDS {
                 let mut next = problem.clone();
                 // a minimum that is kept keeps the weights that it is of
@@ -82,8 +82,10 @@ impl Identification {
     /// # Errors
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
+        let lists = self.chosen.0.iter().map(|(_, of)| of.each("list of a parameter", curves.len()).map(drop));
+        let suited: Result<()> = self.noise.suits(curves.len()).and_then(|()| lists.collect());
         let fit = |(index, curve): (usize, &Curve)| {
-            let fit = self.of_curve(index).fit(std::slice::from_ref(curve));
+            let fit = suited.clone().and_then(|()| self.of_curve(index).fit(std::slice::from_ref(curve)));
             done(&fit);
             fit
         };

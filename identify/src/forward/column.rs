@@ -63,7 +63,7 @@ impl<'a, const N: usize> Columns<'a, N> {
             state.copy_from_slice(&self.after);
             let length = self.times[last.sample] - self.times[last.sample - 1];
             self.moments.set(Real::from(length), true, &self.prony.rates);
-            surface += recover(&mut self.after, self.prony, &self.moments);
+            surface = surface + recover(&mut self.after, self.prony, &self.moments);
         }
         // the state before a sample is kept
         last.sample = sample.saturating_sub(1);
@@ -84,8 +84,8 @@ impl<'a, const N: usize> Columns<'a, N> {
 fn recover<const N: usize>(state: &mut [Real<N>], prony: &Prony<Real<N>>, moments: &Moments<N>) -> Real<N> {
     let (mut pressure, mut unit) = (Real::from(0.0), Real::from(0.0));
     for (i, state) in state.iter().enumerate() {
-        pressure += moments.decay[i] * *state;
-        unit += prony.moduli[i] * moments.moments[i][0];
+        pressure = pressure + moments.decay[i] * *state;
+        unit = unit + prony.moduli[i] * moments.moments[i][0];
     }
     let rise = Real::from(0.0) - pressure / unit;
     for (i, state) in state.iter_mut().enumerate() {

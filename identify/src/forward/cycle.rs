@@ -247,7 +247,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
                 let free = self.moments.decay[i] * term.edge + modulus * moments[0] * (released - self.depth);
                 let reached = if next.is_some() { self.columns.state(i, one) } else { zero };
                 for (sum, factor) in sums.iter_mut().zip([modulus, term.edge, free - term.edge, reached - free]) {
-                    (0..3).for_each(|k| sum[k] += factor * moments[k]);
+                    (0..3).for_each(|k| sum[k] = sum[k] + factor * moments[k]);
                 }
             }
             let past = self.decayed(&self.moments, |term| term.force);
@@ -283,7 +283,7 @@ impl<'a, const N: usize> Cycle<'a, N> {
             }
             let depth = if self.springs() {
                 let deepest = z.value().max(released.value());
-                let limit = tip.last_depth() + (released - start.0).value();
+                let limit = tip.last_depth + (released - start.0).value();
                 let end = if width.is_some() {
                     after
                 } else if deepest > limit {

@@ -197,7 +197,7 @@ fn derivatives_agree_with_differences() {
                     plain(up).iter().zip(plain(down)).map(|(a, b)| (a.force - b.force) / (2.0 * step)).collect();
                 let scale = difference.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
                 let mut errors: Vec<f64> =
-                    found.iter().zip(&difference).map(|(dual, d)| (dual.slope(lane) - d).abs() / scale).collect();
+                    found.iter().zip(&difference).map(|(dual, d)| (dual.slopes[lane] - d).abs() / scale).collect();
                 if errors.iter().any(|e| *e > 1e-6) {
                     for (k, e) in errors.iter().enumerate() {
                         if *e > 1e-6 {

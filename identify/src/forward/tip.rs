@@ -33,7 +33,7 @@ pub(super) struct Elastic<const N: usize> {
 pub(crate) struct Tip {
     /// Index of its curve, for errors.
     curve: usize,
-    last_depth: f64,
+    pub(super) last_depth: f64,
     /// ln of the depth of the first node, and the distance to the next one.
     first: f64,
     step: f64,
@@ -68,11 +68,6 @@ impl Tip {
             nodes[at] = state.map_or(nodes[at], |state| [state.level.ln(), exponent(state)]);
         }
         Tip { curve, last_depth, first, step, nodes }
-    }
-
-    /// Depth of the last state \[m\].
-    pub(super) fn last_depth(&self) -> f64 {
-        self.last_depth
     }
 
     /// The error of a depth beyond the last state.

@@ -43,8 +43,8 @@ impl<const N: usize> Cycle<'_, N> {
         let elapsed = time - at.time;
         for (i, term) in self.then.iter().enumerate() {
             let decay = (self.prony.rates[i] * elapsed).decay();
-            past += decay * (term.tip - term.edge);
-            force += decay * (term.force - at.elastic.stiffness * term.edge);
+            past = past + decay * (term.tip - term.edge);
+            force = force + decay * (term.force - at.elastic.stiffness * term.edge);
             self.since[i] = decay;
         }
         let depth = if self.springs() { z - self.give * force } else { z };
