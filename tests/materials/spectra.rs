@@ -84,14 +84,6 @@ proptest! {
     fn random_spectra_are_reciprocal(creep in spectra()) {
         assert_reciprocal(&creep);
     }
-
-    #[test]
-    fn creep_never_decreases(creep in spectra(), t in 1e-10..1e10_f64, more in 1.0..10.0_f64) {
-        prop_assert!(creep.compliance(t) >= creep.glassy());
-        prop_assert!(creep.compliance(t * more) >= creep.compliance(t));
-        // concave: the rate does not grow
-        prop_assert!(creep.rate(t * more) <= creep.rate(t));
-    }
 }
 
 /// Coefficients and times from one end of their range to the other: what comes out are numbers.
