@@ -1,5 +1,6 @@
 //! Creep, relaxation, and the passage between them.
 
+use super::tension::carson;
 use crate::common::spectra::spectra;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
@@ -9,11 +10,9 @@ use viscocontact::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 /// s Ĵ(s) · s Ĝ(s) − 1 at a real s, from the definitions of both series.
 fn carson_defect(creep: &CreepSpectrum, relaxation: &RelaxationSpectrum, s: f64) -> f64 {
-    let branch = |&(c, lambda): &(f64, f64)| c / (1.0 + s * lambda);
-    let j = creep.glassy() + creep.fluidity() / s + creep.terms().iter().map(branch).sum::<f64>();
     let branch = |&(g, tau): &(f64, f64)| g * (s * tau / (1.0 + s * tau));
     let g = relaxation.equilibrium() + s * relaxation.viscosity() + relaxation.terms().iter().map(branch).sum::<f64>();
-    j * g - 1.0
+    carson(creep, s) * g - 1.0
 }
 
 fn assert_reciprocal(creep: &CreepSpectrum) {
