@@ -33,7 +33,7 @@ fn assert_reciprocal(creep: &CreepSpectrum) {
 fn every_model_evaluates_its_formula() {
     let t: f64 = 0.7;
     let kelvin = |g: f64, eta: f64| (1.0 - (-t * g / eta).exp()) / g;
-    let cases: [(&dyn Rheology, f64); 7] = [
+    let cases: [(&dyn Rheology, f64); 8] = [
         (&Elastic::new(2.0).unwrap(), 0.5),
         (&Maxwell::with_time(2.0, 2.5).unwrap(), 0.5 + t / 5.0),
         (&KelvinVoigt::with_time(2.0, 2.5).unwrap(), kelvin(2.0, 5.0)),
@@ -41,6 +41,7 @@ fn every_model_evaluates_its_formula() {
         (&Burgers::new(2.0, 5.0, 3.0, 4.0).unwrap(), 0.5 + t / 5.0 + kelvin(3.0, 4.0)),
         (&GeneralizedKelvin::new(0.5, 0.2, &[(1.0 / 3.0, 4.0 / 3.0)]).unwrap(), 0.5 + 0.2 * t + kelvin(3.0, 4.0)),
         (&FnRheology::new(|t| 1.0 + t), 1.7),
+        (&PowerLaw::new(2.0, 3.0, 0.3).unwrap(), 2.0 * (0.3 * (t / 3.0).ln()).exp()),
     ];
     for (model, expected) in cases {
         assert!((model.creep_compliance(t) / expected - 1.0).abs() < 1e-14, "{model:?}");

@@ -61,10 +61,10 @@ fn terms(draws: &mut Draws, j: f64) -> Vec<(f64, f64)> {
     (0..=draws.below(4)).map(|_| (draws.scale(0.1, 10.0) * j, draws.scale(1e-3, 1e3))).collect()
 }
 
-const SIDE: f64 = 4.0e-3;
+pub const SIDE: f64 = 4.0e-3;
 
 /// A shape whose face holds the square |x1|, |x2| < 1.2 mm, or what it may touch does.
-fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
+pub fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
     let radius = 10.0e-3;
     match draws.below(10) {
         0 => ("sphere", Box::new(Sphere::new(radius).unwrap())),
