@@ -132,8 +132,32 @@ mod tests {
         ] {
             assert_eq!(unit_texts(heading).first().map(|text| text.0), Some(unit), "{heading}");
         }
-        for heading in ["E at 5 MPa", "G'", "J (dry)", "|E*| (M(Pa)", "t [m[s]"] {
+        for heading in ["E at 5 MPa", "G'", "J (dry)", "|E*| (M(Pa)", "t [m[s]", "t [?]", "J (at 5 MPa)"] {
             assert!(unit_texts(heading).iter().all(|(text, _)| readings(text).is_empty()), "{heading}");
+        }
+    }
+
+    #[test]
+    fn units_follow_a_symbol_in_every_way() {
+        for (symbol, unit, quantity, size) in [
+            ("t", "min", Quantity::TIME, 60.0),
+            ("Frequency", "kHz", Quantity::FREQUENCY, 1e3 * std::f64::consts::TAU),
+            ("omega", "rad s^-1", Quantity::FREQUENCY, 1.0),
+            ("J(t)", "10^{-9} 1/Pa", Quantity::COMPLIANCE, 1e-9),
+            ("Creep compliance", "1/(Pa)", Quantity::COMPLIANCE, 1.0),
+            ("Storage modulus", "10⁹ Pa", Quantity::MODULUS, 1e9),
+            ("E'", "N m^-2", Quantity::MODULUS, 1.0),
+        ] {
+            let spaced = [" ", "_", " in ", ": ", " = ", " | ", ", "].map(|between| format!("{symbol}{between}{unit}"));
+            let enclosed = [["[", "]"], [" [", "]"], [" (", ")"], ["/(", ")"], [" / (", ")"], [" {", "}"]];
+            let enclosed = enclosed.map(|[open, close]| format!("{symbol}{open}{unit}{close}"));
+            for heading in spaced.into_iter().chain(enclosed) {
+                let UnitOf::Sizes(text, sizes) = unit_of(&heading, quantity) else { panic!("{heading}") };
+                assert!(
+                    text == unit && sizes.iter().any(|found| (found / size - 1.0).abs() < 1e-12),
+                    "{heading}: {text}"
+                );
+            }
         }
     }
 }

@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use viscocontact::geometry::Sum;
 use viscocontact::parallel::Ranks;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 use super::bodies::zener;
 use super::draws::Draws;
+use super::random_histories::{Control, random_history};
+use super::scene::random_shape;
 
 /// Most steps of a run.
 const MOST_STEPS: usize = 40;
@@ -141,52 +142,36 @@ fn material(draws: &mut Draws, poisson: f64) -> Material {
     Material::constant_poisson(rheology, poisson).unwrap()
 }
 
-fn shape(draws: &mut Draws, [length1, length2]: [f64; 2], line: bool) -> Box<dyn Geometry> {
-    let off =
-        [0.1 * draws.between(-1.0, 1.0) * length1, if line { 0.0 } else { 0.1 * draws.between(-1.0, 1.0) * length2 }];
-    let off = if draws.chance(0.5) { off } else { [0.0; 2] };
-    if line {
-        return Box::new(Shifted::new(Cylinder::new(RADIUS).unwrap(), off).unwrap());
-    }
-    let sphere = Sphere::new(RADIUS).unwrap();
+/// A cylinder, a ridge that touches in the rows of few ranks, or any other shape.
+fn shape(draws: &mut Draws, line: bool) -> Box<dyn Geometry> {
+    let off = if draws.chance(0.5) { 0.1 * draws.between(-1.0, 1.0) * LENGTH } else { 0.0 };
     match draws.below(6) {
-        0 => Box::new(Shifted::new(sphere, off).unwrap()),
-        1 => Box::new(Shifted::new(Ellipsoid::new(RADIUS, 0.4 * RADIUS).unwrap(), off).unwrap()),
-        2 => Box::new(Shifted::new(FlatPunch::rectangular([0.5 * length1, 0.4 * length2]).unwrap(), off).unwrap()),
-        3 => Box::new(Shifted::new(Cone::new(0.1).unwrap(), off).unwrap()),
-        4 => Box::new(Sum::new(sphere, Wavy::new(2.0e-6, length1 / 3.0).unwrap())),
-        // a ridge along x2, which touches in the rows of few ranks
-        _ => Box::new(FnGeometry::new(move |x1, x2| 50.0 * (x1 - 2.0 * off[0]).powi(2) + 2.0 * x2 * x2)),
+        _ if line => Box::new(Shifted::new(Cylinder::new(RADIUS).unwrap(), [off, 0.0]).unwrap()),
+        0 => Box::new(FnGeometry::new(move |x1, x2| 50.0 * (x1 - 2.0 * off).powi(2) + 2.0 * x2 * x2)),
+        _ => random_shape(draws, 0.25 * LENGTH).1,
     }
 }
 
-/// A load over a second: bodies that come down along a curve, or are pressed by a force, and part again; some are pressed by a
-/// force first, and held then; some are pressed beside their middle.
-fn history(draws: &mut Draws, lengths: [f64; 2], tilts: [bool; 2], line: bool) -> Box<dyn LoadHistory> {
-    let (depth, power, start) = (draws.power_of_ten(-5.0, -4.2), draws.between(1.0, 3.0), draws.between(0.0, 0.8));
+/// A load over a second: that of any body with these tilts; some bodies are pressed by a force first, and held then.
+fn history(draws: &mut Draws, lengths: [f64; 2], tilts: [bool; 2], line: bool, jumps: bool) -> Box<dyn LoadHistory> {
+    let depth = draws.power_of_ten(-5.0, -4.2);
     let force = if line { 50.0 } else { 0.05 } * draws.power_of_ten(-1.0, 0.5);
     let at = [0, 1].map(|axis| if tilts[axis] { 0.04 * draws.between(-1.0, 1.0) * lengths[axis] } else { 0.0 });
-    let rise = move |t: f64| (t.powf(power) - start) / (1.0 - start);
-    match draws.below(7) {
-        6 => {
-            let stiffness = force / depth * draws.power_of_ten(-2.0, 2.0);
-            let drive = depth + force / stiffness;
-            Box::new(FnHistory::new(move |t| Load::spring(stiffness, drive * rise(t))))
-        }
-        0 | 1 => Box::new(FnHistory::new(move |t| Load::approach(depth * rise(t)))),
-        2 => Box::new(FnHistory::new(move |t| Load::approach(depth * (1.0 - start - (3.0 * t - 1.0).powi(2))))),
-        3 => Box::new(FnHistory::new(move |t| Load::force(force * (6.0 * t).sin().max(0.0) * t))),
-        4 => {
+    let control = match draws.below(6) {
+        0 | 1 => Control::Approach { touch: 0.0, depth },
+        2 => Control::by_spring(draws, 0.0, depth, force),
+        3 => {
             let held =
                 move |t: f64| if t < 0.4 { Load::force(force * (0.2 + t)) } else { Load::approach(depth * (1.2 - t)) };
-            Box::new(FnHistory::new(held).with_breakpoints(&[0.4]).unwrap())
+            return Box::new(FnHistory::new(held).with_breakpoints(&[0.4]).unwrap());
         }
-        _ if tilts == [false; 2] => Box::new(StepLoad::new(Load::force(force)).unwrap()),
-        _ => Box::new(FnHistory::new(move |t| {
+        4 if tilts != [false; 2] => {
             let tilt = [0, 1].map(|axis| if tilts[axis] { Tilt::Free { at: at[axis] } } else { Tilt::Fixed(0.0) });
-            Load::Force { normal: force * (0.1 + t), tilt }
-        })),
-    }
+            return Box::new(FnHistory::new(move |t| Load::Force { normal: force * (0.1 + t), tilt }));
+        }
+        _ => Control::Force(force),
+    };
+    random_history(draws, control, 1.0, jumps).history
 }
 
 impl AnyScene {
@@ -195,11 +180,11 @@ impl AnyScene {
         let draws = &mut Draws::new(seed);
         let (grid, kernel, poisson) = random_kernel(draws, seed % 12);
         let (line, lengths) = (grid.cells()[1] == 1, grid.lengths());
-        let (shape, material) = (shape(draws, lengths, line), material(draws, poisson));
+        let (shape, material) = (shape(draws, line), material(draws, poisson));
         let periodic = kernel.periodic_axes();
         let symmetry = draws.chance(0.5);
         let tilts = [0, 1].map(|axis| !periodic[axis] && !symmetry && draws.chance(0.5));
-        let history = history(draws, lengths, tilts, line);
+        let history = history(draws, lengths, tilts, line, material.contact_compliance(0.0) > 0.0);
         let temperature = draws.chance(0.3).then(|| {
             let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
             let (from, by) = (draws.between(290.0, 310.0), draws.between(-8.0, 8.0));

@@ -11,6 +11,7 @@ pub mod gauss;
 pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
 pub mod indenters;
+pub mod love;
 #[path = "../../examples/support/scenes/noise.rs"]
 pub mod noise;
 #[path = "../../examples/support/scenes/oscillation.rs"]
@@ -36,6 +37,7 @@ pub mod spheres;
 pub mod steady_sliding;
 #[path = "../../examples/support/scenes/step_loaded_sphere.rs"]
 pub mod step_loaded_sphere;
+pub mod sticky;
 pub mod temporary;
 pub mod truth;
 pub mod watched_ranks;

@@ -76,7 +76,7 @@ const LENGTH: f64 = 4.0e-3;
 const RADIUS: f64 = 8.0e-3;
 
 /// A shape, what it is, and the depth to which it touches a circle of radius `reach`, roughly.
-fn random_shape(draws: &mut Draws, reach: f64) -> (&'static str, Box<dyn Geometry>, f64) {
+pub(super) fn random_shape(draws: &mut Draws, reach: f64) -> (&'static str, Box<dyn Geometry>, f64) {
     let sphere = || Sphere::new(RADIUS).unwrap();
     let depth = reach * reach / RADIUS;
     match draws.below(20) {

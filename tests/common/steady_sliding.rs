@@ -8,6 +8,7 @@ use std::collections::HashSet;
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use super::gauss::points;
+use super::love::love;
 use super::rolling::eliminate;
 use viscocontact::num_complex::Complex64;
 use viscocontact::rheology::CreepSpectrum;
@@ -284,12 +285,10 @@ impl SteadySliding {
             let primitive = |x: f64| if x == 0.0 { 0.0 } else { x * ((x.abs() / datum).ln() - 1.0) };
             return -FRAC_2_PI * (primitive(x + a) - primitive(x - a));
         }
-        let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
-        let corner = |x: f64, y: f64| term(x, y) + term(y, x);
         let y = j as f64 * self.spacing[1];
         if x.hypot(y) > 1e3 * a.max(b) {
             return 4.0 * a * b / (PI * x.hypot(y)); // where the differences cancel
         }
-        (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b)) / PI
+        love([x, y], self.spacing)
     }
 }

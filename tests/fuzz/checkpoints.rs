@@ -3,10 +3,12 @@
 use std::sync::OnceLock;
 
 use viscocontact::prelude::*;
+use viscocontact_scenes::Temporary;
 use viscocontact_scenes::sealed::{CHECKSUM, seal};
 
 use crate::engine::{Outcome, Target, Verdict, finite, known};
-use crate::files::Folder;
+
+use crate::files::shared;
 use crate::scenes::{look, look_along, state, unchanged};
 use crate::source::Source;
 
@@ -57,8 +59,8 @@ fn new(scene: usize) -> ViscoelasticContact {
 fn sound_files() -> &'static [(usize, Vec<u8>)] {
     static FILES: OnceLock<Vec<(usize, Vec<u8>)>> = OnceLock::new();
     FILES.get_or_init(|| {
-        let folder = Folder::new("sound");
-        let path = folder.path("file");
+        let folder = Temporary::folder("fuzz-sound");
+        let path = folder.join("file");
         let mut files = Vec::new();
         for scene in 0..SCENES {
             let mut contact = new(scene);
@@ -102,7 +104,7 @@ fn checkpoint(source: &mut Source) -> Verdict {
     // another scene now and then
     let scene = if source.chance(0.02) { source.below(SCENES) } else { scene };
     let mut contact = new(scene);
-    let path = Folder::shared().path("checkpoint");
+    let path = shared().join("checkpoint");
     std::fs::write(&path, &damaged).map_err(|error| error.to_string())?;
     let before = state(&contact);
     if let Err(error) = contact.resume(&path) {

@@ -1,6 +1,5 @@
 //! Files that are written: fields, frames, histories; and a folder to write them to.
 
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata, write_npy};
@@ -9,6 +8,7 @@ use viscocontact::prelude::*;
 use crate::engine::{Outcome, Target, Verdict};
 use crate::models;
 use crate::source::Source;
+use viscocontact_scenes::Temporary;
 
 pub fn targets() -> Vec<Target> {
     vec![
@@ -17,37 +17,14 @@ pub fn targets() -> Vec<Target> {
     ]
 }
 
-/// A folder of this process's own, gone with this.
-pub struct Folder(PathBuf);
-
-impl Folder {
-    pub fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("viscocontact-fuzz-{name}-{}", std::process::id()));
-        // of a process of the same number before
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a folder for files of the tests");
-        Folder(path)
-    }
-
-    /// The one in which targets write over what they wrote before; [`Folder::leave`] removes it.
-    pub fn shared() -> &'static Folder {
-        static SHARED: OnceLock<Folder> = OnceLock::new();
-        SHARED.get_or_init(|| Folder::new("shared"))
-    }
-
-    pub fn leave() {
-        let _ = std::fs::remove_dir_all(&Folder::shared().0);
-    }
-
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
+/// The folder in which targets write over what they wrote before; [`leave`] removes it.
+pub fn shared() -> &'static Temporary {
+    static SHARED: OnceLock<Temporary> = OnceLock::new();
+    SHARED.get_or_init(|| Temporary::folder("fuzz-shared"))
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+pub fn leave() {
+    let _ = std::fs::remove_dir_all(shared());
 }
 
 /// A word or two, of letters and of what texts stumble over.
@@ -83,7 +60,7 @@ fn fields(source: &mut Source) -> Verdict {
     if source.chance(0.1) {
         values.truncate(source.below(values.len()));
     }
-    let path = Folder::shared().path("field.npy");
+    let path = shared().join("field.npy");
     if let Err(error) = write_npy(&path, &grid, &values) {
         let short = values.len() != grid.len() && !error.to_string().is_empty();
         return if short { Ok(Outcome::Refused) } else { Err(format!("a field that is not written: {error}")) };
@@ -105,14 +82,14 @@ fn frames(source: &mut Source) -> Verdict {
     if json.contains(|c: char| c.is_control()) || !json.starts_with('{') || !json.ends_with('}') || !balanced {
         return Err(format!("no JSON: {json}"));
     }
-    let folder = Folder::new("frames");
+    let folder = Temporary::folder("fuzz-frames");
     let chosen: Vec<Field> = (0..source.below(4)).map(|_| source.choose(&Field::ALL)).collect();
     let twice = (1..chosen.len()).any(|k| chosen[..k].contains(&chosen[k]));
     let refused = |error: Error| {
         if twice && !error.to_string().is_empty() { Ok(Outcome::Refused) } else { Err(error.to_string()) }
     };
     if source.chance(0.5) {
-        match FrameSeries::create(folder.path("npz"), Format::Npz, &scene, &contact, &chosen, Earlier::Refuse) {
+        match FrameSeries::create(folder.join("npz"), Format::Npz, &scene, &contact, &chosen, Earlier::Refuse) {
             Ok(mut series) => {
                 let path = series.record(&contact).map_err(|error| error.to_string())?;
                 let length = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
@@ -124,7 +101,7 @@ fn frames(source: &mut Source) -> Verdict {
         }
     }
     if source.chance(0.5) {
-        match FrameSeries::create(folder.path("vtk"), Format::Vtk, &scene, &contact, &chosen, Earlier::Refuse) {
+        match FrameSeries::create(folder.join("vtk"), Format::Vtk, &scene, &contact, &chosen, Earlier::Refuse) {
             Ok(mut series) => {
                 let path = series.record(&contact).map_err(|error| error.to_string())?;
                 let file = std::fs::read(path).map_err(|error| error.to_string())?;
@@ -140,12 +117,12 @@ fn frames(source: &mut Source) -> Verdict {
 }
 
 /// Every number of a history is read back as it was.
-fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Metadata, folder: &Folder) -> Verdict {
+fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Metadata, folder: &Temporary) -> Verdict {
     let good = source.chance(0.7);
     let name = |k: usize, source: &mut Source| if good { format!("column {k}") } else { text(source) };
     let names: Vec<String> = (0..source.below(3)).map(|k| name(k, source)).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let path = folder.path("history.csv");
+    let path = folder.join("history.csv");
     let Ok(mut history) = CsvHistory::create(&path, scene, contact, &names, Earlier::Refuse) else {
         return Ok(Outcome::Refused);
     };

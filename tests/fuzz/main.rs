@@ -54,7 +54,7 @@ fn nothing_panics_hangs_or_returns_nan() {
     if let Some(case) = from_environment("FUZZ_CASE") {
         let start = Instant::now();
         let verdict = engine::execute(&targets[0], case);
-        files::Folder::leave();
+        files::leave();
         println!("{} {case}: {verdict:?} in {:.3} s", targets[0].name, start.elapsed().as_secs_f64());
         assert!(verdict.is_ok(), "{verdict:?}");
         return;
@@ -86,7 +86,7 @@ fn nothing_panics_hangs_or_returns_nan() {
             }
         }
     }
-    files::Folder::leave();
+    files::leave();
     targets.iter().zip(&tallies).for_each(|(target, tally)| println!("{}", tally.line(target)));
     // printed as they were found: the hook that silences panics silences this one, too
     let found: u64 = tallies.iter().map(|tally| tally.found).sum();

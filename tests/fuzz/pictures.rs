@@ -4,7 +4,7 @@ use viscocontact::Grid;
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Picture, Quantity, Scale, Style};
 
 use crate::engine::{Outcome, Target, Verdict, judged};
-use crate::files::{Folder, text};
+use crate::files::{shared, text};
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
@@ -67,7 +67,7 @@ fn map(source: &mut Source) -> Verdict {
         look(&picture)?;
         // a file takes longer than the picture
         if source.chance(0.02) {
-            let path = Folder::shared().path("picture.png");
+            let path = shared().join("picture.png");
             picture.save(&path).map_err(|error| error.to_string())?;
         }
         Ok(())

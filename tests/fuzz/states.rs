@@ -2,9 +2,10 @@
 
 use viscocontact::output::{read_states, write_states};
 use viscocontact::prelude::*;
+use viscocontact_scenes::Temporary;
 
 use crate::engine::{Outcome, Target, Verdict, known};
-use crate::files::Folder;
+
 use crate::models;
 use crate::source::Source;
 
@@ -64,8 +65,8 @@ fn table(source: &mut Source) -> Verdict {
 
 fn file(source: &mut Source) -> Verdict {
     let Ok(states) = ElasticStates::from_table(&any_table(source)) else { return Ok(Outcome::Refused) };
-    let folder = Folder::new("states");
-    let path = folder.path("states.npz");
+    let folder = Temporary::folder("fuzz-states");
+    let path = folder.join("states.npz");
     write_states(&path, &states, &Metadata::new("a table")).map_err(|error| error.to_string())?;
     let bytes = std::fs::read(&path).map_err(|error| error.to_string())?;
     std::fs::write(&path, source.damage(&bytes)).map_err(|error| error.to_string())?;

@@ -161,22 +161,3 @@ fn contacts_are_refused_before_they_are_filled() {
         refused(builder.build(), &grid, 1, "a periodic contact");
     }
 }
-
-/// The scene of 65535² cells: 0.8 TB.
-#[test]
-fn four_thousand_million_cells_are_refused_with_their_bytes() {
-    let grid = Grid::square(65535, 1.0).unwrap();
-    if granted(8 * grid.len() as u128) {
-        return; // a machine that has room for its fields would fill them
-    }
-    let sphere = Sphere::new(0.1).unwrap();
-    let builder = builder_of(&sphere, grid, maxwell());
-    // threads need memory of their own
-    let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let total = two.install(|| builder.memory().unwrap().total());
-    assert!((700_000_000_000..900_000_000_000).contains(&total), "{total}");
-    let error = builder.build().unwrap_err();
-    assert!(matches!(error, Error::OutOfMemory { bytes: 68_717_379_600, .. }), "{error}");
-    let message = error.to_string();
-    assert!(message.contains("68717379600 bytes (68.7 GB)") && message.contains("fewer cells"), "{message}");
-}

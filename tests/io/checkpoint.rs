@@ -12,7 +12,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::common::runs::{scenes, wandering};
-use viscocontact::ErrorKind;
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
@@ -30,6 +29,7 @@ fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
             contact.save(&path).unwrap();
             contact.snapshot_into(&mut snapshot);
             let (mut resumed, mut clone) = (build(), contact.clone());
+            assert_eq!(resumed.restore(&snapshot), Err(Error::OtherContact));
             resumed.resume(&path).unwrap();
             assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
             assert_eq!((contact.pressure(), contact.displacement()), (resumed.pressure(), resumed.displacement()));
@@ -161,7 +161,9 @@ fn other_scenes_are_refused_by_what_differs() {
         let law = ExponentialAttraction::new(1.0, range).unwrap();
         builder_on(grid(), three_times()).attraction(law).build().unwrap()
     };
-    let scenes: [(Scene, [f64; 2], &str); 6] = [
+    let fitted = |until: f64| builder_on(grid(), power_law()).times(1e-3..=until).build().unwrap();
+    let scenes: [(Scene, [f64; 2], &str); 7] = [
+        (&fitted, [1e5, 1e4], "contact compliance"),
         (&attracted, [4.0e-5, 4.1e-5], "attraction"),
         (&own, [1.0e-4, 2.0e-4], "influence"),
         (&layered, [3.0, 1.0], "influence"),
@@ -226,39 +228,6 @@ fn materials_are_not_evaluated_beyond_their_data() {
     build().resume(&path).unwrap();
 }
 
-/// A material is fitted over the times of the builder: a contact of the same times goes on bit by bit, whatever steps it took
-/// before, and one of other times is another scene.
-#[test]
-fn materials_are_fitted_as_they_were() {
-    let path = Temporary::file("fitted");
-    let build = |times| builder_on(Grid::square(16, 4.0e-3).unwrap(), power_law()).times(times).build().unwrap();
-    let fresh = || build(1.0e-4..=1.0e5);
-    let stepped = |dt: f64| {
-        let mut contact = fresh();
-        contact.step(dt, Load::force(0.1)).unwrap();
-        contact
-    };
-    let mut contact = stepped(0.1);
-    contact.save(&path).unwrap();
-    let mut other = stepped(1.0e-6);
-    other.resume(&path).unwrap();
-    for _ in 0..3 {
-        assert_eq!(contact.step(0.2, Load::force(0.2)), other.step(0.2, Load::force(0.2)));
-    }
-    assert_eq!(contact.pressure(), other.pressure());
-
-    fresh().save(&path).unwrap();
-    let (mut one, mut other) = (fresh(), stepped(0.1));
-    other.resume(&path).unwrap();
-    assert_eq!(other.time(), 0.0);
-    for _ in 0..3 {
-        assert_eq!(one.step(1.0e-3, Load::force(0.2)), other.step(1.0e-3, Load::force(0.2)));
-    }
-    assert_eq!(one.pressure(), other.pressure());
-    let error = refused(&mut build(1.0e-3..=1.0e4), &path);
-    assert!(matches!(error, CheckpointError::OtherScene { what: "contact compliance", .. }), "{error}");
-}
-
 /// A step whose file cannot be written is reported by the call that writes it.
 #[test]
 fn a_step_whose_file_fails_is_reported() {
@@ -280,22 +249,6 @@ fn a_step_whose_file_fails_is_reported() {
         fs::remove_dir_all(&folder).unwrap();
     }
     assert_eq!(times, [0.0, 0.1, 0.2]);
-}
-
-/// A run to before where the file is, is refused, the first time as well.
-#[test]
-fn runs_that_end_before_the_checkpoint_are_refused() {
-    let path = Temporary::file("over");
-    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
-    let load = StepLoad::new(Load::force(0.1)).unwrap();
-    let mut run = contact.follow(&load, Stepping::fixed(0.1), 1.0).autosave_to(&*path, Duration::ZERO);
-    while run.next_step().unwrap().is_some() {}
-    contact.resume(&path).unwrap();
-    for _ in 0..2 {
-        assert_eq!(contact.follow(&load, Stepping::fixed(0.1), 0.5).next_step().unwrap_err().kind(), ErrorKind::Value);
-    }
-    contact.resume(&path).unwrap();
-    assert_eq!(contact.follow(&load, Stepping::fixed(0.1), 1.0).next_step(), Ok(None));
 }
 
 const STEPS: f64 = 400.0;

@@ -1,9 +1,9 @@
-//! Warnings of steps, and the reasons of failed steps.
+//! Warnings of steps.
 
 use crate::common::{builder_of, contact_of, elastic, maxwell, sphere, sphere_on};
+use viscocontact::Error;
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
-use viscocontact::{Error, Trend};
 
 fn contact(cells: usize, material: Material, settings: Settings) -> ViscoelasticContact {
     sphere_on(Grid::square(cells, 4.0e-3).unwrap(), material, settings)
@@ -41,28 +41,6 @@ fn contact_near_the_edge_is_warned_of_before_it_touches() {
             force *= 1.1;
         }
         assert!(near > 0 && clear > 0, "{near} {clear}");
-    }
-}
-
-#[test]
-fn a_failed_solve_says_what_to_do() {
-    let failure = |settings: Settings| {
-        let error = contact(48, maxwell(), settings).step(0.0, Load::force(0.5)).unwrap_err();
-        let text = error.to_string();
-        let Error::Step(StepError::NotConverged { iterations, residual, convergence, .. }) = error else {
-            panic!("{error}")
-        };
-        let (first, last) = (convergence.residuals()[0], *convergence.residuals().last().unwrap());
-        assert!(convergence.residuals().len() <= 33 && first.0 == 0 && last == (iterations, residual));
-        (convergence, text)
-    };
-    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
-        let settings = Settings::default().with_tolerance(1e-13).with_max_iterations(5).with_solver(solver);
-        let (convergence, text) = failure(settings);
-        assert_eq!(convergence.trend(), Trend::Falling, "{convergence:?}");
-        assert!(text.contains("raise Settings::max_iterations"), "{text}");
-        let (convergence, _) = failure(settings.with_max_iterations(1));
-        assert_eq!(convergence.trend(), Trend::TooFew);
     }
 }
 
@@ -149,25 +127,14 @@ fn contact_at_the_edge_estimates_the_width_that_it_needs() {
     assert_eq!(refused(&flat, Load::force(1.0e3)), None);
 }
 
-/// Shapes of any size are neither too flat nor too steep; maps in other units are in `outside`.
+/// The gap of a plane is constant but for rounding.
 #[test]
-fn shapes_of_any_size_are_neither_steep_nor_flat() {
-    let on = |shape: &dyn Geometry, lengths: f64, size: f64| {
-        let settings = Settings::default().with_edge(Edge::Allow);
-        let grid = Grid::square(64, lengths).unwrap();
-        let mut contact = builder_of(shape, grid, elastic()).settings(settings).build().unwrap();
-        contact.step(0.0, Load::approach(size)).unwrap().warnings & (Warnings::STEEP | Warnings::FLAT)
-    };
-    for size in [1.0e-9, 1.0e-6, 1.0e-3, 1.0, 1.0e3] {
-        let sphere = Sphere::new(10.0 * size).unwrap();
-        let punch = FlatPunch::circular(0.3 * size).unwrap();
-        for shape in [&sphere as &dyn Geometry, &punch] {
-            assert_eq!(on(shape, size, 1.0e-3 * size), Warnings::empty(), "{size}");
-        }
-    }
-    // the gap of a plane is constant but for rounding
+fn a_plane_is_neither_steep_nor_flat() {
     let plane = FnGeometry::new(|x1: f64, _: f64| if x1 < 0.0 { 0.1 + 0.2 } else { 0.3 });
-    assert_eq!(on(&plane, 1.0e-3, 0.31), Warnings::empty());
+    let settings = Settings::default().with_edge(Edge::Allow);
+    let report =
+        contact_of(&plane, Grid::square(64, 1.0e-3).unwrap(), elastic(), settings).step(0.0, Load::approach(0.31));
+    assert!(!report.unwrap().warnings.intersects(Warnings::STEEP | Warnings::FLAT));
 }
 
 /// The greatest slope in contact is the slope of the body there, whatever part of the grid is computed.

@@ -1,14 +1,8 @@
-//! docs/paper.md beside the code: every item, source, test and picture that it lists exists, and every equation and figure of
-//! the source paper has its line.
+//! docs/paper.md beside the code: every source, test and picture that it lists exists, and every equation and figure of the source paper has
+//! its line. Items are links, which rustdoc resolves.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-
-use viscocontact::ViscoelasticContact;
-use viscocontact::geometry::Geometry;
-use viscocontact::load::Load;
-use viscocontact::rheology::Rheology;
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -96,69 +90,4 @@ fn sources_tests_and_pictures_of_the_page_exist() {
         missing.extend(pictures.iter().filter(|file| folder.exists() && !folder.join(file).exists()).cloned());
     }
     assert!(missing.is_empty(), "{missing:#?}");
-}
-
-/// What the text between the tables has in backquotes: files, links to items, and commands, whose names
-/// `commands_and_files_exist` checks.
-#[test]
-fn files_named_in_the_text_exist() {
-    let (mut missing, mut code) = (Vec::new(), false);
-    let page = page();
-    for line in page.lines().filter(|line| !line.starts_with('|')) {
-        code ^= line.starts_with("```");
-        let names = if code { Vec::new() } else { quoted(line) };
-        for name in names.iter().filter(|name| !name.contains("::") && !name.starts_with("cargo ") && !name.is_empty())
-        {
-            let pictures = root().join("docs/pictures");
-            let found = [root().join(name), pictures.join(name)].iter().any(|path| path.exists());
-            // the package comes without pictures
-            if !found && (pictures.exists() || !name.ends_with("pictures") && !name.ends_with(".png")) {
-                missing.push(format!("{name} in: {line}"));
-            }
-        }
-    }
-    assert!(missing.is_empty(), "{missing:#?}");
-}
-
-/// Names of items that the compiler resolves: what can be imported, and functions of types.
-macro_rules! items {
-    (import $($($import:ident)::+),+; functions $($($function:ident)::+),+) => {{
-        $(const _: () = {
-            #[allow(unused_imports)]
-            use viscocontact::$($import)::+ as _;
-        };)+
-        $(let _ = viscocontact::$($function)::+;)+
-        [$(stringify!($($import)::+),)+ $(stringify!($($function)::+)),+].map(|item| item.replace(' ', ""))
-    }};
-}
-
-/// Rustdoc links what stands in brackets; here the compiler is asked.
-#[test]
-fn items_of_the_page_exist() {
-    let known = items!(
-        import
-            analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
-            contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle,
-            geometry::Geometry, load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
-        functions
-            InfluenceKernel::coefficient, InfluenceKernel::convolve, InfluenceKernel::half_space,
-            ViscoelasticContact::contact_area, ViscoelasticContact::contact_cells, ViscoelasticContact::displacement,
-            ViscoelasticContact::force, ViscoelasticContact::gap_into, ViscoelasticContact::moment,
-            ViscoelasticContact::pressure, ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
-            contact::Builder::another_body,
-            contact::Settings::paper, load::Load::eccentric_force, load::Load::force,
-            rheology::Material::contact_compliance, states::ElasticStates::cone, states::ElasticStates::power,
-            states::ElasticStates::sphere
-    );
-    let _ = (<dyn Geometry>::initial_gap, <dyn Rheology>::creep_compliance);
-    // generic in the loads: named by a call
-    let _ = |contact: &mut ViscoelasticContact| contact.step(0.0, Load::force(1.0));
-    let steps = ["ViscoelasticContact::step"].map(str::to_owned);
-    let of_traits = ["geometry::Geometry::initial_gap", "rheology::Rheology::creep_compliance"].map(str::to_owned);
-    let _ = |hertz: viscocontact::analytic::Hertz| [hertz.contact_radius, hertz.max_pressure];
-    let fields = ["analytic::Hertz::contact_radius", "analytic::Hertz::max_pressure"].map(str::to_owned);
-    let known: BTreeSet<String> = known.into_iter().chain(steps).chain(of_traits).chain(fields).collect();
-    let page = page();
-    let listed = page.split("[`").skip(1).map(|rest| rest.split("`]").next().unwrap().to_owned());
-    assert_eq!(listed.collect::<BTreeSet<_>>(), known);
 }

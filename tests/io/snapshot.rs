@@ -1,26 +1,10 @@
 //! States kept in memory and restored: the same steps again, to the last bit.
 
-use crate::common::runs::wandering;
 use crate::common::watched_runs::seen;
 use crate::common::{Temporary, sphere_on, three_times};
 use std::path::Path;
 use viscocontact::ErrorKind;
 use viscocontact::prelude::*;
-
-#[test]
-fn snapshots_of_other_contacts_are_refused() {
-    let build = || sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
-    let (mut one, mut other) = (build(), build());
-    wandering(&mut one, 1);
-    let before = one.pressure().to_vec();
-    assert_eq!(one.restore(&other.snapshot()), Err(Error::OtherContact));
-    assert_eq!(one.pressure(), before);
-    // but may be made one's own
-    let mut snapshot = other.snapshot();
-    one.snapshot_into(&mut snapshot);
-    assert_eq!(other.restore(&snapshot), Err(Error::OtherContact));
-    one.restore(&snapshot).unwrap();
-}
 
 /// One operation on a contact, by four random numbers; whether it succeeded.
 fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool {

@@ -3,13 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{assert_answers_waves, convolve, noise, values};
-use approx::assert_abs_diff_eq;
 use viscocontact::{Axis, Grid, InfluenceKernel};
-
-fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
-    let scale = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    assert_abs_diff_eq!(found, exact, epsilon = tolerance * scale);
-}
 
 /// Westergaard's waves, on lengths of period even, odd and not smooth.
 #[test]
@@ -83,22 +77,6 @@ fn strips_are_rows_of_images() {
         "{found} {exact} {}",
         near[ka]
     );
-}
-
-/// A half-space made of its own coefficients, and of its own waves, is the half-space.
-#[test]
-fn users_may_bring_their_own_coefficients() {
-    let grid = Grid::new([12, 9], [1.0, 0.8]).unwrap();
-    let half_space = InfluenceKernel::half_space(&grid).unwrap();
-    let mut unit = vec![0.0; grid.len()];
-    unit[0] = 1.0;
-    let love = convolve(&half_space, &unit);
-    let own = InfluenceKernel::from_coefficients(&grid, |i, j| love[i.unsigned_abs() * 9 + j.unsigned_abs()]).unwrap();
-    let pressure = noise(grid.len());
-    assert_close(&convolve(&own, &pressure), &convolve(&half_space, &pressure), 1e-14);
-    let periodic = InfluenceKernel::periodic(&grid).unwrap();
-    let waves = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 2.0 / q1.hypot(q2) } else { 0.0 });
-    assert_close(&convolve(&waves.unwrap(), &pressure), &convolve(&periodic, &pressure), 1e-14);
 }
 
 /// Cells far more slender than the proof of the coefficients covers: under a unit pressure everywhere, K p on a row of cells

@@ -3,7 +3,6 @@
 mod dialects;
 mod files;
 mod populations;
-mod units;
 
 use crate::common::{Ratios, noise, pairs, sphere_on, triples};
 use approx::assert_abs_diff_eq;

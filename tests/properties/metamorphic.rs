@@ -152,7 +152,9 @@ mod threads {
     use super::*;
     use crate::common::bodies::zener;
     use crate::common::spheres::RADIUS;
+    use crate::common::sticky::ball;
     use crate::common::temporary::Temporary;
+    use viscocontact::adhesion::ExponentialAttraction;
 
     fn on<T: Send>(threads: usize, run: impl Fn() -> T + Send + Sync) -> T {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
@@ -169,7 +171,7 @@ mod threads {
     /// Rows that end anywhere in a band, and so many cells that threads share the coarser levels of the extension as well.
     #[test]
     fn any_number_gives_the_same_bits_on_a_large_grid() {
-        let run = || {
+        let pressed = || {
             let (shape, grid) =
                 (Ellipsoid::new(RADIUS, 0.7 * RADIUS).unwrap(), Grid::new([400, 370], [8.0e-3; 2]).unwrap());
             let mut contact = contact_of(&shape, grid, zener(), whole());
@@ -178,8 +180,20 @@ mod threads {
             }
             bits(&contact)
         };
-        let one = on(1, run);
-        assert!([2, 3, 5].into_iter().all(|threads| on(threads, run) == one));
+        let attracted = || {
+            let body = Material::incompressible(GeneralizedMaxwell::new(0.25, &[(0.5, 1.0)]).unwrap());
+            let law = ExponentialAttraction::new(1.0, 1.0).unwrap();
+            let settings = whole().with_edge(Edge::Allow);
+            let mut contact = ball(146, 8.0, body, law).settings(settings).build().unwrap();
+            for approach in [0.5, 0.3, -0.2] {
+                contact.step(0.3, Load::approach(approach)).unwrap();
+            }
+            bits(&contact)
+        };
+        for run in [&pressed as &(dyn Fn() -> Vec<u64> + Send + Sync), &attracted] {
+            let one = on(1, run);
+            assert!([2, 3, 5].into_iter().all(|threads| on(threads, run) == one));
+        }
     }
 
     proptest! {

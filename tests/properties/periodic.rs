@@ -107,21 +107,3 @@ fn a_period_begins_where_its_table_does() {
         assert!(next.is_none_or(|next| next.is_finite() && (next > time || time.is_nan())), "{time}");
     }
 }
-
-/// A step ends at each jump, whatever the period.
-#[test]
-fn runs_meet_every_jump() {
-    let sphere = ElasticStates::sphere(10.0e-3).unwrap();
-    let body = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
-    for hundredths in 1..=100 {
-        let period = 0.02 * f64::from(hundredths);
-        let blinking = Periodic::square(Load::force(0.5), Load::force(0.1), period, 0.5).unwrap();
-        let mut contact = StatesContact::new(&sphere, &body).unwrap();
-        let mut run = contact.follow(&blinking, Stepping::adaptive(1.0e-2), 19.25 * period);
-        let mut jumps = 0;
-        while let Some(report) = run.next_step().unwrap() {
-            jumps += usize::from(report.dt == 0.0);
-        }
-        assert_eq!(jumps, 39, "period {period} s");
-    }
-}

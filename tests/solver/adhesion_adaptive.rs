@@ -1,16 +1,13 @@
 //! Adaptive steps of surfaces that attract each other, against many short steps of given length: random scenes through snap-in and pull-off.
 //! `ADHESION_RUNS` (3) and `ADHESION_SEED` (1) choose others.
 
-use std::sync::Arc;
-
+use super::adhesion_population::{Drawn, SIDE, Scene};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
-use viscocontact::adhesion::{AdhesionError, Attraction, ExponentialAttraction, LinearSoftening, VanDerWaals};
+use viscocontact::adhesion::AdhesionError;
 use viscocontact::contact::Warnings;
-use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
-const SIDE: f64 = 8.0;
 const SPAN: f64 = 10.0;
 const SHORT: f64 = 0.0025;
 /// Loss of a great jump.
@@ -19,33 +16,29 @@ const GREAT: f64 = 0.05;
 const MOMENT: f64 = 1e-3;
 const FAST: f64 = 5e-3;
 
-struct Scene {
+struct History {
     name: String,
-    shape: Box<dyn Geometry>,
-    material: Material,
-    law: Arc<dyn Attraction>,
-    cells: usize,
+    scene: Scene,
     kind: usize,
     /// Times of the corners: pressed, held, pulled, held, pressed again, held.
     turns: [f64; 7],
     path: PiecewiseLinear,
 }
 
-impl Scene {
-    fn draw(number: u64, seed: u64) -> Scene {
+impl History {
+    fn draw(number: u64, seed: u64) -> History {
         let mut draws = Draws::new(1000 * seed + number);
-        let mu = draws.scale(0.3, 1.4);
-        let law: Arc<dyn Attraction> = match draws.below(3) {
-            0 => Arc::new(ExponentialAttraction::new(1.0, 1.0 / mu).unwrap()),
-            1 => Arc::new(VanDerWaals::new(1.0, 1.0 / mu).unwrap()),
-            _ => Arc::new(LinearSoftening::new(1.0, 1.0 / mu).unwrap()),
-        };
-        let sphere = Sphere::new(1.0).unwrap();
-        let wavy = Wavy::new(draws.between(0.05, 0.3), SIDE / draws.between(3.0, 6.0)).unwrap();
-        let shape: Box<dyn Geometry> =
-            if draws.chance(0.6) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
-        let terms: Vec<_> = (0..1 + draws.below(2)).map(|_| (draws.scale(0.1, 2.0), draws.scale(0.1, 5.0))).collect();
-        let material = Material::incompressible(GeneralizedMaxwell::new(0.25, &terms).unwrap());
+        let scene = Scene::draw(
+            &mut draws,
+            &Drawn {
+                side: SIDE,
+                tabor: [0.3, 1.4],
+                heights: [0.05, 0.3],
+                waves: [3.0, 6.0],
+                creeping: 1.0,
+                periodic: 0.0,
+            },
+        );
         let (kind, stiffness) = (number as usize % 3, draws.scale(2.0, 30.0));
         let load = |at: f64| match kind {
             0 => Load::approach(at),
@@ -60,26 +53,12 @@ impl Scene {
             turns[k] = turns[k - 1] + 0.01 * draws.between(30.0, 220.0).round();
         }
         let path: Vec<_> = turns.iter().zip(at).map(|(turn, at)| (*turn, load(at))).collect();
-        Scene {
-            name: format!("scene {number}: μ = {mu:.2}, {law:?}, load {kind}, {} terms", terms.len()),
-            shape,
-            material,
-            law,
-            cells: (2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize,
-            kind,
-            turns,
-            path: PiecewiseLinear::new(&path).unwrap(),
-        }
+        let name = format!("scene {number}: {}, load {kind}", scene.name);
+        History { name, scene, kind, turns, path: PiecewiseLinear::new(&path).unwrap() }
     }
 
     fn build(&self) -> ViscoelasticContact {
-        ViscoelasticContact::builder(Grid::square(self.cells, SIDE).unwrap())
-            .geometry(&*self.shape)
-            .material(self.material.clone())
-            .attraction(Arc::clone(&self.law))
-            .settings(Settings::default().with_edge(Edge::Allow))
-            .build()
-            .unwrap()
+        self.scene.build(Settings::default())
     }
 
     /// What the load leaves free.
@@ -104,7 +83,7 @@ struct Curve {
 }
 
 impl Curve {
-    fn of(scene: &Scene, short: f64) -> Curve {
+    fn of(scene: &History, short: f64) -> Curve {
         let (mut contact, end) = (scene.build(), scene.turns[6]);
         let (mut points, mut jumps, mut before) = (Vec::new(), Vec::new(), 0.0);
         let count = (end / short).round() as usize;
@@ -159,7 +138,7 @@ fn adaptive_runs_follow_short_steps() {
         .map(|(name, default)| from_environment(name, default));
     let (mut ratios, mut jumps, mut equivalents) = ([const { Vec::new() }; 2], 0, [0.0; 2]);
     for number in first..first + runs {
-        let scene = Scene::draw(number, seed);
+        let scene = History::draw(number, seed);
         let (mut curve, mut is_fine) = (Curve::of(&scene, SHORT), false);
         for (which, tolerance) in [1e-2, 1e-3].into_iter().enumerate() {
             let mut contact = scene.build();
@@ -227,8 +206,8 @@ fn adaptive_runs_follow_short_steps() {
 /// Under a force that pulls, the moment of separation is known to five tolerances of the time of the run: near it, bodies move fast.
 #[test]
 fn the_moment_of_separation() {
-    let scene = Scene::draw(0, 1);
-    let pull = |scene: &Scene, stepping| {
+    let scene = History::draw(0, 1);
+    let pull = |scene: &History, stepping| {
         let path = [(0.0, Load::force(1.0)), (1.0, Load::force(1.0)), (SPAN, Load::force(-9.0))];
         let path = PiecewiseLinear::new(&path).unwrap();
         let mut contact = scene.build();

@@ -3,8 +3,10 @@
 
 use std::sync::Arc;
 
+use super::adhesion_population::{Drawn, Scene};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::sticky::{self, elastic};
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction};
 use viscocontact::contact::{Energies, EnergyBalance, StepError};
 use viscocontact::geometry::Sum;
@@ -75,13 +77,7 @@ fn work_is_stored_or_lost_in_jumps() {
         };
         let wave = Wavy::new(draws.between(0.3, 0.6), side / draws.between(2.5, 3.5)).unwrap();
         let shape = Sum::new(Sphere::new(draws.between(1.0, 1.5)).unwrap(), wave);
-        let mut contact = ViscoelasticContact::builder(Grid::square(cells, side).unwrap())
-            .geometry(&shape)
-            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
-            .attraction(law)
-            .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(true))
-            .build()
-            .unwrap();
+        let mut contact = sticky::ball(cells, side, elastic(), law).geometry(&shape).build().unwrap();
         let touch = contact.approach();
         contact.step(1.0, Load::approach(touch - 2.5)).unwrap();
         let start = stored(&contact);
@@ -110,6 +106,7 @@ fn work_is_stored_or_lost_in_jumps() {
 struct Loop {
     name: String,
     contact: ViscoelasticContact,
+    creeping: bool,
     kind: usize,
     stiffness: f64,
     tilt: f64,
@@ -120,30 +117,16 @@ struct Loop {
 impl Loop {
     fn draw(number: u64) -> Loop {
         let mut draws = Draws::new(3000 * from_environment("ADHESION_SEED", 1) + number);
-        let (mu, kind) = (draws.scale(0.5, 1.4), number as usize % 4);
-        let law = super::adhesion_population::law(&mut draws, 1.0 / mu);
-        let (creeping, material) = super::adhesion_population::material(&mut draws, 0.3);
-        let wavy = Wavy::new(draws.between(0.02, 0.3), 8.0 / draws.between(2.5, 4.0)).unwrap();
-        let sphere = Sphere::new(1.0).unwrap();
-        let shape: Box<dyn Geometry> =
-            if draws.chance(0.5) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
-        let grid = Grid::square((2.0 * (2.2 * 8.0 * mu * mu).ceil()).max(24.0) as usize, 8.0).unwrap();
-        let periodic = draws.chance(0.4) && kind != 3;
-        let kernel =
-            if periodic { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) }.unwrap();
-        let contact = ViscoelasticContact::builder(grid)
-            .geometry(&*shape)
-            .material(material)
-            .kernel(kernel)
-            .attraction(Arc::clone(&law))
-            .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(1e-8))
-            .build()
-            .unwrap();
+        let kind = number as usize % 4;
+        let periodic = if kind == 3 { 0.0 } else { 0.4 };
+        let scene = Scene::draw(
+            &mut draws,
+            &Drawn { side: 8.0, tabor: [0.5, 1.4], heights: [0.02, 0.3], waves: [2.5, 4.0], creeping: 0.3, periodic },
+        );
         Loop {
-            name: format!(
-                "scene {number}: μ = {mu:.2}, load {kind}, {law:?}, creeping {creeping}, periodic {periodic}"
-            ),
-            contact,
+            name: format!("scene {number}: {}, load {kind}", scene.name),
+            contact: scene.build(Settings::default().with_tolerance(1e-8)),
+            creeping: scene.creeping,
             kind,
             stiffness: draws.scale(0.5, 50.0),
             tilt: draws.between(0.02, 0.1),
@@ -193,6 +176,7 @@ fn energies_close_under_every_load() {
             (worst, balance.energies(), greatest)
         });
         let Energies { lost, viscous, .. } = fine.1;
+        assert!(scene.creeping || viscous.abs() < 1e-9 * fine.2, "{}: {viscous} {}", scene.name, fine.2);
         // what is lost: by bodies that neither creep nor snap, nothing
         let whole = (lost + viscous).max(0.1 * fine.2);
         let [e0, e1] = [coarse.0 / whole, fine.0 / whole];

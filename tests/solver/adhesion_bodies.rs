@@ -110,27 +110,3 @@ fn neither_symmetry_threads_nor_the_unit_of_time_change_a_state() {
         worst[0], worst[1]
     );
 }
-
-/// A grid that threads share.
-#[test]
-fn threads_change_no_bit_on_a_large_grid() {
-    let run = || {
-        let mut contact = ViscoelasticContact::builder(Grid::new([150, 140], [8.0, 8.0]).unwrap())
-            .geometry(&Sphere::new(1.0).unwrap())
-            .material(Material::incompressible(GeneralizedMaxwell::new(0.25, &[(0.5, 1.0)]).unwrap()))
-            .attraction(ExponentialAttraction::new(1.0, 1.0).unwrap())
-            .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(false))
-            .build()
-            .unwrap();
-        let mut forces = Vec::new();
-        for approach in [0.5, 0.3, -0.2] {
-            forces.push(contact.step(0.3, Load::approach(approach)).unwrap().force.to_bits());
-        }
-        let mut traction = vec![0.0; contact.grid().len()];
-        contact.traction_into(&mut traction).unwrap();
-        (forces, traction)
-    };
-    let on = |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run);
-    let one = on(1);
-    assert!(on(2) == one && on(3) == one);
-}

@@ -3,6 +3,7 @@
 
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::love::love;
 use crate::common::quadratic::solve_definite;
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::prelude::*;
@@ -10,16 +11,6 @@ use viscocontact::prelude::*;
 const CELLS: usize = 10;
 const SIDE: f64 = 3.3;
 const ALL: usize = CELLS * CELLS;
-
-/// The displacement at a distance (x, y) from the middle of a square of side `side` under unit pressure, E* = 1 (Love 1929).
-fn love(x: f64, y: f64, side: f64) -> f64 {
-    let corner = |x: f64, y: f64| {
-        let part = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() };
-        part(x, y) + part(y, x)
-    };
-    let a = 0.5 * side;
-    (corner(x + a, y + a) - corner(x - a, y + a) - corner(x + a, y - a) + corner(x - a, y - a)) / std::f64::consts::PI
-}
 
 /// The bodies as an energy of their gaps: ½ (h − d)ᵀ K⁻¹ (h − d) − Σ ∫ₕ^∞ s, with d the gap of rigid bodies.
 struct Dense<'a> {
@@ -31,8 +22,8 @@ impl Dense<'_> {
     fn new(law: &dyn Attraction) -> Dense<'_> {
         let side = SIDE / CELLS as f64;
         let at = |k: usize| [k / CELLS, k % CELLS].map(|index| index as f64 * side);
-        let love = |k: usize| love(at(k / ALL)[0] - at(k % ALL)[0], at(k / ALL)[1] - at(k % ALL)[1], side);
-        let matrix: Vec<f64> = (0..ALL * ALL).map(love).collect();
+        let between = |k: usize| [0, 1].map(|axis| at(k / ALL)[axis] - at(k % ALL)[axis]);
+        let matrix: Vec<f64> = (0..ALL * ALL).map(|k| love(between(k), [side; 2])).collect();
         let unit = |k: usize| -> Vec<f64> { (0..ALL).map(|i| f64::from(u8::from(i == k))).collect() };
         Dense { inverse: (0..ALL).map(|k| solve_definite(&matrix, &unit(k)).unwrap()).collect(), law }
     }
@@ -152,61 +143,4 @@ fn elastic_rough_adhesion_is_the_least_energy_of_a_dense_matrix() {
         "{states} states: greatest difference of a traction {worst:.1e} of the greatest, {jumps} between the jumps of the two"
     );
     assert!(worst < 1e-4 && 20 * jumps <= states, "{worst} {jumps} {states}");
-}
-
-/// On periodic bodies a spring carries k (drive − ω), in full contact too, whose ω is the highest: and a state is in balance with the attraction.
-#[test]
-fn springs_on_periodic_bodies_are_in_balance() {
-    let (mut full, mut partial) = (0, 0);
-    for scene in 0..12 {
-        let mut draws = Draws::new(900 + scene);
-        let range = draws.between(1.2, 2.0);
-        let law: std::sync::Arc<dyn Attraction> = match scene % 3 {
-            0 => std::sync::Arc::new(ExponentialAttraction::new(1.0, range).unwrap()),
-            1 => std::sync::Arc::new(VanDerWaals::new(1.0, range).unwrap()),
-            _ => std::sync::Arc::new(Dugdale::new(1.0, range).unwrap()),
-        };
-        let waves: Vec<f64> = (0..3).map(|_| draws.between(0.02, 0.2)).collect();
-        let turn = std::f64::consts::TAU / 4.0;
-        let rough = move |x: f64, y: f64| {
-            waves[0] * (turn * x).cos() + waves[1] * (2.0 * turn * y).cos() + waves[2] * (turn * (x + y)).sin()
-        };
-        let grid = Grid::square(24, 4.0).unwrap();
-        let creeping = GeneralizedMaxwell::new(0.25, &[(0.5, 1.0)]).unwrap();
-        let material: Box<dyn Rheology> =
-            if draws.chance(0.5) { Box::new(creeping) } else { Box::new(Elastic::new(0.25).unwrap()) };
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&FnGeometry::new(rough))
-            .material(Material::incompressible(material))
-            .kernel(InfluenceKernel::periodic(&grid).unwrap())
-            .attraction(std::sync::Arc::clone(&law))
-            .settings(Settings::default().with_edge(Edge::Allow))
-            .build()
-            .unwrap();
-        let stiffness = draws.scale(10.0, 1e5);
-        for drive in [0.3, 1.0, 0.2, 0.5, -0.2, 0.1, -0.6] {
-            let report = contact.step(0.3, Load::spring(stiffness, drive)).unwrap();
-            let carried = stiffness * (drive - report.approach);
-            let mut traction = vec![0.0; contact.grid().len()];
-            contact.traction_into(&mut traction).unwrap();
-            let scale = traction.iter().map(|q| q.abs()).sum::<f64>() * grid.cell_area();
-            let rounding = 1e-12 * stiffness;
-            assert!(
-                (report.force - carried).abs() < 1e-9 * scale + rounding,
-                "scene {scene}, drive {drive}: {} {carried}",
-                report.force
-            );
-            let mut gap = traction.clone();
-            contact.gap_into(&mut gap).unwrap();
-            for (k, (q, h)) in traction.iter().zip(&gap).enumerate() {
-                let z = contact.pressure()[k];
-                let s = law.traction(h.max(0.0));
-                assert!(*h > -1e-9 && (z == 0.0 || *h < 1e-9), "scene {scene}, cell {k}: {z} {h}");
-                assert!((z - s - q).abs() < 3e-4 * law.traction(0.0), "scene {scene}, cell {k}: {z} {s} {q}");
-            }
-            if report.contact_cells == grid.len() { full += 1 } else { partial += 1 }
-        }
-    }
-    println!("{full} states of full contact, {partial} others");
-    assert!(full > 10 && partial > 10, "{full} {partial}");
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::sticky::{ball, elastic};
 use viscocontact::adhesion::{AdhesionError, Attraction, ExponentialAttraction, VanDerWaals};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
@@ -12,12 +13,9 @@ const WIDE: f64 = 32.0;
 
 /// A ball of radius 1 in contact.
 fn pressed(law: &Arc<dyn Attraction>, side: f64, edge: Edge, folded: bool) -> Result<(f64, f64, StepReport), Error> {
-    let mut contact = ViscoelasticContact::builder(Grid::square((FINENESS * side) as usize, side)?)
-        .geometry(&Sphere::new(1.0)?)
-        .material(Material::incompressible(Elastic::new(0.25)?))
-        .attraction(Arc::clone(law))
-        .settings(Settings::default().with_edge(edge).with_symmetry(folded))
-        .build()?;
+    let settings = Settings::default().with_edge(edge).with_symmetry(folded);
+    let cells = (FINENESS * side) as usize;
+    let mut contact = ball(cells, side, elastic(), Arc::clone(law)).settings(settings).build()?;
     let report = contact.step(1.0, Load::approach(0.5))?;
     let mut traction = vec![0.0; contact.grid().len()];
     contact.traction_into(&mut traction)?;

@@ -2,9 +2,8 @@
 //! a checkpoint, by a contact of tolerance 1e-9, in a step under the same load. `ADHESION_FOLDS` (8) chooses the number of scenes, `ADHESION_SEED` (1) others.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use super::adhesion_population::{SIDE, law, rough};
+use super::adhesion_population::{Drawn, SIDE, Scene, rough};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use crate::common::temporary::Temporary;
@@ -25,36 +24,33 @@ struct Pair {
 impl Pair {
     fn draw(number: u64, seed: u64) -> Pair {
         let mut draws = Draws::new(9000 * seed + number);
-        let mu = draws.scale(0.7, 1.5);
-        let law = law(&mut draws, 1.0 / mu);
-        let periodic = draws.chance(0.6);
+        let scene = Scene::draw(
+            &mut draws,
+            &Drawn {
+                side: SIDE,
+                tabor: [0.7, 1.5],
+                heights: [0.1, 0.6],
+                waves: [2.0, 4.0],
+                creeping: 0.0,
+                periodic: 0.6,
+            },
+        );
         // with symmetry, which an unstable state may keep, and without
         let symmetric = draws.chance(0.5);
         let wavy = Wavy::new(draws.between(0.1, 0.6), SIDE / draws.between(2.0, 4.0).round()).unwrap();
-        let rough = rough(&mut draws, 3, [0.05, 0.4]);
+        let rough = rough(&mut draws, SIDE, 3, [0.05, 0.4]);
         let sphere = Sphere::new(1.0).unwrap();
-        let shape: Box<dyn Geometry> = match (symmetric, periodic) {
+        let shape: Box<dyn Geometry> = match (symmetric, scene.periodic) {
             (true, true) if draws.chance(0.5) => Box::new(wavy),
             (true, _) => Box::new(Sum::new(sphere, wavy)),
             (false, true) => Box::new(rough),
             (false, false) => Box::new(Sum::new(sphere, rough)),
         };
-        let grid = Grid::square((2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize, SIDE).unwrap();
-        let kernel =
-            if periodic { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) }.unwrap();
-        let kernel = Arc::new(kernel);
-        let contacts = [Settings::default().tolerance(), 1e-9].map(|tolerance| {
-            ViscoelasticContact::builder(grid.clone())
-                .geometry(&*shape)
-                .material(Material::incompressible(Elastic::new(0.25).unwrap()))
-                .kernel(Arc::clone(&kernel))
-                .attraction(Arc::clone(&law))
-                .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(false).with_tolerance(tolerance))
-                .build()
-                .unwrap()
-        });
-        let name = format!("scene {number}: μ = {mu:.2}, {law:?}, periodic {periodic}, symmetric {symmetric}");
-        Pair { name, contacts, greatest: law.traction(0.0) }
+        let scene = Scene { shape, ..scene };
+        let contacts = [Settings::default().tolerance(), 1e-9]
+            .map(|tolerance| scene.build(Settings::default().with_symmetry(false).with_tolerance(tolerance)));
+        let name = format!("scene {number}: {}, symmetric {symmetric}", scene.name);
+        Pair { name, contacts, greatest: scene.law.traction(0.0) }
     }
 
     /// How far the state moves at the fine tolerance: the greatest change of the tractions, over the greatest traction of the law.

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::common::environment::from_environment;
+use crate::common::sticky::{ball, elastic, least};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::analytic::Jkr;
 use viscocontact::prelude::*;
@@ -20,23 +21,12 @@ const ORDER: f64 = 1.5;
 /// Forces at JKR's approaches, and the greatest pull among them and between, under a range.
 fn retracted(range: f64, approaches: &[f64]) -> (Vec<f64>, f64) {
     let cells = 2 * (0.5 * ZONE * SIDE / (range * range)).ceil() as usize;
-    let mut contact = ViscoelasticContact::builder(Grid::square(cells, SIDE).unwrap())
-        .geometry(&Sphere::new(1.0).unwrap())
-        .material(Material::incompressible(Elastic::new(0.25).unwrap()))
-        .attraction(ExponentialAttraction::new(1.0, range).unwrap())
-        .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(true))
-        .build()
-        .unwrap();
+    let law = ExponentialAttraction::new(1.0, range).unwrap();
+    let mut contact = ball(cells, SIDE, elastic(), law).build().unwrap();
     contact.step(1.0, Load::approach(approaches[0] + 0.2)).unwrap();
-    let forces: Vec<f64> =
-        approaches.iter().map(|&approach| contact.step(1.0, Load::approach(approach)).unwrap().force).collect();
-    // of a parabola through the three least
-    let k = (1..forces.len() - 1).min_by(|&i, &j| forces[i].total_cmp(&forces[j])).unwrap();
-    let [(x0, y0), (x1, y1), (x2, y2)] = [k - 1, k, k + 1].map(|k| (approaches[k], forces[k]));
-    let (first, second) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
-    let bend = (second - first) / (x2 - x0);
-    let x = 0.5 * (x0 + x1) - 0.5 * first / bend;
-    (forces, y0 + first * (x - x0) + bend * (x - x0) * (x - x1))
+    let mut step = |approach: f64| (approach, contact.step(1.0, Load::approach(approach)).unwrap().force);
+    let path: Vec<(f64, f64)> = approaches.iter().map(|&approach| step(approach)).collect();
+    (path.iter().map(|(_, force)| *force).collect(), least(&path))
 }
 
 #[test]

@@ -1,17 +1,13 @@
 //! Every step beside a jump ends, however fine its tolerance and however short it is: random scenes are led up to each of their jumps by steps
 //! that are halved, and through it by a step of the least length. `ADHESION_JUMPS` (6) chooses the number of scenes, `ADHESION_SEED` (1) others.
 
-use std::sync::Arc;
-
-use super::adhesion_population::{check, law, material};
+use super::adhesion_population::{Drawn, SIDE, Scene, check};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use viscocontact::adhesion::AdhesionError;
 use viscocontact::contact::Warnings;
-use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
-const SIDE: f64 = 4.0;
 /// Steps tried on a way down or back, at most.
 const MOST_STEPS: usize = 400;
 
@@ -21,26 +17,22 @@ fn every_step_beside_a_jump_ends() {
     let (mut steps, mut passes, mut most, mut jumps) = (0, 0, 0, 0);
     for number in 0..scenes {
         let mut draws = Draws::new(1000 * (seed - 1) + number);
-        let mu = draws.scale(0.8, 2.2);
-        let law = law(&mut draws, 1.0 / mu);
-        let sphere = Sphere::new(1.0).unwrap();
-        let wavy = Wavy::new(draws.between(0.05, 0.5), SIDE / draws.between(2.0, 4.0)).unwrap();
-        let shape: Box<dyn Geometry> =
-            if draws.chance(0.5) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
-        let (creeping, material) = material(&mut draws, 0.4);
-        let cells = (2.0 * (2.0 * SIDE * mu * mu).ceil()).max(16.0) as usize;
+        let scene = Scene::draw(
+            &mut draws,
+            &Drawn {
+                side: 4.0,
+                tabor: [0.8, 2.2],
+                heights: [0.05, 0.5],
+                waves: [2.0, 4.0],
+                creeping: 0.4,
+                periodic: 0.0,
+            },
+        );
         let tolerance = draws.scale(1e-9, 1e-3);
         let (kind, shortest, time) = (draws.below(3), draws.scale(1e-6, 1e-3), draws.scale(0.1, 10.0));
-        let name = format!(
-            "scene {number}: μ = {mu:.2}, {cells}², tolerance {tolerance:.1e}, steps of {shortest:.1e}, load {kind}, {law:?}"
-        );
-        let mut contact = ViscoelasticContact::builder(Grid::square(cells, SIDE).unwrap())
-            .geometry(&*shape)
-            .material(material)
-            .attraction(Arc::clone(&law))
-            .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance).with_symmetry(true))
-            .build()
-            .unwrap();
+        let name =
+            format!("scene {number}: {}, tolerance {tolerance:.1e}, steps of {shortest:.1e}, load {kind}", scene.name);
+        let mut contact = scene.build(Settings::default().with_tolerance(tolerance));
         let touch = contact.approach();
         let load = |at: f64| match kind {
             0 => Load::approach(touch + at),
@@ -72,7 +64,7 @@ fn every_step_beside_a_jump_ends() {
                 }
                 assert!(own.rise < 1e-6, "{name}, at {at} by {length:.1e}: {own:?}");
                 if tolerance < 1e-5 {
-                    check(&format!("{name}, at {at} by {length:.1e}"), &contact, &*law, !creeping);
+                    check(&format!("{name}, at {at} by {length:.1e}"), &contact, &*scene.law, !scene.creeping);
                 }
                 (at, length) = (at + length, longest);
                 if (to - at) * longest < 0.0 {
@@ -93,24 +85,18 @@ fn jumps_are_what_stays_in_parts() {
     let (mut flagged, mut real, mut missed, mut wrong, mut steps, mut looks) = (0, 0, 0, 0, 0, 0);
     for number in 0..scenes {
         let mut draws = Draws::new(7000 * from_environment("ADHESION_SEED", 1) + number);
-        let mu = draws.scale(0.5, 1.4);
-        let law = law(&mut draws, 1.0 / mu);
-        let (_, material) = material(&mut draws, 0.3);
-        let wavy = Wavy::new(draws.between(0.02, 0.4), 8.0 / draws.between(2.0, 5.0)).unwrap();
-        let sphere = Sphere::new(1.0).unwrap();
-        let shape: Box<dyn Geometry> =
-            if draws.chance(0.5) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
-        let grid = Grid::square((2.0 * (2.2 * 8.0 * mu * mu).ceil()).max(24.0) as usize, 8.0).unwrap();
-        let kernel =
-            if draws.chance(0.4) { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) };
-        let mut contact = ViscoelasticContact::builder(grid)
-            .geometry(&*shape)
-            .material(material)
-            .kernel(kernel.unwrap())
-            .attraction(Arc::clone(&law))
-            .settings(Settings::default().with_edge(Edge::Allow))
-            .build()
-            .unwrap();
+        let scene = Scene::draw(
+            &mut draws,
+            &Drawn {
+                side: SIDE,
+                tabor: [0.5, 1.4],
+                heights: [0.02, 0.4],
+                waves: [2.0, 5.0],
+                creeping: 0.3,
+                periodic: 0.4,
+            },
+        );
+        let (law, mut contact) = (&scene.law, scene.build(Settings::default()));
         let (kind, count, dt) = (number % 3, draws.scale(10.0, 80.0) as u32, draws.scale(0.02, 2.0));
         let (stiffness, down, touch) = (draws.scale(1.0, 50.0), draws.between(0.2, 0.8), contact.approach());
         let load = |way: f64| {
@@ -162,8 +148,8 @@ fn jumps_are_what_stays_in_parts() {
             real += usize::from(left > 0.25);
             if (left > 0.25 && !is_flagged) || (left < 0.06 && is_flagged) {
                 println!(
-                    "scene {number}, step {k}: load {kind}, μ = {mu:.2}, released {:.3e}, {left:.3} left, flagged {is_flagged}",
-                    own.released
+                    "scene {number}, step {k}: {}, load {kind}, released {:.3e}, {left:.3} left, flagged {is_flagged}",
+                    scene.name, own.released
                 );
             }
             missed += usize::from(left > 0.25 && !is_flagged);

@@ -1,11 +1,10 @@
 //! Random scenes of surfaces that attract each other: every step ends, its energy falls from pass to pass, and its state satisfies the equations,
-//! found from its fields alone. `ADHESION_SCENES` (12), `ADHESION_SEED` (1) and `ADHESION_TABOR` (12, tenths of the greatest Tabor number)
+//! found from its fields alone. `ADHESION_SCENES` (20), `ADHESION_SEED` (1) and `ADHESION_TABOR` (12, tenths of the greatest Tabor number)
 //! choose others.
 
 use std::sync::Arc;
 
-use crate::common::draws::Draws;
-use crate::common::environment::from_environment;
+use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::contact::StepError;
 use viscocontact::geometry::Sum;
@@ -23,7 +22,7 @@ pub(super) fn law(draws: &mut Draws, range: f64) -> Arc<dyn Attraction> {
 }
 
 /// Six waves of up to `most` periods along each axis of the side, with heights between two.
-pub(super) fn rough(draws: &mut Draws, most: usize, [low, high]: [f64; 2]) -> impl Geometry + use<> {
+pub(super) fn rough(draws: &mut Draws, side: f64, most: usize, [low, high]: [f64; 2]) -> impl Geometry + use<> {
     let waves: Vec<[f64; 4]> = (0..6)
         .map(|_| {
             let [a, b] = [0, 1].map(|_| draws.below(2 * most + 1) as f64 - most as f64);
@@ -31,26 +30,23 @@ pub(super) fn rough(draws: &mut Draws, most: usize, [low, high]: [f64; 2]) -> im
         })
         .collect();
     FnGeometry::new(move |x: f64, y: f64| {
-        let turn = std::f64::consts::TAU / SIDE;
+        let turn = std::f64::consts::TAU / side;
         waves.iter().map(|[a, b, height, phase]| height * (turn * (a * x + b * y) + phase).cos()).sum::<f64>()
     })
 }
 
-fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
-    let sphere = || Sphere::new(1.0).unwrap();
+/// Another shape than a ball, in most scenes; `low` are waves that periodic bodies close over.
+fn shape(draws: &mut Draws, low: bool) -> Option<Box<dyn Geometry>> {
     match draws.below(5) {
-        0 => ("sphere", Box::new(sphere())),
-        1 => ("punch", Box::new(FlatPunch::circular(draws.between(1.0, 2.5)).unwrap())),
-        2 => {
-            let wavy = Wavy::new(draws.between(0.05, 0.5), SIDE / draws.between(3.0, 6.0)).unwrap();
-            ("wavy sphere", Box::new(Sum::new(sphere(), wavy)))
-        }
-        _ => ("rough", Box::new(rough(draws, 2, [0.1, 0.5]))),
+        _ if low => Some(Box::new(rough(draws, SIDE, 2, [0.01, 0.06]))),
+        0 | 1 => None,
+        2 => Some(Box::new(FlatPunch::circular(draws.between(1.0, 2.5)).unwrap())),
+        _ => Some(Box::new(rough(draws, SIDE, 2, [0.1, 0.5]))),
     }
 }
 
 /// A body that creeps in such a share of all draws, and whether it does.
-pub(super) fn material(draws: &mut Draws, share: f64) -> (bool, Material) {
+fn material(draws: &mut Draws, share: f64) -> (bool, Material) {
     let creeping = draws.chance(share);
     let terms: Vec<_> = (0..1 + draws.below(3)).map(|_| (draws.scale(0.05, 2.0), draws.scale(0.1, 10.0))).collect();
     let rheology: Box<dyn Rheology> = match creeping {
@@ -58,6 +54,55 @@ pub(super) fn material(draws: &mut Draws, share: f64) -> (bool, Material) {
         true => Box::new(GeneralizedMaxwell::new(0.25, &terms).unwrap()),
     };
     (creeping, Material::incompressible(rheology))
+}
+
+/// Ranges and shares of scenes.
+pub(super) struct Drawn {
+    pub side: f64,
+    pub tabor: [f64; 2],
+    /// Of the waves on half of the balls: their heights, and how many there are along the side.
+    pub heights: [f64; 2],
+    pub waves: [f64; 2],
+    pub creeping: f64,
+    pub periodic: f64,
+}
+
+/// A ball on a mesh that resolves the zone of its attraction, before its load.
+pub(super) struct Scene {
+    pub name: String,
+    pub law: Arc<dyn Attraction>,
+    pub shape: Box<dyn Geometry>,
+    pub material: Material,
+    pub creeping: bool,
+    pub kernel: Arc<InfluenceKernel>,
+    pub periodic: bool,
+}
+
+impl Scene {
+    pub fn draw(draws: &mut Draws, drawn: &Drawn) -> Scene {
+        let Drawn { side, tabor, heights, waves, .. } = *drawn;
+        let mu = draws.scale(tabor[0], tabor[1]);
+        let law = law(draws, 1.0 / mu);
+        let (creeping, material) = material(draws, drawn.creeping);
+        let wavy = Wavy::new(draws.between(heights[0], heights[1]), side / draws.between(waves[0], waves[1])).unwrap();
+        let sphere = Sphere::new(1.0).unwrap();
+        let shape: Box<dyn Geometry> =
+            if draws.chance(0.5) { Box::new(sphere) } else { Box::new(Sum::new(sphere, wavy)) };
+        let cells = (2.0 * (2.2 * side * mu * mu).ceil()).max(24.0) as usize;
+        let (grid, periodic) = (Grid::square(cells, side).unwrap(), draws.chance(drawn.periodic));
+        let kernel = if periodic { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) };
+        let name = format!("μ = {mu:.2}, {cells}², {law:?}, creeping {creeping}, periodic {periodic}");
+        Scene { name, law, shape, material, creeping, kernel: Arc::new(kernel.unwrap()), periodic }
+    }
+
+    pub fn build(&self, settings: Settings) -> ViscoelasticContact {
+        builder_of(&*self.shape, self.kernel.grid().clone(), self.material.clone())
+            .kernel(Arc::clone(&self.kernel))
+            .attraction(Arc::clone(&self.law))
+            .settings(settings.with_edge(Edge::Allow))
+            .build()
+            .unwrap()
+    }
 }
 
 /// The state satisfies the equations of a step.
@@ -95,34 +140,24 @@ pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attract
 
 #[test]
 fn random_scenes() {
-    let scenes = from_environment("ADHESION_SCENES", 12);
+    let scenes = from_environment("ADHESION_SCENES", 20);
     let (seed, tabor) = (from_environment("ADHESION_SEED", 1), from_environment("ADHESION_TABOR", 12) as f64 / 10.0);
-    let (mut passes, mut most, mut worst, mut work, mut pulled, mut apart) = (0, 0, 0.0f64, Vec::new(), 0, 0);
-    for scene in 0..scenes {
-        let mut draws = Draws::new(1000 * seed + scene);
-        let mu = draws.scale(0.1, tabor);
-        let law = law(&mut draws, 1.0 / mu);
-        let ((shape_name, shape), (creeping, material)) = (shape(&mut draws), material(&mut draws, 0.6));
-        let cells = (2.0 * (2.2 * SIDE * mu * mu).ceil()).max(24.0) as usize;
-        let grid = Grid::square(cells, SIDE).unwrap();
-        let periodic = draws.chance(0.4);
-        let kernel =
-            if periodic { InfluenceKernel::periodic(&grid) } else { InfluenceKernel::half_space(&grid) }.unwrap();
-        let built = ViscoelasticContact::builder(grid)
-            .geometry(&*shape)
-            .material(material)
-            .kernel(kernel)
-            .attraction(Arc::clone(&law))
-            .settings(Settings::default().with_edge(Edge::Allow))
-            .build();
-        let mut contact = built.unwrap();
-        let (kind, step) = (draws.below(3), draws.scale(0.05, 5.0));
-        let stiffness = if kind == 1 { draws.scale(0.5, 1e4) } else { 0.0 };
-        let name = format!(
-            "scene {scene}: {shape_name}, {cells}², μ = {mu:.2}, {law:?}, load {kind} ({stiffness:.1}), {}{}",
-            if creeping { "creeping" } else { "elastic" },
-            if periodic { ", periodic" } else { "" }
-        );
+    let (mut passes, mut most, mut worst, mut work) = (0, 0, 0.0f64, Vec::new());
+    let (mut pulled, mut apart, mut full) = (0, 0, 0);
+    for number in 0..scenes {
+        let mut draws = Draws::new(1000 * seed + number);
+        let closes = number % 5 == 0;
+        let periodic = if closes { 1.0 } else { 0.4 };
+        let (heights, waves) = ([0.05, 0.5], [3.0, 6.0]);
+        let drawn = Drawn { side: SIDE, tabor: [0.1, tabor], heights, waves, creeping: 0.6, periodic };
+        let scene = Scene::draw(&mut draws, &drawn);
+        let scene = match shape(&mut draws, closes) {
+            Some(shape) => Scene { shape, ..scene },
+            None => scene,
+        };
+        let (kind, step, stiffness) = (number % 3, draws.scale(0.05, 5.0), draws.scale(0.5, 1e5));
+        let name = format!("scene {number}: {:?}, {}, load {kind} ({stiffness:.1})", scene.shape, scene.name);
+        let mut contact = scene.build(Settings::default());
         let touch = contact.approach();
         for k in 0..16 {
             let course = f64::from(k) / 15.0;
@@ -130,15 +165,16 @@ fn random_scenes() {
             let load = match kind {
                 0 => Load::approach(touch + 0.8 * down - 0.2),
                 1 => Load::spring(stiffness, touch + 1.5 * down - 0.3),
-                _ => Load::force(4.0 * down),
+                _ => Load::force(if down > 0.0 { 4.0 * down } else { 10.0 * down }),
             };
             match contact.step(step, load) {
                 Ok(report) => {
                     let own = contact.passes().unwrap();
-                    check(&format!("{name}, step {k}"), &contact, &*law, !creeping);
+                    check(&format!("{name}, step {k}"), &contact, &*scene.law, !scene.creeping);
                     (passes, most, worst) = (passes + own.passes, most.max(own.passes), worst.max(own.rise));
                     work.push(report.convolution_equivalents());
                     apart += usize::from(report.contact_cells == 0);
+                    full += usize::from(report.contact_cells == contact.grid().len());
                     assert!(own.rise < 1e-6, "{name}, step {k}: {own:?}");
                 }
                 Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if kind == 2 && down < 0.0 => {
@@ -146,7 +182,7 @@ fn random_scenes() {
                     break;
                 }
                 // full contact of a periodic body has no greater approach
-                Err(Error::Step(StepError::BeyondFullContact { .. })) if periodic => break,
+                Err(Error::Step(StepError::BeyondFullContact { .. })) if scene.periodic => break,
                 Err(error) => panic!("{name}, step {k}: {error}"),
             }
         }
@@ -154,11 +190,12 @@ fn random_scenes() {
     work.sort_by(f64::total_cmp);
     let quantile = |part: f64| work[(part * (work.len() - 1) as f64) as usize];
     println!(
-        "{scenes} scenes, {} steps, {apart} apart, {pulled} pulled off; {passes} passes, at most {most} in a step; energy rises {worst:.1e}; \
+        "{scenes} scenes, {} steps, {apart} apart, {full} in full contact, {pulled} pulled off; {passes} passes, at most {most} in a step; energy rises {worst:.1e}; \
          convolution equivalents of a step: median {}, 90 % {}, most {}",
         work.len(),
         quantile(0.5),
         quantile(0.9),
         quantile(1.0)
     );
+    assert!(pulled > 0 && apart > 0 && full > 0, "{pulled} {apart} {full}");
 }

@@ -1,6 +1,7 @@
 //! When are bodies that attract each other apart? Random laws and bodies, pulled off under a given approach. `ADHESION_PULLS` (12) chooses how many.
 
 use super::adhesion_population::law;
+use crate::common::sticky::{ball, elastic};
 use crate::common::{Draws, from_environment};
 use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
 use viscocontact::contact::Contact;
@@ -22,13 +23,10 @@ fn bodies_are_apart_when_no_attraction_is_left_to_overcome() {
         let (range, stiff) = (draws.between(0.8, 1.6), draws.between(0.0, 1.0));
         let law = law(&mut draws, range);
         let energy = |gap: f64| law.energy(gap);
-        let mut contact = ViscoelasticContact::builder(Grid::square(30, 8.0).unwrap())
-            .geometry(&Sphere::new(1.0).unwrap())
-            .material(Material::incompressible(GeneralizedMaxwell::new(0.25, &[(0.25 * stiff, 1.0)]).unwrap()))
-            .attraction(law.clone())
-            .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(draws.chance(0.5)))
-            .build()
-            .unwrap();
+        let body = GeneralizedMaxwell::new(0.25, &[(0.25 * stiff, 1.0)]).unwrap();
+        let settings = Settings::default().with_edge(Edge::Allow).with_symmetry(draws.chance(0.5));
+        let builder = ball(30, 8.0, Material::incompressible(body), law.clone());
+        let mut contact = builder.settings(settings).build().unwrap();
         let dt = draws.power_of_ten(-2.0, 1.0);
         contact.step(10.0, Load::approach(0.5)).unwrap();
         let (mut greatest, mut parted) = (0.0_f64, None);
@@ -72,13 +70,9 @@ fn bodies_without_attraction_are_apart_at_once() {
 #[test]
 fn an_eccentric_pull_peels_at_one_force() {
     let forces = [0.5, 0.1, 0.02].map(|step| {
-        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0).unwrap())
-            .geometry(&FlatPunch::circular(1.0).unwrap())
-            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
-            .attraction(ExponentialAttraction::new(1.0, 0.8).unwrap())
-            .settings(Settings::default().with_edge(Edge::Allow))
-            .build()
-            .unwrap();
+        let law = ExponentialAttraction::new(1.0, 0.8).unwrap();
+        let punch = FlatPunch::circular(1.0).unwrap();
+        let mut contact = ball(32, 4.0, elastic(), law).geometry(&punch).build().unwrap();
         let load = |force: f64| Load::eccentric_force(force, [0.2, 0.0]);
         contact.step(1.0, load(1.0)).unwrap();
         let (mut force, mut step): (f64, f64) = (1.0, step);

@@ -1,5 +1,6 @@
 //! Does the length of steps change a state of surfaces that attract each other? Elastic bodies: no; creeping ones: by an order in time.
 
+use crate::common::sticky::{ball, elastic};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -7,13 +8,9 @@ use viscocontact::prelude::*;
 /// A wavy sphere at Tabor's number 0.8, which never jumps.
 fn contact(material: Material) -> ViscoelasticContact {
     let shape = Sum::new(Sphere::new(1.0).unwrap(), Wavy::new(0.03, 2.0).unwrap());
-    ViscoelasticContact::builder(Grid::square(32, 6.0).unwrap())
-        .geometry(&shape)
-        .material(material)
-        .attraction(ExponentialAttraction::new(1.0, 1.25).unwrap())
-        .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(true).with_tolerance(1e-8))
-        .build()
-        .unwrap()
+    let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(1e-8);
+    let law = ExponentialAttraction::new(1.0, 1.25).unwrap();
+    ball(32, 6.0, material, law).geometry(&shape).settings(settings).build().unwrap()
 }
 
 /// The net traction after a way down and a way back, of `count` steps each, which take a time of 2 together, after a jump.
@@ -39,7 +36,6 @@ fn difference(one: &[f64], other: &[f64]) -> f64 {
 
 #[test]
 fn the_length_of_steps_changes_no_elastic_state() {
-    let elastic = || Material::incompressible(Elastic::new(0.25).unwrap());
     let best = end(elastic(), 40);
     let errors = [1, 4, 13].map(|count| difference(&end(elastic(), count), &best));
     println!("1, 4 and 13 steps each way in place of 40: {errors:?}");
@@ -61,13 +57,9 @@ fn creeping_states_converge_with_the_order_of_the_rule() {
 #[test]
 fn the_tolerance_is_that_of_the_force() {
     let path = |tolerance: f64| {
-        let mut contact = ViscoelasticContact::builder(Grid::square(48, 8.0).unwrap())
-            .geometry(&Sphere::new(1.0).unwrap())
-            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
-            .attraction(ExponentialAttraction::new(1.0, 1.0).unwrap())
-            .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance))
-            .build()
-            .unwrap();
+        let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance);
+        let law = ExponentialAttraction::new(1.0, 1.0).unwrap();
+        let mut contact = ball(48, 8.0, elastic(), law).settings(settings).build().unwrap();
         [0.4, 0.7, 0.2, -0.3, -0.8, -1.2].map(|approach| contact.step(1.0, Load::approach(approach)).unwrap().force)
     };
     let exact = path(1e-10);

@@ -3,23 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::figures;
+use crate::common::sticky::{ball, elastic};
+use crate::common::{contact_of, figures};
 use viscocontact::Special;
 use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::prelude::*;
-
-fn sphere(cells: usize, side: f64, material: Material, law: Arc<dyn Attraction>) -> Result<ViscoelasticContact, Error> {
-    ViscoelasticContact::builder(Grid::square(cells, side)?)
-        .geometry(&Sphere::new(1.0)?)
-        .material(material)
-        .attraction(law)
-        .settings(Settings::default().with_edge(Edge::Allow).with_symmetry(true))
-        .build()
-}
-
-fn elastic() -> Material {
-    Material::incompressible(Elastic::new(0.25).unwrap())
-}
 
 /// Greatest pull on the way back from `start` in steps of `by` that take a time of `by` over `speed`.
 fn greatest_pull(contact: &mut ViscoelasticContact, start: f64, by: f64, speed: f64) -> f64 {
@@ -62,14 +50,14 @@ fn pull_off_errs_by_the_cells_in_the_zone() {
     for (name, length, law) in LAWS {
         row(name, &|zone| {
             let cells = 2 * (4.0 * zone / length).round() as usize;
-            greatest_pull(&mut sphere(cells, 8.0, elastic(), law()).unwrap(), 0.6, 0.06, 1.0)
+            greatest_pull(&mut ball(cells, 8.0, elastic(), law()).build().unwrap(), 0.6, 0.06, 1.0)
         });
     }
     // stiffer by ten at once; zones on the relaxed body
     for (name, speed) in [("creeping, slow", 0.01), ("creeping, fast", 100.0)] {
         row(name, &|zone| {
             let creeping = Material::incompressible(GeneralizedMaxwell::new(0.25, &[(2.25, 1.0)]).unwrap());
-            let mut contact = sphere((12.0 * zone) as usize, 12.0, creeping, LAWS[0].2()).unwrap();
+            let mut contact = ball((12.0 * zone) as usize, 12.0, creeping, LAWS[0].2()).build().unwrap();
             for _ in 0..3 {
                 contact.step(1e4, Load::approach(3.0)).unwrap();
             }
@@ -84,7 +72,7 @@ fn pull_off_errs_by_the_cells_in_the_zone() {
 #[test]
 fn contact_ends_where_the_wall_presses() {
     let errors = [24, 48, 96].map(|cells| {
-        let mut contact = sphere(cells, 8.0, elastic(), LAWS[0].2()).unwrap();
+        let mut contact = ball(cells, 8.0, elastic(), LAWS[0].2()).build().unwrap();
         contact.step(1.0, Load::approach(1.4006335)).unwrap();
         let error = contact.mesh_error().unwrap_err();
         assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
@@ -97,7 +85,7 @@ fn contact_ends_where_the_wall_presses() {
 /// A law whose end is steep has a shorter zone, and is refused on a mesh that resolves one of the same work and range.
 #[test]
 fn the_steepest_slope_counts() {
-    let zone = |law: Arc<dyn Attraction>| match sphere(16, 16.0, elastic(), law) {
+    let zone = |law: Arc<dyn Attraction>| match ball(16, 16.0, elastic(), law).build() {
         Err(Error::Adhesion(AdhesionError::ZoneNotResolved { cells, range, .. })) => (cells, range),
         other => panic!("{other:?}"),
     };
@@ -111,7 +99,7 @@ fn the_steepest_slope_counts() {
     let narrow = |range: f64| Arc::new(Dugdale::new(1.0, range).unwrap().with_width(0.1).unwrap());
     let (cells, range) = zone(narrow(1.0));
     assert!((cells - 0.1).abs() < 1e-3, "{cells}");
-    assert!(sphere(16, 16.0, elastic(), narrow(1.001 * range)).is_ok());
+    assert!(ball(16, 16.0, elastic(), narrow(1.001 * range)).build().is_ok());
 }
 
 /// Net traction and pressure of the wall are written and drawn apart.
@@ -120,7 +108,7 @@ fn net_traction_is_shown_beside_the_pressure() {
     use viscocontact::output::Field;
     use viscocontact::plot::Map;
 
-    let mut contact = sphere(32, 8.0, elastic(), LAWS[0].2()).unwrap();
+    let mut contact = ball(32, 8.0, elastic(), LAWS[0].2()).build().unwrap();
     contact.step(1.0, Load::approach(1.0)).unwrap();
     assert_eq!(Field::of(&contact), Field::ALL);
     let profile = contact.profile(Axis::X1, 0.0).unwrap();
@@ -130,13 +118,11 @@ fn net_traction_is_shown_beside_the_pressure() {
     assert!(profile.pressure.iter().all(|p| *p >= 0.0) && profile.traction.iter().any(|q| *q < -0.1));
     let [net, wall] = [Map::traction(&contact).unwrap(), Map::pressure(&contact).unwrap()];
     assert!(net.values() == traction && net.range[0] < -0.1 && wall.range[0] == 0.0);
-    let mut plain = ViscoelasticContact::builder(Grid::square(32, 8.0).unwrap())
-        .geometry(&Sphere::new(1.0).unwrap())
-        .material(elastic())
-        .build()
-        .unwrap();
+    let grid = Grid::square(32, 8.0).unwrap();
+    let mut plain = contact_of(&Sphere::new(1.0).unwrap(), grid, elastic(), Settings::default());
     plain.step(1.0, Load::force(1.0)).unwrap();
     assert_eq!(Field::of(&plain), &Field::ALL[..3]);
     let profile = plain.profile(Axis::X1, 0.0).unwrap();
     assert_eq!(profile.pressure, profile.traction);
+    assert!(plain.passes().is_none() && plain.traction_into(&mut traction[1..]).is_err());
 }

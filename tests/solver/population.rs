@@ -1,61 +1,31 @@
 //! The work of warm steps over a population of scenes drawn at random, on meshes finer than a dense reference could follow: no
 //! step may stall. `POPULATION_SCENES` (14) and `POPULATION_SEED` (1) choose others.
 
+use super::differential::scenes::{self, SIDE};
 use crate::common::{Draws, Ratios, builder_of, from_environment};
-use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
-const LENGTH: f64 = 1.0;
-
-/// A shape that a load presses over `part` of the square.
-fn shape(draws: &mut Draws, part: f64) -> (&'static str, Box<dyn Geometry>) {
-    let sphere = || Sphere::new(10.0).unwrap();
-    match draws.below(8) {
-        0 | 1 => ("sphere", Box::new(sphere())),
-        2 => ("ellipsoid", Box::new(Ellipsoid::new(10.0, draws.between(4.0, 10.0)).unwrap())),
-        3 => ("cone", Box::new(Cone::new(0.05).unwrap())),
-        4 => ("punch", Box::new(FlatPunch::circular(0.5 * part * LENGTH).unwrap())),
-        5 => {
-            let (count, height) = (2.0 + draws.below(12) as f64, draws.power_of_ten(-4.0, -2.5));
-            let wave = move |x: f64| 1.0 - (count * std::f64::consts::TAU * x / LENGTH).cos();
-            ("bumps", Box::new(FnGeometry::new(move |x, y| height * (wave(x) + wave(y) + 0.3 * x + 0.1 * y))))
-        }
-        6 => {
-            let wavy = Wavy::new(draws.power_of_ten(-4.5, -3.0), LENGTH / draws.between(3.0, 10.0)).unwrap();
-            ("wavy sphere", Box::new(Sum::new(sphere(), wavy)))
-        }
-        _ => {
-            let [a, b, c] = [0.3, 0.7, 1.9].map(|f| f * draws.between(5.0, 20.0));
-            let rough =
-                move |x: f64, y: f64| 2e-4 * ((a * x + b * y).sin() + (b * x - c * y).cos() + (c * x * y).sin());
-            ("rough sphere", Box::new(FnGeometry::new(move |x, y| (x * x + y * y) / 20.0 + rough(x, y))))
-        }
+/// Bumps that may repeat, or any other shape.
+fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
+    if draws.chance(0.8) {
+        return scenes::shape(draws);
     }
-}
-
-fn body(draws: &mut Draws) -> Material {
-    match draws.below(4) {
-        0 => Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()),
-        1 => Material::incompressible(Zener::new(1.0e6, 1.0e6 / draws.between(0.5, 8.0), 1.0e6).unwrap()),
-        2 => Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0).unwrap()),
-        _ => {
-            let terms: Vec<(f64, f64)> = (0..5).map(|k| (1.0e-6, 10f64.powi(k - 3))).collect();
-            Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap())
-        }
-    }
+    let (count, height) = (2.0 + draws.below(12) as f64, SIDE * draws.power_of_ten(-4.0, -2.5));
+    let wave = move |x: f64| 1.0 - (count * std::f64::consts::TAU * x / SIDE).cos();
+    ("bumps", Box::new(FnGeometry::new(move |x, y| height * (wave(x) + wave(y) + (0.3 * x + 0.1 * y) / SIDE))))
 }
 
 /// Warm steps of the scene of a seed, under a load that is held, grows, falls or moves.
 fn run(seed: u64, costs: &mut Ratios) {
     let mut draws = Draws::new(seed);
     let cells = 48 + 2 * draws.below(60);
-    let grid = Grid::square(cells, LENGTH).unwrap();
+    let grid = Grid::square(cells, SIDE).unwrap();
     let part = draws.between(0.2, 0.85);
-    let (shape, geometry) = shape(&mut draws, part);
+    let (shape, geometry) = shape(&mut draws);
     let periodic = matches!(shape, "bumps") && draws.chance(0.5);
     let symmetry = draws.chance(0.3);
     let settings = Settings::default().with_symmetry(symmetry).with_window(draws.chance(0.3)).with_edge(Edge::Allow);
-    let material = body(&mut draws);
+    let material = scenes::Body::random(&mut draws).material();
     let build = |material: Material| {
         let mut builder = builder_of(&geometry, grid.clone(), material);
         if periodic {
@@ -70,13 +40,13 @@ fn run(seed: u64, costs: &mut Ratios) {
         let mut elastic = build(Material::incompressible(Elastic::new(1.0e6).unwrap()));
         elastic.step(0.0, Load::force(force)).unwrap();
         let cells = elastic.contact_cells() as f64;
-        let wide = cells * elastic.grid().cell_area() > part * part * 0.8 * LENGTH * LENGTH;
+        let wide = cells * elastic.grid().cell_area() > part * part * 0.8 * SIDE * SIDE;
         if wide { high = force } else { low = force }
     }
     let force = low;
     let tilting = !periodic && draws.chance(0.3);
     let (way, dt) = (draws.below(5), draws.power_of_ten(-3.0, -0.3));
-    let reach = if tilting { 0.1 * part * LENGTH } else { 0.0 };
+    let reach = if tilting { 0.1 * part * SIDE } else { 0.0 };
     let mut contact = build(material);
     for step in 0..12 {
         let t = f64::from(step) / 12.0;

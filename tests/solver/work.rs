@@ -78,25 +78,6 @@ fn a_rough_surface_takes_as_much_work_on_every_mesh() {
     }
 }
 
-#[test]
-fn an_eccentric_punch_takes_at_most_13_iterations() {
-    for n in meshes(128) {
-        let iterations: Vec<usize> = (0..10)
-            .map(|tenths| {
-                let mut contact = contact_of(
-                    &FlatPunch::circular(1.0e-3).unwrap(),
-                    Grid::square(n, 2.4e-3).unwrap(),
-                    elastic(),
-                    Settings::default(),
-                );
-                contact.step(0.0, Load::eccentric_force(1.0, [1.0e-4 * tenths as f64, 0.0])).unwrap().iterations
-            })
-            .collect();
-        println!("punch {n}², e = 0 … 0.9 R: {iterations:?} iterations");
-        assert!(iterations.iter().all(|&count| count <= 13), "{iterations:?}");
-    }
-}
-
 /// A thousand asperities against a sphere that touches as many cells.
 #[test]
 fn a_thousand_contacts_take_half_as_much_work_again_as_one() {

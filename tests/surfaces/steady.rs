@@ -5,7 +5,6 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time};
 use crate::common::{Draws, builder_of, from_environment};
-use viscocontact::analytic::RollingCylinder;
 use viscocontact::contact::{Builder, Edge, Unsteady};
 use viscocontact::prelude::*;
 
@@ -361,19 +360,4 @@ fn a_body_without_elastic_response_arrives() {
     let errors = [friction / exact.friction - 1.0, contact.approach() / exact.approach - 1.0];
     println!("{errors:?}");
     assert!(errors[0].abs() < 0.02 && errors[1].abs() < 2e-3, "{errors:?}");
-}
-
-/// The reference itself, against the closed form of a rolling cylinder.
-#[test]
-fn the_reference_is_hunters() {
-    let (radius, c0, c1, force) = (1.0, 0.25e-6, 2.25e-6, 5.0e3);
-    for reach in [0.01, 0.1, 1.0, 10.0] {
-        let exact = RollingCylinder::new(radius, [c0, c1], force, reach).unwrap().friction;
-        let half = (4.0 * radius * (c0 + c1) * force / PI).sqrt();
-        let terms = vec![(c1, reach)];
-        let sliding = SteadySliding { glassy: c0, terms, ..over_cylinder(radius, 3.0 * half / 128.0, force) };
-        let found = [Time::Exact, Time::Steps].map(|time| sliding.solve(time).unwrap().friction / exact - 1.0);
-        println!("v τ/a = {}: {found:?}", reach / half);
-        assert!(found.iter().all(|error| error.abs() < 0.01), "{reach}: {found:?}");
-    }
 }

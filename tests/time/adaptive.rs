@@ -51,6 +51,8 @@ fn errors_are_what_was_asked_for() {
                 }
             }
             let error = worst[usize::from(by_approach)] / tolerance;
+            // twelve decades
+            assert!(!scene.name.starts_with("power law") || tolerance < 1e-3 || run.history.len() <= 150, "{line}");
             line += &format!(
                 "  {tolerance:e}: {} steps, {} rejected, {:.0} equivalents, error {error:.2}",
                 run.history.len(),
@@ -69,14 +71,6 @@ fn errors_are_what_was_asked_for() {
         let name = scene.name.replace("|sin|", "abs(sin)"); // bars part the cells of a table
         figures::row("adaptive", &format!("| {name} |"), row.trim_start()).unwrap();
     }
-}
-
-#[test]
-fn twelve_decades_of_creep_take_few_steps() {
-    let scene = scenes().into_iter().find(|scene| scene.name.starts_with("power law")).unwrap();
-    let steps = run(&scene, 1e-3, &[]).history.len();
-    println!("{steps} steps from 1e-6 s to 1e6 s");
-    assert!(steps <= 150, "{steps}");
 }
 
 /// Closures do not name their corners: a short pulse and a corner are found all the same.

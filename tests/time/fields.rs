@@ -6,18 +6,12 @@ use viscocontact::prelude::*;
 use viscocontact::states::{Reach, Sweep};
 
 use crate::common::random_histories::{Control, FromSmallLoad};
-use crate::common::{Draws, Features, Ratios, Scene, Temporary, builder_of, figures, from_environment};
-
-const RADIUS: f64 = 10.0e-3;
-
-fn rubber() -> Material {
-    Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap())
-}
+use crate::common::{
+    Draws, Features, RADIUS, Ratios, Scene, Temporary, builder_of, figures, from_environment, maxwell, sphere_on,
+};
 
 fn ball() -> ViscoelasticContact {
-    let builder =
-        ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap()).geometry(&Sphere::new(RADIUS).unwrap());
-    builder.material(rubber()).build().unwrap()
+    sphere_on(Grid::square(32, 4.0e-3).unwrap(), maxwell(), Settings::default())
 }
 
 /// Ends of given steps: graded after and before each of the knots, and evenly between. `FIELD_FINE` makes so many times as many.
@@ -503,14 +497,14 @@ fn histories_of_the_stress_follow_fields() {
 /// A run on states: the pressure in the sphere against the closed form of a growing contact.
 #[test]
 fn fields_of_runs_on_states_are_exact() {
-    let mut contact = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &rubber()).unwrap();
+    let mut contact = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &maxwell()).unwrap();
     let load = StepLoad::new(Load::force(0.5)).unwrap();
     let run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
     let mut run = run.sample_at([2.0]).unwrap().fields_to(1e-3).unwrap();
     let mut compared = 0;
     while run.next_step().unwrap().is_some() {
         for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-            let (contact, exact) = (sample.contact(), GrowingSphere::step(RADIUS, &rubber(), 0.5).unwrap());
+            let (contact, exact) = (sample.contact(), GrowingSphere::step(RADIUS, &maxwell(), 0.5).unwrap());
             let edge = (contact.contact_area() / std::f64::consts::PI).sqrt();
             for part in [0.0, 0.3, 0.6, 0.9, 0.98] {
                 let at = |level: f64| Hertz::new(RADIUS, 1.0, level).map_or(0.0, |hertz| hertz.pressure(part * edge));
@@ -529,7 +523,7 @@ fn a_field_costs_little_over_its_run() {
     let history = Ramp::new(Load::force(0.05), Load::force(0.5), 0.5).unwrap();
     let fractional = FractionalZener::relaxing(1.0e6, 1.0e5, 0.1, 0.4).unwrap();
     let bodies = [
-        ("Maxwell", rubber()),
+        ("Maxwell", maxwell()),
         ("Zener", Material::incompressible(Zener::relaxing(1.0e6, 0.1e6, 0.5).unwrap())),
         (
             "three relaxation times",

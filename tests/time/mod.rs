@@ -1,7 +1,6 @@
 //! Does the answer depend on the steps, on the rule, or on how a load history is followed?
 
 mod adaptive;
-mod cancelled;
 mod cost;
 mod fields;
 mod fixed_steps;

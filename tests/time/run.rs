@@ -4,6 +4,7 @@ use std::error::Error as _;
 use std::fs;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
 
 use viscocontact::adhesion::{Attraction, ExponentialAttraction};
 use viscocontact::geometry::Sum;
@@ -16,17 +17,10 @@ use viscocontact::run::RunContact;
 use viscocontact::{Error, UserError};
 
 use crate::common::refused::refused;
-use crate::common::{Draws, Temporary, builder_of, contact_of, from_environment};
-
-const RADIUS: f64 = 10.0e-3;
-
-fn rubber() -> Material {
-    Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap())
-}
+use crate::common::{Draws, RADIUS, Temporary, builder_of, contact_of, from_environment, sphere_on, zener as rubber};
 
 fn in_space() -> ViscoelasticContact {
-    let builder = ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap());
-    builder.geometry(&Sphere::new(RADIUS).unwrap()).material(rubber()).build().unwrap()
+    sphere_on(Grid::square(24, 4.0e-3).unwrap(), rubber(), Settings::default())
 }
 
 fn on_states() -> StatesContact {
@@ -215,6 +209,36 @@ behaviours! {
                 found.push([report.time, report.force, report.approach]);
             }
             assert_eq!(found, plain);
+
+            // raised within a step, by the load when it is asked for so many times
+            let raised = |raises: &[usize]| {
+                let (flag, asked) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+                let (sets, counts, raises) = (Arc::clone(&flag), Arc::clone(&asked), raises.to_vec());
+                let load = FnHistory::new(move |t| {
+                    if raises.contains(&counts.fetch_add(1, Ordering::Relaxed)) {
+                        sets.store(true, Ordering::Relaxed);
+                    }
+                    Load::force(0.1 + 0.3 * (t / (1.0 + t)))
+                });
+                let mut run = kind.run(load, stepping, 20.0).cancelled_by(Arc::clone(&flag));
+                let (mut steps, mut cancelled) = (Vec::new(), 0);
+                loop {
+                    match run.next_step() {
+                        Ok(Some(report)) => steps.push([report.time, report.force, report.approach]),
+                        Ok(None) => return (steps, cancelled, asked.load(Ordering::Relaxed)),
+                        Err(error) => {
+                            assert!(matches!(error, Error::Cancelled { .. }), "{error}");
+                            assert_eq!(run.contact().time(), steps.last().map_or(0.0, |step| step[0]));
+                            flag.store(false, Ordering::Relaxed);
+                            cancelled += 1;
+                        }
+                    }
+                }
+            };
+            let (plain, none, asked) = raised(&[]);
+            let (found, cancelled, _) = raised(&[asked * 82 / 100, asked * 92 / 100]);
+            // a step may be asked for at many times
+            assert!(none == 0 && (1..=2).contains(&cancelled) && found == plain, "{cancelled}: {found:?}, {plain:?}");
         }
     }
 
@@ -243,7 +267,7 @@ behaviours! {
             let whole = steps(kind.run(load(), stepping, 2.0));
             for taken in 1..whole.len() {
                 let path = folder.join("run");
-                let mut run = kind.run(load(), stepping, 2.0).autosave_to(&path, std::time::Duration::ZERO);
+                let mut run = kind.run(load(), stepping, 2.0).autosave_to(&path, Duration::ZERO);
                 for _ in 0..taken {
                     run.next_step().unwrap();
                 }
@@ -590,4 +614,23 @@ fn a_resumed_run_continues_its_files() {
             }
         }
     }
+}
+
+/// A step of seconds, by the slowest solver, ends within its iterations.
+#[test]
+fn a_long_step_is_cancelled_within_it() {
+    let settings = Settings::default().with_solver(Solver::PolonskyKeer).with_tolerance(1e-13);
+    let settings = settings.with_symmetry(false).with_window(false);
+    let mut contact = sphere_on(Grid::square(512, 4.0e-3).unwrap(), rubber(), settings);
+    let load = hold(0.5);
+    let flag = Arc::new(AtomicBool::new(false));
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_millis(100));
+            flag.store(true, Ordering::Relaxed);
+        });
+        let mut run = contact.follow(&load, Stepping::fixed(0.5), 1.0).cancelled_by(Arc::clone(&flag));
+        assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
+        assert_eq!((run.contact().time(), run.contact().force(), run.progress().steps), (0.0, 0.0, 0));
+    });
 }

@@ -325,30 +325,3 @@ fn a_cylinder_on_a_thin_layer_rests_on_springs() {
     println!("on thin layers, over springs: {errors:?}");
     assert!(errors[1].abs() < 0.01 && errors[1].abs() < 0.6 * errors[0].abs(), "{errors:?}");
 }
-
-/// A cylinder on a layer that is periodic along it is a line contact, and a chain of balls repeats.
-#[test]
-fn cylinders_and_chains_of_balls_on_periodic_layers() {
-    let layer = Layer::bonded_to_rigid(0.4e-3, 0.3).unwrap();
-    let press = |kernel: InfluenceKernel, shape: &dyn Geometry| {
-        let builder = builder_of(shape, kernel.grid().clone(), creeping(0.3)).kernel(kernel);
-        let mut contact = builder.settings(Settings::default().with_tolerance(1e-10)).build().unwrap();
-        contact.step(0.0, Load::approach(5.0e-6)).unwrap();
-        contact.step(1.0, Load::approach(6.0e-6)).unwrap();
-        contact
-    };
-    let (rows, line) = (Grid::new([64, 12], [2.0e-3, 1.0e-3]).unwrap(), Grid::new([64, 1], [2.0e-3, 1.0e-3]).unwrap());
-    let cylinder = Cylinder::new(10.0e-3).unwrap();
-    let one = press(InfluenceKernel::layer_periodic_along(&rows, layer, Axis::X2, None).unwrap(), &cylinder);
-    let other = press(InfluenceKernel::layer_line(&line, layer, None).unwrap(), &cylinder);
-    assert!((one.force() / other.force() - 1.0).abs() < 1e-9, "{} {}", one.force(), other.force());
-    let peak = other.max_pressure();
-    assert!((0..64 * 12).all(|k| (one.pressure()[k] - other.pressure()[k / 12]).abs() < 1e-7 * peak));
-    // balls so far apart that the layer does not feel the next one
-    let apart = Grid::new([40, 96], [1.25e-3, 3.0e-3]).unwrap();
-    let ball = Sphere::new(10.0e-3).unwrap();
-    let chain = press(InfluenceKernel::layer_periodic_along(&apart, layer, Axis::X2, None).unwrap(), &ball);
-    let alone = press(InfluenceKernel::layer(&apart, layer).unwrap(), &ball);
-    println!("a chain over one ball: {:e}", chain.force() / alone.force() - 1.0);
-    assert!((chain.force() / alone.force() - 1.0).abs() < 2e-3, "{} {}", chain.force(), alone.force());
-}

@@ -1,33 +1,8 @@
-//! The paper's scene against its Table 1: the figures that the README claims.
+//! The paper's scene on another body, and by the paper's own algorithm; its figures are in `paper_figures`.
 
+use crate::common::StepLoadedSphere;
 use crate::common::step_loaded_sphere::errors;
-use crate::common::{StepLoadedSphere, figures};
-use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
-
-fn assert_figures(scene: &StepLoadedSphere) -> f64 {
-    let (contact, work) = scene.run(256, 100, Settings::default()).unwrap();
-    let error = errors(&contact, &scene.reference().unwrap());
-    println!("{}: {error:?}, {work:.2} convolution equivalents per step", scene.name);
-    assert!(error.central_pressure.abs() < 1e-4, "{error:?}");
-    assert!(error.l1 < 1.5e-3, "{error:?}");
-    assert!(error.contact_radius.abs() < 5e-3, "{error:?}");
-    assert!(error.approach.abs() < 1e-3, "{error:?}");
-    assert_abs_diff_eq!(contact.force() / scene.force, 1.0, epsilon = 1e-12);
-    work
-}
-
-#[test]
-fn maxwell_on_256_cells_in_100_steps_is_table_1() {
-    let work = assert_figures(&StepLoadedSphere::maxwell());
-    figures::figure("convolutions per step", &format!("{work:.1}")).unwrap();
-    assert!(work < 6.0, "{work} convolution equivalents per step");
-}
-
-#[test]
-fn zener_on_256_cells_in_100_steps_is_table_1() {
-    assert_figures(&StepLoadedSphere::zener());
-}
 
 #[test]
 fn a_generalized_body_with_three_times_is_the_closed_form() {

@@ -1,9 +1,7 @@
-//! Checkpoints of random scenes refused by slightly different scenes; files that many threads write.
+//! Checkpoints of random scenes refused by slightly different scenes.
 
 use crate::common::{Temporary, builder_of, three_times, uniform};
-use std::fs;
 
-use viscocontact::FileError;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 
@@ -123,35 +121,4 @@ fn random_scenes_are_told_apart() {
     }
     println!("{accepted} accepted, {swapped} swapped, {reshaped} reshaped");
     assert!(accepted > 150 && swapped > 100 && reshaped > 800);
-}
-
-/// Contacts of several threads save to one path: no save fails, the file is one of theirs at any time, and nothing else is
-/// left.
-#[test]
-fn many_save_to_one_path() {
-    let folder = Temporary::folder("many");
-    let path = folder.join("run");
-    let body = || [Box::new(Sphere::new(10.0e-3).unwrap()) as Box<dyn Geometry>];
-    let grid = Grid::square(32, 4.0e-3).unwrap();
-    std::thread::scope(|scope| {
-        for writer in 0..6_u32 {
-            let (path, grid) = (&path, &grid);
-            scope.spawn(move || {
-                let mut contact = build(grid, &body()).unwrap();
-                let mut reader = contact.clone();
-                contact.step(f64::from(writer), Load::force(0.1)).unwrap();
-                for _ in 0..20 {
-                    contact.save(path).unwrap();
-                    reader.resume(path).unwrap();
-                    assert!(reader.time() < 6.0);
-                }
-            });
-        }
-    });
-    assert_eq!(folder.names(), ["run"]);
-
-    // a folder is not replaced
-    fs::create_dir(folder.join("folder")).unwrap();
-    let error = build(&grid, &body()).unwrap().save(folder.join("folder")).unwrap_err();
-    assert!(matches!(error, Error::File(FileError::NotAFile { kind: "a folder", .. })), "{error}");
 }

@@ -46,7 +46,7 @@ fn limits_are_told_where_they_are() {
     let count = from_environment("OUTSIDE_SCENES", 60);
     for number in 0..count {
         let mut draws = Draws::new(7_000_003 + number);
-        let (length, cells) = (draws.power_of_ten(-5.0, -2.0), 24 + draws.below(25));
+        let (length, cells) = (draws.power_of_ten(-9.0, 3.0), 24 + draws.below(25));
         let grid = Grid::square(cells, length).unwrap();
         // a ball into a layer on a rigid base
         let thickness = length * draws.power_of_ten(-1.5, 0.0);
@@ -83,6 +83,7 @@ fn limits_are_told_where_they_are() {
             Pressed::new(shape, grid, 0.5e-3 * length / periods).on(InfluenceKernel::periodic).in_space().unwrap();
         assert_eq!(report.warnings.contains(Warnings::OTHER_PERIOD), spoilt, "{number}: {report} {periods}");
         assert!(report.figures.periods.is_none_or(|found| (found / periods - 1.0).abs() < 1e-12), "{number}: {report}");
+        assert!(!report.warnings.intersects(Warnings::STEEP | Warnings::FLAT), "{number}: {report}");
         let is_fine = (cells as f64) < 4.0 * periods * (1.0 - 1e-6);
         assert_eq!(report.warnings.contains(Warnings::SHORT_WAVES), is_fine, "{number}: {report} {periods}");
         other += u32::from(spoilt);

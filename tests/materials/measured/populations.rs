@@ -1,13 +1,10 @@
-//! Random tables with noise, random isotherms, and contacts of bodies that were read from files.
+//! Random tables with noise, and random isotherms.
 
-use viscocontact::TextFormat;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{
-    Experiment, GeneralizedMaxwell, Isotherm, MasterCurve, Measurements, TimeTemperature, Units,
-};
+use viscocontact::rheology::{GeneralizedMaxwell, Isotherm, MasterCurve, Measurements};
 
 use super::log_spaced;
-use crate::common::{Draws, Ratios, from_environment, noise, sphere_on};
+use crate::common::{Draws, Ratios, from_environment, noise};
 
 /// A body with relaxation times over many decades: shares and times of a broad peak.
 fn broad(draw: &mut Draws, middle: f64) -> GeneralizedMaxwell {
@@ -221,64 +218,4 @@ fn vertical_shifts_are_found_on_request() {
         }
     }
     assert!(compared == 16 && plain_off > 4, "{plain_off} of {compared} shifts are worse without");
-}
-
-/// The approach of a sphere on the body of a file, over that on the body behind it.
-#[test]
-fn contacts_of_files_are_those_of_the_bodies_behind_them() {
-    let truth = GeneralizedMaxwell::new(1.0e6, &[(3.0e6, 0.03), (2.0e6, 0.5), (1.0e6, 8.0), (0.5e6, 120.0)]).unwrap();
-    let spectrum = truth.creep_spectrum().unwrap().relaxation();
-    let law = TimeTemperature::wlf(12.0, 80.0, 296.15).unwrap();
-    let mut dma = String::from("Instrument;DMA 8\nProbe;PMMA\n\nf;E_stor;E_loss;T;Set\nHz;MPa;MPa;°C;-\n");
-    for (set, celsius) in [13.0, 18.0, 23.0, 28.0, 33.0].into_iter().enumerate() {
-        let factor = law.shift_factor(celsius + 273.15).unwrap();
-        for f in log_spaced(0.01, 100.0, 5) {
-            let at = std::f64::consts::TAU * f * factor;
-            let [storage, loss] =
-                [spectrum.storage_modulus(at), spectrum.loss_modulus(at)].map(|modulus| modulus / 1e6);
-            dma += &format!("{f:.6};{storage:.6};{loss:.6};{celsius:.1};{set}\n");
-        }
-    }
-    let mut sweep = String::from("Filename\tx.tri\n[step]\nAngular frequency\tStorage modulus\tLoss modulus\trad/s\n");
-    sweep = sweep.replace("\trad/s\n", "\tTan(delta)\nrad/s\tkPa\tPa\t\n");
-    for w in log_spaced(1e-3, 1e3, 5) {
-        let (storage, loss) = (spectrum.storage_modulus(w), spectrum.loss_modulus(w));
-        sweep += &format!("{w:.5e}\t{:.6}\t{loss:.3}\t{:.5}\n", storage / 1e3, loss / storage);
-    }
-    let (mut creep, mut relaxation) = (String::from("t [min],J [1/GPa]\n"), String::from("Zeit t / s;G / MPa\r\n"));
-    for t in log_spaced(1e-3, 1e3, 6) {
-        creep += &format!("{:.8e},{:.6}\n", t / 60.0, truth.creep_compliance(t) * 1e9);
-        relaxation += &format!("{t:.8e};{:.7}\r\n", spectrum.modulus(t) / 1e6).replace('.', ",");
-    }
-    let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(relaxation.encode_utf16().flat_map(u16::to_le_bytes)).collect();
-    let format = TextFormat::default();
-    let read = |experiment, bytes: &[u8]| {
-        let table = Measurements::from_csv_reader(experiment, bytes, Units::OF_HEADINGS, format).unwrap();
-        Material::incompressible(table.fit().unwrap())
-    };
-    let isotherms = Isotherm::from_csv_reader(Experiment::Dynamic, dma.as_bytes(), Units::OF_HEADINGS, format).unwrap();
-    assert_eq!(isotherms.len(), 5);
-    let rod = MasterCurve::new(296.15, isotherms).unwrap().fit_tension().unwrap();
-    let sheared = Material::incompressible(truth.clone());
-    let stretched = Material::from_tension(Tension(truth.clone()), 0.4).unwrap();
-    let approach = |material: Material| {
-        let grid = Grid::square(24, 4.0e-3).unwrap();
-        let mut contact = sphere_on(grid, material, Settings::default());
-        contact.step(0.0, Load::force(0.1)).unwrap();
-        [0.05, 0.5, 5.0, 30.0].map(|dt| {
-            contact.step(dt, Load::force(0.1)).unwrap();
-            contact.approach()
-        })
-    };
-    for (name, material, exact) in [
-        ("DMA", Material::from_tension(rod, 0.4).unwrap(), &stretched),
-        ("sweep", read(Experiment::Dynamic, sweep.as_bytes()), &sheared),
-        ("creep", read(Experiment::Creep, creep.as_bytes()), &sheared),
-        ("relaxation", read(Experiment::Relaxation, &utf16), &sheared),
-    ] {
-        let (found, wanted) = (approach(material), approach(exact.clone()));
-        let worst = found.iter().zip(&wanted).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
-        println!("{name}: approach within {worst:.1e}");
-        assert!(worst < 0.02, "{name}: {found:?} for {wanted:?}");
-    }
 }

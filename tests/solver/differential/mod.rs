@@ -2,10 +2,10 @@
 
 mod hereditary_integral;
 mod reference;
-mod scenes;
+pub(super) mod scenes;
 
-use crate::common::{Ratios, elastic, from_environment, sphere_on};
-use approx::assert_abs_diff_eq;
+use super::conditions::{assert_contact_conditions, moved};
+use crate::common::{Ratios, from_environment};
 use reference::Reference;
 use scenes::Scene;
 use viscocontact::prelude::*;
@@ -61,20 +61,53 @@ fn loads_of_every_kind_may_jump() {
     assert!(mean < 15.0, "{mean}");
 }
 
-/// A small window of an upright contact, and a load that jumps out of it.
+/// Under one body every step of either solver satisfies the conditions of contact, and both find the same pressure. `CONDITIONS_SCENES` (160)
+/// chooses how many seeds are looked at, and `CONDITIONS_SEED` (1) which.
 #[test]
-fn a_load_may_jump_beyond_the_contact() {
-    for x in [0.6e-3, 1.4e-3] {
-        let contact =
-            || sphere_on(Grid::square(64, 4.0e-3).unwrap(), elastic(), Settings::default().with_edge(Edge::Allow));
-        let (mut warm, mut fresh) = (contact(), contact());
-        warm.step(0.0, Load::force(0.01)).unwrap();
-        let jump = Load::eccentric_force(0.01, [x, 0.0]);
-        warm.step(0.0, jump).unwrap();
-        fresh.step(0.0, jump).unwrap();
-        assert!(distance(warm.pressure(), fresh.pressure()) < 1e-4);
-        assert_abs_diff_eq!(warm.moment()[0] / (0.01 * x), 1.0, epsilon = 1e-9);
+fn both_solvers_satisfy_the_conditions_and_agree() {
+    const TOLERANCE: f64 = 1e-9;
+    let (scenes, first) = (from_environment("CONDITIONS_SCENES", 160), from_environment("CONDITIONS_SEED", 1));
+    let (mut steps, mut open, mut fallback) = (0, 0, 0);
+    for seed in (first * 3_000_000..).take(scenes as usize) {
+        let scene = Scene::any(seed, STEPS, true);
+        // several bodies may be too much for conjugate gradients
+        if scene.shapes.len() > 1 {
+            continue;
+        }
+        let settings = Settings::default().with_tolerance(TOLERANCE).with_edge(Edge::Allow).with_max_iterations(5000);
+        let [ours, reference] =
+            [Solver::ActiveSet, Solver::PolonskyKeer].map(|solver| scene.contact(settings.with_solver(solver)));
+        let (Ok(mut ours), Ok(mut reference)) = (ours, reference) else { continue };
+        // where a body swings clear, rounding may remain
+        let (mut peak, mut far) = (4e-3_f64, 0.0_f64);
+        for (step, (dt, loads)) in scene.steps.iter().enumerate() {
+            let name = format!("{} step {step}, {loads:?}", scene.name);
+            match ours.step(*dt, loads) {
+                Ok(report) => fallback += usize::from(report.fallback_iterations > 0),
+                // the load acts on the rim of the face
+                Err(Error::Step(StepError::LoadOutsideHull { .. })) => continue,
+                Err(error) => panic!("{name}: {error}"),
+            }
+            reference.step(*dt, loads).unwrap_or_else(|error| panic!("{name}: {error}"));
+            steps += 1;
+            open += usize::from(ours.contact_cells() < ours.grid().len());
+            // the greatest pressure and lengths so far: after a release, rounding of them remains
+            peak = ours.pressure().iter().copied().fold(peak, f64::max);
+            far = far.max(moved(&ours, loads.len()));
+            assert_contact_conditions(&ours, loads, TOLERANCE, far, &name);
+            // a body held at a pivot may turn away from the surface altogether: how far is not determined
+            let is_free = |tilt: &Tilt| matches!(tilt, Tilt::Free { .. });
+            let on_pivot = |load: &Load| matches!(load, Load::Approach { tilt, .. } if tilt.iter().any(is_free));
+            if !loads.iter().any(on_pivot) {
+                assert_contact_conditions(&reference, loads, TOLERANCE, far, &name);
+            }
+            for (a, b) in ours.pressure().iter().zip(reference.pressure()) {
+                assert!((a - b).abs() <= 1e-6 * peak, "{name}: {a} {b} of {peak}");
+            }
+        }
     }
+    println!("{steps} steps, {open} of them with cells out of contact, {fallback} with the fall-back");
+    assert!(steps as u64 > 3 * scenes && open > 0 && 100 * fallback <= steps, "{steps} {open} {fallback}");
 }
 
 /// Advice that is followed helps: a step that ran out of iterations is done with more of them.
@@ -87,8 +120,12 @@ fn more_iterations_help_where_the_error_advises_them() {
         let [hasty, patient] = [settings.with_max_iterations(6), settings].map(|settings| scene.contact(settings));
         let (Ok(mut hasty), Ok(mut patient)) = (hasty, patient) else { continue };
         for (dt, loads) in &scene.steps {
-            if let Err(Error::Step(StepError::NotConverged { convergence, .. })) = hasty.step(*dt, loads) {
+            if let Err(Error::Step(StepError::NotConverged { iterations, residual, convergence, .. })) =
+                hasty.step(*dt, loads)
+            {
                 short += 1;
+                let residuals = convergence.residuals();
+                assert!(residuals[0].0 == 0 && residuals[residuals.len() - 1] == (iterations, residual));
                 assert!(
                     convergence.to_string().contains("raise Settings::max_iterations"),
                     "{}: {convergence}",

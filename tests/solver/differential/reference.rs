@@ -1,8 +1,7 @@
 //! A contact stepper of its own: dense matrices, an interior-point method, and the hereditary integral over the whole past.
 //! Slow, for a hundred cells or two, and sure.
 
-use std::f64::consts::PI;
-
+use crate::common::love::love;
 use crate::common::quadratic;
 use viscocontact::prelude::*;
 
@@ -182,16 +181,4 @@ fn physical(load: &Load, modes: &[f64], released: bool) -> [f64; 3] {
         }
     }
     motion
-}
-
-/// Love's closed form: the displacement at a distance from a cell under unit pressure, over the contact compliance.
-fn love(x: [f64; 2], side: [f64; 2]) -> f64 {
-    let corner = |x: f64, y: f64| {
-        let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
-        term(x, y) + term(y, x)
-    };
-    let [a, b] = [0.5 * side[0], 0.5 * side[1]];
-    let sum = corner(x[0] + a, x[1] + b) - corner(x[0] - a, x[1] + b) - corner(x[0] + a, x[1] - b)
-        + corner(x[0] - a, x[1] - b);
-    sum / PI
 }

@@ -61,12 +61,12 @@ fn terms(draws: &mut Draws, j: f64) -> Vec<(f64, f64)> {
     (0..=draws.below(4)).map(|_| (draws.scale(0.1, 10.0) * j, draws.scale(1e-3, 1e3))).collect()
 }
 
-const SIDE: f64 = 4.0e-3;
+pub const SIDE: f64 = 4.0e-3;
 
 /// A shape whose face holds the square |x1|, |x2| < 1.2 mm, or what it may touch does.
-fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
+pub fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
     let radius = 10.0e-3;
-    match draws.below(6) {
+    match draws.below(10) {
         0 => ("sphere", Box::new(Sphere::new(radius).unwrap())),
         1 => ("cone", Box::new(Cone::new(draws.scale(0.02, 0.3)).unwrap())),
         2 => ("ellipsoid", Box::new(Ellipsoid::new(radius, draws.scale(0.2, 5.0) * radius).unwrap())),
@@ -74,6 +74,25 @@ fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
         4 => {
             let sides = [draws.between(1.0e-3, 3.4e-3), draws.between(1.0e-3, 3.4e-3)];
             ("square punch", Box::new(FlatPunch::rectangular(sides).unwrap()))
+        }
+        5 => {
+            let [inner, outer] = [draws.between(0.3e-3, 1.0e-3), draws.between(1.3e-3, 2.0e-3)];
+            let ring = move |r: f64| if (inner..outer).contains(&r) { 0.0 } else { f64::INFINITY };
+            ("ring", Box::new(FnGeometry::new(move |x, y| ring(x.hypot(y)))))
+        }
+        6 => {
+            let apart = draws.between(0.2e-3, 0.8e-3);
+            let feet = move |x: f64| if x.abs() > apart { 0.5 * x * x / radius } else { f64::INFINITY };
+            ("two feet", Box::new(FnGeometry::new(move |x, y| feet(x) + 0.2 * y * y / radius)))
+        }
+        7 => {
+            let height = draws.scale(1.0e-8, 1.0e-5);
+            let noise = move |x: f64, y: f64| height * (1e7 * (13.0 * x + 78.0 * y)).sin();
+            ("noise", Box::new(FnGeometry::new(noise)))
+        }
+        8 => {
+            let bend = draws.between(0.1, 0.9) / radius;
+            ("saddle", Box::new(FnGeometry::new(move |x, y| 0.5 * bend * (x * x - y * y) + 0.3e-3 * bend * x)))
         }
         _ => {
             // a bowl with waves in any direction
