@@ -29,7 +29,8 @@ const SMALL_CONTACT: f64 = 1.0 / 3.0;
 /// Levels nearer than this fraction are one.
 const SAME_LEVEL: f64 = 1e-2;
 /// Cells across a contact from which on the error of the approach does not depend on where the tip lies among them, and this error over the
-/// depth of a contact whose radius is half the diagonal of a cell: cones and balls in a thousand places err by at most 0.27 and 0.15 of it.
+/// depth of a contact whose radius is half the diagonal of a cell: cones and balls err by at most 0.27 and 0.15 of it where half a
+/// cell is in contact, cones by up to 0.56 where less is.
 const FEW: f64 = 1.6;
 const OF_TIP: f64 = 0.3;
 /// The part of it that is left where the contact is as wide: it falls with the width.

@@ -52,7 +52,7 @@ use crate::run::Stepping;
 /// than their cells, or loads shorter than the steps. A contact far from the origin takes many cells without contact: shift
 /// the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
-/// Planning takes less work than the planned run in the median ([`PlanProgress::work`]), and several times as much
+/// Planning takes about as much work as the planned run in the median ([`PlanProgress::work`]), and several times as much
 /// where the planned mesh is as coarse as the meshes of the plan. The plan does not include changes to its builder. Other bodies than half-spaces are planned with [`PlanBuilder::kernel`], periodic ones with
 /// [`PlanBuilder::period`] and line contacts with
 /// [`PlanBuilder::line`].

@@ -432,7 +432,7 @@ pub(super) fn keep_their_promise(scenes: impl Iterator<Item = Scene>, limit: u64
 #[test]
 fn plans_of_random_scenes_keep_their_promise() {
     let [seed, first] = [("PLANS_SEED", 1), ("PLANS_FIRST", 0)].map(|(name, default)| from_environment(name, default));
-    let scenes = (first..first + from_environment("PLANS", 8)).flat_map(|number| {
+    let scenes = (first..first + from_environment("PLANS", 12)).flat_map(|number| {
         [Some(scene(seed, number)), (number % 4 == 0).then(|| tilting(seed, number))].into_iter().flatten()
     });
     keep_their_promise(scenes, 150);
