@@ -223,7 +223,11 @@ impl StatesContact {
         let limits = &self.scene.limits;
         let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
         if self.groups() > 0 {
-            let reduced = self.temperature().and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
+            let reduced = self
+                .scene
+                .temperature
+                .as_ref()
+                .and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
             warnings |= limits.warnings(self.reduced_time - self.undisturbed_until, reduced.unwrap_or(dt));
         }
         warnings.set(Warnings::MODULUS, limits.modulus.is_some());
@@ -301,17 +305,8 @@ impl StatesContact {
         self.undisturbed_until = other.undisturbed_until;
     }
 
-    /// Puts other elastic states of the same surface in the place of its own.
-    pub(super) fn exchange(&mut self, states: Arc<ElasticStates>) {
-        self.states = states;
-    }
-
     pub(crate) fn reset_differences(&mut self) {
         self.levels.reset_differences();
-    }
-
-    pub(super) fn temperature(&self) -> Option<&TemperatureHistory> {
-        self.scene.temperature.as_ref()
     }
 
     /// Depth of the load point \[m\].

@@ -82,7 +82,7 @@ impl Repeated {
     /// The run on other elastic states of the same surface.
     pub(super) fn on(&self, states: Arc<ElasticStates>) -> Repeated {
         let mut repeated = self.clone();
-        repeated.origin.exchange(states);
+        repeated.origin.states = states;
         repeated
     }
 

@@ -74,7 +74,7 @@ impl Driven for StatesContact {
     }
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
-        StatesContact::temperature(self)
+        self.scene.temperature.as_ref()
     }
 
     fn untouched(&self) -> Option<f64> {

@@ -239,7 +239,7 @@ fn relaxed_levels_press_no_more() {
     let sweep =
         Sweep::new(grid.clone(), &Sphere::new(RADIUS).unwrap()).settings(settings).accuracy(1e-3).keep_pressures();
     let states = sweep.run(Reach::Approach(6.0e-5)).unwrap();
-    let mut contact = StatesContact::new(&states, &rubber()).unwrap();
+    let mut contact = StatesContact::new(&states, &maxwell()).unwrap();
     for (dt, depth) in [(0.0, 2.0e-5), (100.0, 2.0e-5), (0.0, 4.0e-5), (1.0, 5.0e-5)] {
         contact.step(dt, Load::approach(depth)).unwrap();
         let force = contact.pressure().unwrap().iter().sum::<f64>() * grid.cell_area();
