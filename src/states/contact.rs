@@ -136,12 +136,10 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last
-    /// one, and added to the states of this contact. Steps then agree with those of a
-    /// [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also under a given
-    /// approach, in area to the cell. Without it, the approach and the level under a given approach err by the
-    /// interpolation of the sweep; the level under a given force does not err.
-    /// Such a step allocates the state that it adds.
+    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last one, and added to the states
+    /// of this contact. Steps then agree with those of a [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also
+    /// under a given approach, in area to the cell. Without it, the approach and the level under a given approach err by the interpolation of the
+    /// sweep; the level under a given force does not err. Such a step allocates the state that it adds.
     ///
     /// # Errors
     /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
@@ -152,13 +150,13 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but
-    /// to its present load and a release. A body that tilts freely under no force rests in the limit of small forces.
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but to its present load and a
+    /// release. A body that tilts freely under no force rests in the limit of small forces.
     ///
     /// # Errors
-    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
-    /// load point than the sweep, needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the
-    /// body has no elastic response, or the time is beyond the material's. A step that fails changes nothing.
+    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another load point than the sweep,
+    /// needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the body has no elastic response, or the time under load
+    /// is beyond the material's. A step that fails changes nothing.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_to(self.time + dt, dt, load)
     }
@@ -254,12 +252,10 @@ impl StatesContact {
     fn solve(&mut self, Wanted { level, give, sum, .. }: Wanted) -> Result<()> {
         let Some(elastic) = &self.scene.elastic else { return Ok(()) };
         let (tilt, drive) = (self.states.tilt, sum + self.states.rest.approach);
-        let load = if give == f64::INFINITY {
-            Load::Force { normal: level, tilt }
-        } else if give == 0.0 {
-            Load::Approach { approach: drive, tilt }
-        } else {
-            Load::Spring { stiffness: 1.0 / give, drive, tilt }
+        let load = match give {
+            f64::INFINITY => Load::Force { normal: level, tilt },
+            0.0 => Load::Approach { approach: drive, tilt },
+            _ => Load::Spring { stiffness: 1.0 / give, drive, tilt },
         };
         let solved = state_under(&mut elastic.lock().unwrap_or_else(PoisonError::into_inner), load)?;
         Arc::make_mut(&mut self.states).insert(solved.state, solved.pressure);
@@ -273,10 +269,9 @@ impl StatesContact {
 
     /// [`StatesContact::snapshot`] into one made before, without allocating where there is room.
     pub fn snapshot_into(&self, snapshot: &mut StatesContact) {
-        if snapshot.is_of(self) {
-            snapshot.copy_from(self);
-        } else {
-            *snapshot = self.clone();
+        match snapshot.is_of(self) {
+            true => snapshot.copy_from(self),
+            false => *snapshot = self.clone(),
         }
     }
 
@@ -301,8 +296,8 @@ impl StatesContact {
     pub(super) fn copy_from(&mut self, other: &StatesContact) {
         self.states.clone_from(&other.states);
         self.levels.copy_from(&other.levels);
-        (self.time, self.reduced_time) = (other.time, other.reduced_time);
-        self.undisturbed_until = other.undisturbed_until;
+        let StatesContact { time, reduced_time, undisturbed_until, .. } = *other;
+        (self.time, self.reduced_time, self.undisturbed_until) = (time, reduced_time, undisturbed_until);
     }
 
     pub(crate) fn reset_differences(&mut self) {
