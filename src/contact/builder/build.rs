@@ -62,7 +62,8 @@ impl Builder {
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
         rows.unless_lost(|| {
-            let ((scene, history), gap, even, region) = self.shared_parts(&gaps, &rows)?;
+            let (scene, history) = rows.agree(self.scene(1))?;
+            let (gap, even, region) = self.shared_gap(&gaps, &rows)?;
             rows.agree(scene.check_memory(&history, &region, 0))?;
             let indenter = gap.on(&region, &self.grid, even);
             drop(gaps);
@@ -81,18 +82,12 @@ impl Builder {
         // for the agreement on the grid, before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
         anything.unless_lost(|| {
-            anything.agree(self.may_be_shared())?;
+            anything.agree(self.validate().and_then(|()| self.is_covered(Special::Ranks)))?;
             let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
             let Settings { tolerance, symmetry, .. } = self.settings;
             anything.same([n1 as f64, n2 as f64, side1, side2, tolerance, f64::from(u8::from(symmetry))])?;
             Ok(Rows::of_rank([n1, n2], Arc::clone(group)))
         })
-    }
-
-    /// Rejects invalid settings, and scenes that ranks cannot share out.
-    fn may_be_shared(&self) -> Result<()> {
-        self.validate()?;
-        self.is_covered(Special::Ranks)
     }
 
     /// Rejects a special scene that does not cover one of its parts.
@@ -111,17 +106,12 @@ impl Builder {
         parts.into_iter().try_for_each(|(has, case)| case.unless(|other| has && other == special))
     }
 
-    /// Scene and history, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
-    fn shared_parts<'a>(
-        &self,
-        gaps: &'a [LocalGap],
-        rows: &Rows,
-    ) -> Result<((Scene, History), SharedGap<'a>, [bool; 2], Region)> {
-        let scene = rows.agree(self.scene(1))?;
+    /// Gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
+    fn shared_gap<'a>(&self, gaps: &'a [LocalGap], rows: &Rows) -> Result<(SharedGap<'a>, [bool; 2], Region)> {
         let gap = SharedGap::new(rows.agree(local_gap(gaps, rows))?, &self.grid, rows)?;
         let even = gap.even_axes();
         let region = Region::shared(&self.grid, even.map(|even| even && self.settings.symmetry), rows);
-        Ok((scene, gap, even, region))
+        Ok((gap, even, region))
     }
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
@@ -155,7 +145,8 @@ impl Builder {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
             return rows.unless_lost(|| {
-                let ((scene, history), _, _, region) = self.shared_parts(&self.gaps, &rows)?;
+                let (scene, history) = rows.agree(self.scene(1))?;
+                let (_, _, region) = self.shared_gap(&self.gaps, &rows)?;
                 Ok(scene.memory_on(&history, &region))
             });
         }
