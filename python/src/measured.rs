@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use viscocontact::input::{Delimiter, TextFormat, TextTable};
@@ -123,7 +123,7 @@ impl Measurements {
         reading: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Measurements> {
         // made again from what the file has now
-        let text = PyBytes::new(py, &std::fs::read(&path)?);
+        let text = PyBytes::new(py, &std::fs::read(&path).map_err(|error| unreadable(&path, &error))?);
         Measurements::read(experiment, (path, text), units, reading)
     }
 
@@ -353,4 +353,9 @@ getters! {MasterCurve, of:
     vertical_factors: Vec<(f64, f64)> = of.vertical_factors();
     /// Temperature [K] of each isotherm, and how far it is off its neighbours where they overlap, relative.
     disagreements: Vec<(f64, f64)> = of.disagreements();
+}
+
+/// The OSError of a file, of the kind that its number has, with its name.
+fn unreadable(path: &std::path::Path, error: &std::io::Error) -> PyErr {
+    PyOSError::new_err((error.raw_os_error(), error.to_string(), path.to_path_buf()))
 }

@@ -103,7 +103,9 @@ fn own<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     if is_fixed || !value.hasattr("__len__")? || is_own() {
         return Ok(value.clone());
     }
-    py.import("copy")?.call_method1("copy", (value,))
+    // what is read from elsewhere, as by h5py, cannot be copied, but its numbers can
+    let copied = py.import("copy")?.call_method1("copy", (value,));
+    copied.or_else(|_| py.import("numpy")?.call_method1("array", (value,)))
 }
 
 fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {

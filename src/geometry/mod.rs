@@ -167,9 +167,9 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     // checked before filling a field that could not be used
     memory::check("gap and pressure of a contact", 16 * grid.len() as u128)?;
     let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
-    // a rank may have no rows
     // an error of an earlier call is none of this one
     drop(geometry.failure());
+    // a rank may have no rows
     if !gap.is_empty() {
         geometry.fill_gap(grid, &mut gap);
     }

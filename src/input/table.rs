@@ -259,9 +259,9 @@ mod tests {
         for (text, headings, line) in [
             ("a: 1\n\nt;J\n1;2\n3;4\n", &["t", "J"][..], 3),
             ("Probe\tA\t7\nt\tJ\ns\t1/GPa\n1\t2\n3\t4\n", &["t [s]", "J [1/GPa]"], 2),
-            ("# t [s] J [1/GPa]\n1 2\n3 4\n", &["t [s]", "J [1/GPa]"], 3 - 1),
-            ("# columns: t J\n# units: s 1/GPa\n# 7 8\n1 2\n3 4\n", &["t [s]", "J [1/GPa]"], 4),
-            ("# made today\n1 2\n3 4\n", &["made", "today"], 2),
+            ("# t [s] J [1/GPa]\n1 2\n3 4\n", &["t [s]", "J [1/GPa]"], 1),
+            ("# by hand\n# columns: t J\n# units: s 1/GPa\n# 7 8\n1 2\n3 4\n", &["t [s]", "J [1/GPa]"], 2),
+            ("# made today\n1 2\n3 4\n", &["made", "today"], 1),
             ("creep\n1,2\n3,4\n", &["creep"], 1),
             ("1,2\n3,4\n", &[], 1),
         ] {

@@ -170,10 +170,11 @@ fn temperature(history: &TemperatureHistory) -> String {
         Ok(table) => ("table", pairs(table)),
         Err(corners) => ("corners", array(corners.iter().copied().map(number))),
     };
-    let table = |name, rows: Vec<(f64, f64)>| (!rows.is_empty()).then(|| (name, pairs(&rows)));
+    let below: Vec<_> = law.arrhenius_below().collect();
     let parts = [
-        table("shift_factors", law.rows()),
-        table("arrhenius_below", law.arrhenius_below().collect()),
+        law.rows().map(|(rows, _)| ("shift_factors", pairs(rows))),
+        law.rows().map(|(_, extrapolated)| ("extrapolated", extrapolated.to_string())),
+        (!below.is_empty()).then(|| ("arrhenius_below", pairs(&below))),
         history.age().map(|age| ("ageing", array(age.map(number)))),
     ];
     let reference = ("reference", number(law.reference()));

@@ -251,8 +251,8 @@ impl<'a> PlanBuilder<'a> {
             accuracy,
             fields: (!fields.is_empty()).then(|| accuracy.fields()),
             reach: size.reach,
-            steps: steps.run.steps.len() + steps.stops.len(),
-            stops: steps.stops.clone(),
+            steps: steps.run.steps.len() + if doubt.is_none() { steps.stops.len() } else { 0 },
+            stops: if doubt.is_none() { steps.stops.clone() } else { Vec::new() },
             convolutions: converged.work(across),
             // adaptive steps keep the rate of the displacement
             bytes: memory.total() + 8 * memory.computed_cells as u64,

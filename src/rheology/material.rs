@@ -301,7 +301,8 @@ impl Material {
 
     /// The error of a rheology of the user, as [`Rheology::failure`]: NaN stands for the value that it could not give.
     pub fn failure(&self) -> Option<UserError> {
-        self.bodies.iter().find_map(|body| body.rheology.failure())
+        // all are taken, the first is told
+        self.bodies.iter().fold(None, |first, body| first.into_iter().chain(body.rheology.failure()).next())
     }
 
     /// Accepts rheologies whose times are not NaN.

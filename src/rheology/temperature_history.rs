@@ -297,12 +297,12 @@ impl TemperatureHistory {
 }
 
 impl TemperatureHistory {
-    /// The times and temperatures of a table, or the corners of a function.
     /// Shift rate, reference age and age at the start of an ageing body.
     pub(crate) fn age(&self) -> Option<[f64; 3]> {
         self.ageing.map(|Ageing { rate, reference, start }| [rate, reference, start])
     }
 
+    /// The times and temperatures of a table, or the corners of a function.
     pub(crate) fn course(&self) -> std::result::Result<&[(f64, f64)], &[f64]> {
         match &self.course {
             Temperatures::Table(table) => Ok(table.as_slice()),

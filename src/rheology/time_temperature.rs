@@ -39,9 +39,9 @@ enum Law {
     Arrhenius {
         energy: f64,
     },
-    /// 1/T and ln a_T by temperature, ascending.
+    /// Temperatures, ascending, and a_T.
     Table {
-        nodes: Arc<[(f64, f64)]>,
+        rows: Arc<[(f64, f64)]>,
         extrapolated: bool,
     },
 }
@@ -99,8 +99,11 @@ impl TimeTemperature {
         in_order("temperatures of shift factors", table.iter().map(|row| row.0), "ascend", |a, b| a < b)?;
         let allowed = "a temperature of the table at which a_T = 1";
         within("reference temperature", reference, table.contains(&(reference, 1.0)), allowed)?;
-        let nodes = table.iter().map(|&(temperature, factor)| (1.0 / temperature, factor.ln())).collect();
-        Ok(TimeTemperature { law: Law::Table { nodes, extrapolated: false }, reference, below: Vec::new() })
+        Ok(TimeTemperature {
+            law: Law::Table { rows: table.into(), extrapolated: false },
+            reference,
+            below: Vec::new(),
+        })
     }
 
     /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows; other laws stay as they are.
@@ -136,10 +139,9 @@ impl TimeTemperature {
         self.below.iter().map(|below| (below.temperature, below.energy))
     }
 
-    /// The rows of a table of shift factors.
-    pub(crate) fn rows(&self) -> Vec<(f64, f64)> {
-        let Law::Table { nodes, .. } = &self.law else { return Vec::new() };
-        nodes.iter().map(|&(reciprocal, log)| (1.0 / reciprocal, log.exp())).collect()
+    /// The rows of a table of shift factors, and whether it is extrapolated.
+    pub(crate) fn rows(&self) -> Option<(&[(f64, f64)], bool)> {
+        if let Law::Table { rows, extrapolated } = &self.law { Some((rows, *extrapolated)) } else { None }
     }
 
     /// The temperature at which a_T = 1 \[K\].
@@ -177,17 +179,18 @@ impl TimeTemperature {
                 10f64.powf(-c1 * difference / (c2 + difference))
             }
             Law::Arrhenius { energy } => (energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference)).exp(),
-            Law::Table { nodes, extrapolated } => {
-                let (x, last) = (1.0 / temperature, nodes.len() - 1);
-                let inside = *extrapolated || (nodes[last].0..=nodes[0].0).contains(&x);
+            Law::Table { rows, extrapolated } => {
+                let (x, last) = (1.0 / temperature, rows.len() - 1);
+                let node = |k: usize| (1.0 / rows[k].0, rows[k].1.ln());
+                let inside = *extrapolated || (node(last).0..=node(0).0).contains(&x);
                 within(
                     "temperature",
                     temperature,
                     inside,
                     "in the table of shift factors (TimeTemperature::extrapolated)",
                 )?;
-                let k = nodes.partition_point(|node| node.0 > x).clamp(1, last);
-                let [a, b] = [nodes[k - 1], nodes[k]];
+                let k = rows.partition_point(|row| 1.0 / row.0 > x).clamp(1, last);
+                let [a, b] = [node(k - 1), node(k)];
                 (a.1 + (x - a.0) / (b.0 - a.0) * (b.1 - a.1)).exp()
             }
         };

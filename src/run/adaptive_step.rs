@@ -7,7 +7,7 @@ use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::hereditary::{StepContext, TimeError};
 use crate::run::driven::Course;
-use crate::run::halves::{Divided, Halves, add_work};
+use crate::run::halves::{Divided, Halves, add_work, greater};
 use crate::run::load_within::stays_away;
 use crate::run::outlook::excess;
 use crate::run::step_control::{Proposal, StepControl};
@@ -165,6 +165,6 @@ fn try_step(
     control.halves = Some(halves);
     let Divided { attempt, difference, errors } = divided?;
     let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-    error.relative = error.relative.max(difference) * if jumped { JUMPED } else { 1.0 };
+    error.relative = greater(error.relative, difference) * if jumped { JUMPED } else { 1.0 };
     Ok(Tried { attempt, error, excess, halves: Some(errors) })
 }

@@ -100,7 +100,7 @@ impl Halves {
         });
         let least = least_sizes(&self.start, outlook);
         let over = |off: f64, of: f64, least: f64| if off != 0.0 { off / of.max(least * weight) } else { 0.0 };
-        over(off_u, of_u, least[0]).max(over(off_v, of_v, least[1]))
+        greater(over(off_u, of_u, least[0]), over(off_v, of_v, least[1]))
     }
 }
 
@@ -114,4 +114,9 @@ fn until(contact: &ViscoelasticContact, whole: &Step<'_>, time: f64) -> Result<I
 pub(super) fn add_work(work: &mut [usize; 2], tried: &Computation) {
     let counts = tried.trial.solution.counts;
     *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
+}
+
+/// The greater of two errors; NaN, which is an overflow, where one is.
+pub(super) fn greater(one: f64, other: f64) -> f64 {
+    if one.is_nan() || one > other { one } else { other }
 }

@@ -156,7 +156,7 @@ impl StatesContact {
     /// # Errors
     /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another load point than the sweep,
     /// needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the body has no elastic response, or the time under load
-    /// is beyond the material's. A step that fails changes nothing.
+    /// is beyond the material's. A step that fails changes nothing but, with exact states, the states between which it interpolates.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_to(self.time + dt, dt, load)
     }
@@ -177,10 +177,8 @@ impl StatesContact {
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
         known(wanted.level > 0.0)?;
         if self.scene.elastic.is_some() && wanted.level > 0.0 {
-            let before = Arc::clone(&self.states);
             self.solve(wanted)?;
-            let again = self.levels.wanted(&self.states, times, interpolant, demand);
-            wanted = again.inspect_err(|_| self.states = before)?;
+            wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
         }
         Ok((demand, wanted, reduced))
     }

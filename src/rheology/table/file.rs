@@ -216,7 +216,7 @@ impl Columns {
             }
         }
         let given = |place: usize, column: &TakenColumn| match column.name() {
-            name if name == TAN.name => Some(("value", Some(if column.heading().contains('%') { 0.01 } else { 1.0 }))),
+            name if name == TAN.name => Some(("value", Some(if is_percentage(column.heading()) { 0.01 } else { 1.0 }))),
             name if name == PHASE.name => None,
             _ => Some(if place == 0 { ("abscissa", units.abscissa) } else { ("value", units.value) }),
         };
@@ -259,6 +259,13 @@ impl Columns {
         let mut named = self.taken.iter().filter(|column| column.name() != PHASE.name).skip(1).map(named);
         named.find(|named| *named != Deformation::Unnamed).unwrap_or(Deformation::Unnamed)
     }
+}
+
+/// Whether a heading of a number ends with a percent sign for its unit, and not with a number of percent.
+fn is_percentage(heading: &str) -> bool {
+    let ends = |c: char| c.is_whitespace() || ")]}".contains(c);
+    let of = heading.trim_end_matches(ends).strip_suffix('%');
+    of.is_some_and(|of| !of.trim_end().ends_with(|c: char| c.is_ascii_digit()))
 }
 
 /// A column with its unit: the one given for a field of [`Units`], with which the heading must agree, or the unit of the heading.
