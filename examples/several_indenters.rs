@@ -110,7 +110,7 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
     for k in 0..=HELD * args.steps {
         progress.inc(1);
         let dt = if k == 0 { 0.0 } else { args.tau / f64::from(args.steps) };
-        contact.step(dt, &loads)?;
+        contact.step(dt, loads)?;
         if ![0, args.steps, HELD * args.steps].contains(&k) {
             continue;
         }
@@ -191,7 +191,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
         for k in 0..=args.steps {
             let dt = if k == 0 { 0.0 } else { args.tau / f64::from(args.steps) };
             punches.step(dt, &loads[..3])?;
-            four.step(dt, &loads)?;
+            four.step(dt, loads)?;
             let time = punches.time();
             let exact = faces.approaches(material, &jumps, time);
             for body in 0..3 {

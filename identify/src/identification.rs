@@ -143,7 +143,8 @@ impl Identification {
     /// # Errors
     /// If a parameter is missing or not allowed, or the tip goes beyond its last elastic state.
     pub fn respond(&self, experiment: &Experiment, values: &[(&str, f64)]) -> Result<Vec<Sample>> {
-        let problem = self.planned(std::slice::from_ref(experiment))?;
+        // computed forces have no noise
+        let problem = self.clone().noise(Noise::White).planned(std::slice::from_ref(experiment))?;
         let values = self.given(&problem, values)?;
         let prony = problem.prony(&values)?;
         problem.samples(0, &values, &prony)

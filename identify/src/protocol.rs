@@ -128,6 +128,7 @@ impl Protocol {
     /// # Errors
     /// As [`Protocol::new`]; [`Error::DrivenByForce`] if a load is a force.
     pub fn sampled(history: &dyn LoadHistory, times: Vec<f64>) -> Result<Protocol> {
+        drop(history.failure());
         let drive = |&time: &f64| match history.at(time) {
             Load::Approach { approach, .. } => Ok(approach),
             Load::Spring { drive, .. } => Ok(drive),

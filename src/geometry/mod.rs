@@ -46,6 +46,7 @@ pub use shifted::Shifted;
 pub use sphere::Sphere;
 pub use statistics::SurfaceStatistics;
 pub use sum::Sum;
+pub(crate) use sum::added;
 pub(crate) use waves::Missed;
 pub use waves::Waves;
 pub use wavy::Wavy;

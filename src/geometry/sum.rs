@@ -33,7 +33,7 @@ impl Sum {
 }
 
 /// The sum of two gaps: nothing to touch where one shape has nothing, whatever the other is.
-fn added(one: f64, other: f64) -> f64 {
+pub(crate) fn added(one: f64, other: f64) -> f64 {
     if one == f64::INFINITY || other == f64::INFINITY { f64::INFINITY } else { one + other }
 }
 

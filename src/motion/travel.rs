@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::error::{Error, Result, finite};
-use crate::geometry::{Geometry, Shifted, evaluate};
+use crate::geometry::{Geometry, Shifted, added, evaluate};
 use crate::motion::Path;
 
 /// A shape that moves along a path, optionally over a fixed track.
@@ -68,7 +68,7 @@ impl Travel {
     pub(crate) fn gap(&self, shape: &Shifted, grid: &Grid) -> Result<Vec<f64>> {
         let mut gap = evaluate(shape, grid)?;
         if let Some(track) = &self.track {
-            gap.iter_mut().zip(evaluate(track, grid)?).for_each(|(gap, own)| *gap += own);
+            gap.iter_mut().zip(evaluate(track, grid)?).for_each(|(gap, own)| *gap = added(*gap, own));
         }
         Ok(gap)
     }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use zip::ZipArchive;
 
 use crate::contact::Warnings;
-use crate::error::{Error, FileError, Result, finite, poisson_ratio};
+use crate::error::{Error, FileError, Result, poisson_ratio};
 use crate::file::{npy, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
@@ -137,7 +137,9 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let rest = array("rest", 3)?;
     let rest = RigidMotion { approach: rest[0], tilt: [rest[1], rest[2]] };
     let given = array("given_tilt", 4)?;
-    given.iter().try_for_each(|&value| finite("tilt or load point of the states", value).map(drop))?;
+    if given.iter().any(|value| !value.is_finite()) {
+        return Err(refused("a tilt or a load point is no number".into()));
+    }
     let tilt =
         [0, 2].map(|k| if given[k] == 1.0 { Tilt::Free { at: given[k + 1] } } else { Tilt::Fixed(given[k + 1]) });
     let mut states = ElasticStates::new(table, rest, tilt);
@@ -147,7 +149,8 @@ pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     }
     (states.error, states.first_level) = (sizes[0], sizes[1]);
     let poisson = Some(sizes[2]).filter(|poisson| !poisson.is_nan());
-    states.poisson = poisson.map(|poisson| poisson_ratio("Poisson's ratio of the states", poisson)).transpose()?;
+    let checked = poisson.map(|poisson| poisson_ratio("Poisson's ratio of the states", poisson)).transpose();
+    states.poisson = checked.map_err(|error| refused(error.to_string()))?;
     if arrays.contains_key("grid") {
         let grid = array("grid", 4)?;
         states.grid = Some(Grid::new([grid[0] as usize, grid[1] as usize], [grid[2], grid[3]])?);

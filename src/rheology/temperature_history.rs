@@ -87,6 +87,9 @@ const NOISY_PIECES: usize = 512;
 const NOISE: f64 = 0.75;
 /// Relative tolerance of a length in t that belongs to a length in ξ. Only the order of magnitude matters.
 const LENGTH_TOLERANCE: f64 = 1e-3;
+/// Logarithms of the first guess of a length over the shortest, and of the longest over the first guess.
+const SHORTEST_LOG: f64 = 60.0;
+const LONGEST_LOG: f64 = 700.0;
 /// Relative change of the temperature within the resolution of a time, beyond which it jumps.
 const CONTINUOUS: f64 = 1e-9;
 
@@ -217,13 +220,16 @@ impl TemperatureHistory {
         if guess == 0.0 {
             return Ok(guess);
         }
-        let excess = |share: f64| match (self.reduced_time(from, from + share * guess), self.rate(from + share * guess))
-        {
-            (Ok(grown), Ok(rate)) => [grown - reduced, rate * guess],
-            // temperatures beyond the range of the law are too far
-            _ => [f64::INFINITY, 0.0],
+        let excess = |log: f64| {
+            let length = guess * log.exp();
+            match (self.reduced_time(from, from + length), self.rate(from + length)) {
+                (Ok(grown), Ok(rate)) => [grown - reduced, rate * length],
+                // temperatures beyond the range of the law are too far
+                _ => [f64::INFINITY, 0.0],
+            }
         };
-        Ok(guess * root([0.0, most / guess], 1.0, LENGTH_TOLERANCE, excess))
+        let bracket = [-SHORTEST_LOG, (most / guess).ln().min(LONGEST_LOG)];
+        Ok((guess * root(bracket, 0.0, LENGTH_TOLERANCE, excess).exp()).min(most))
     }
 
     /// ξ over a piece without corners inside.

@@ -206,7 +206,7 @@ pub fn builders_announce_what_is_counted() {
         // which is when it takes the most; contact at the edge of the grid is no matter here
         let mut contact = contact;
         for force in [1.0e-3, 1.0e-1, 10.0] {
-            let stepped = contact.step(0.0, &vec![Load::force(force); scene.bodies]);
+            let stepped = contact.step(0.0, vec![Load::force(force); scene.bodies]);
             grown += usize::from(stepped.is_ok_and(|_| taken(&region) > 2.0 * counted));
             // what the solver makes for several bodies when it first needs it
             let late = if scene.bodies > 1 { 32.0 * memory.computed_cells as f64 } else { 0.0 };

@@ -21,7 +21,7 @@ fn count_tilting_steps<const N: usize>(mut contact: ViscoelasticContact, loads: 
     for step in 0..600 {
         let (dt, loads) = (if step % 5 == 0 { 0.0 } else { 0.1 }, loads(step));
         let region = Region::new(ALLOCATOR);
-        let Ok(report) = contact.step(dt, &loads) else { continue };
+        let Ok(report) = contact.step(dt, loads) else { continue };
         let change = region.change();
         assert!(step < 2 || (change.allocations, change.reallocations) == (0, 0), "{step} {loads:?}: {change:?}");
         fallback += usize::from(report.fallback_iterations > 0);

@@ -61,7 +61,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
             .unwrap()
     };
     let in_turn = |contact: &mut ViscoelasticContact, k: u32| {
-        contact.step(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
+        contact.step(0.02, [Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
     };
     let direct = whole.with_time_rule(TimeRule::Backward);
     let layer = move || {

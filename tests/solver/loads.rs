@@ -94,7 +94,7 @@ fn loads_that_would_topple_are_refused_at_once() {
 #[test]
 fn wrong_numbers_of_bodies_and_loads_are_refused() {
     let mut contact = punch(16);
-    let error = contact.step(0.0, &[Load::force(1.0), Load::force(1.0)]).unwrap_err();
+    let error = contact.step(0.0, [Load::force(1.0), Load::force(1.0)]).unwrap_err();
     let field = "loads of the rigid bodies";
     assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
     let shape = FlatPunch::circular(RADIUS).unwrap();

@@ -283,7 +283,7 @@ fn motions_without_contact_are_refused() {
     let mut two = builder(&grid, &at(-1.0e-3), Frame::Indenter).another_body(&at(2.0e-3)).build().unwrap();
     let loads = [Load::force(15.0), Load::force(10.0)];
     for _ in 0..40 {
-        two.step_over([1, 0], 1.0e-3, &loads).unwrap();
+        two.step_over([1, 0], 1.0e-3, loads).unwrap();
     }
     assert_abs_diff_eq!(two.body(1).unwrap().force / 10.0, 1.0, epsilon = 1e-9);
     assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongLength { .. })));

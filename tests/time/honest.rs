@@ -150,7 +150,7 @@ impl Promise {
         let tolerances = &TOLERANCES[..self.tolerances];
         let mut tallies: [Tally; 4] = Default::default();
         let mut without_truth = 0;
-        let numbers = first..first + scenes;
+        let (numbers, drawn) = (first..first + scenes, scenes * self.features.len() as u64);
         for (number, &features) in numbers.flat_map(|number| self.features.iter().map(move |of| (number, of))) {
             let scene = Scene::draw(seed, number, features);
             let mut truth =
@@ -177,12 +177,12 @@ impl Promise {
         }
         println!("seed {seed}, scenes {first} to {}", first + scenes);
         tolerances.iter().zip(&tallies).for_each(|(&tolerance, tally)| tally.print(tolerance));
-        assert!(100 * without_truth <= scenes);
+        assert!(100 * without_truth <= drawn);
         for (k, (tolerance, tally)) in tolerances.iter().zip(&tallies).enumerate() {
             assert!(tally.failures.is_empty(), "at {tolerance:e} {} runs do not end", tally.failures.len());
             let [high, most] = [self.share, 1.0].map(|part| tally.ratios[0].quantile(part));
             assert!(high <= self.high[k] && most < self.most[k], "at {tolerance:e}: {high} {most}");
-            assert!(2 * tally.ratios[0].count() as u64 > scenes, "of {} the truth is known", tally.ratios[0].count());
+            assert!(2 * tally.ratios[0].count() as u64 > drawn, "of {} the truth is known", tally.ratios[0].count());
         }
         for which in [3, 5].into_iter().filter(|_| self.by_budget) {
             let of_all = Ratios::of(tallies.iter().map(|tally| &tally.ratios[which]));

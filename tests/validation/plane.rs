@@ -121,7 +121,7 @@ fn flat_on_flat_is_solved_and_let_go() {
         .kernel(InfluenceKernel::periodic(&grid).unwrap())
         .build()
         .unwrap();
-    let error = two.step(0.0, &[Load::approach(1.0); 2]).unwrap_err();
+    let error = two.step(0.0, [Load::approach(1.0); 2]).unwrap_err();
     assert!(matches!(error, Error::Step(StepError::BeyondFullContact { .. })), "{error}");
 }
 

@@ -19,10 +19,10 @@ fn held_indenters_creep_as_elastic_ones_of_the_compliance_of_the_time() {
     let forces = [0.05, 0.05, 0.05, 0.02];
     let (material, loads) = (zener(), forces.map(Load::force));
     let mut contact = SCENE.on(&material, 4).unwrap();
-    contact.step(0.0, &loads).unwrap();
+    contact.step(0.0, loads).unwrap();
     let mut furthest = 0.0_f64;
     for k in 1..=20 {
-        contact.step(0.1, &loads).unwrap();
+        contact.step(0.1, loads).unwrap();
         if k % 10 == 0 {
             let compliance = material.contact_compliance(contact.time());
             let elastic = approaches(&SCENE.elastic(compliance, &forces).unwrap());
@@ -55,9 +55,9 @@ fn punches_pressed_in_turn_superpose() {
         jumps.push((contact.time(), [0, 1, 2].map(|body| forces[body] - before[body])));
         before = forces;
         let loads = forces.map(Load::force);
-        contact.step(0.0, &loads).unwrap();
+        contact.step(0.0, loads).unwrap();
         for k in 0..40 {
-            contact.step(if k < 20 { 0.005 } else { 0.02 }, &loads).unwrap();
+            contact.step(if k < 20 { 0.005 } else { 0.02 }, loads).unwrap();
         }
         let exact = faces.approaches(&material, &jumps, contact.time());
         for (computed, exact) in approaches(&contact).iter().zip(exact) {
@@ -88,7 +88,7 @@ fn lateral_forces_of_two_indenters_are_opposite() {
             .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
             .build()
             .unwrap();
-        contact.step(0.0, &[own.3, other.3].map(Load::force)).unwrap();
+        contact.step(0.0, [own.3, other.3].map(Load::force)).unwrap();
         contact.lateral_force(&Shifted::new(Sphere::new(own.1).unwrap(), [own.2, 0.0]).unwrap())
     };
     let (left, right) = ([5.0e-3, -0.6e-3, 0.1], [10.0e-3, 0.6e-3, 0.2]);

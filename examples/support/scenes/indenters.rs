@@ -56,7 +56,7 @@ impl Indenters {
     /// Radok 1960, Ting 1966) the approaches of a creeping body are those of the elastic one of compliance C(t).
     pub fn elastic(&self, compliance: f64, forces: &[f64]) -> Result<ViscoelasticContact> {
         let mut contact = self.on(&Material::incompressible(Elastic::new(0.25 / compliance)?), forces.len())?;
-        contact.step(0.0, &forces.iter().map(|&force| Load::force(force)).collect::<Vec<_>>())?;
+        contact.step(0.0, forces.iter().map(|&force| Load::force(force)).collect::<Vec<_>>())?;
         Ok(contact)
     }
 

@@ -286,8 +286,10 @@ fn zone_is_resolved(law: &dyn Attraction, material: &Material, grid: &Grid) -> R
         length("range of the attraction", law.range())?;
         Ok(laws::usable(law).map_err(AdhesionError::Law)?)
     };
-    usable().map_err(|error| law.failure().map_or(error, Error::User))?;
-    let cells = cells_in_zone(softening(law), material.checked_compliance(0.0, (0.0, 0.0))?, grid);
+    drop(law.failure());
+    let softening = usable().map(|()| softening(law));
+    let softening = law.failure().map_or(softening, |failure| Err(Error::User(failure)))?;
+    let cells = cells_in_zone(softening, material.checked_compliance(0.0, (0.0, 0.0))?, grid);
     if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
         return Ok(());
     }
