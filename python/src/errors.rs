@@ -86,7 +86,7 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 10] = [
+const NAMES: [(&str, &str); 11] = [
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
@@ -101,6 +101,7 @@ const NAMES: [(&str, &str); 10] = [
     ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
     ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),
     ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
+    ("(PlanBuilder::kernel)", "(kernel=)"),
     ("Earlier::Replace", "earlier=\"replace\""),
     ("::", "."),
 ];

@@ -157,7 +157,7 @@ impl<'a> PlanBuilder<'a> {
     /// Plans the run.
     ///
     /// # Errors
-    /// If the end of the run is not finite and positive, a part is invalid, no domain holds the contact, a contact problem
+    /// If the end of the run is not finite and positive, a part is invalid, there is a period or a line without a kernel, no domain holds the contact, a contact problem
     /// on a coarse mesh fails, a time of a field is not in the run, or approach, force and fields need more than 8192 cells along a side; for a temperature of the run as
     /// [`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor).
     pub fn build(self) -> Result<Plan> {
@@ -173,6 +173,16 @@ impl<'a> PlanBuilder<'a> {
         let PlanBuilder { asked, area } = self;
         let Asked { material, temperature, history, until, accuracy, body, fields, .. } = asked;
         positive("end of the run", until)?;
+        for (side, field) in body.sides.into_iter().zip(["period along x1", "period or line along x2"]) {
+            if let Side::Period(length) | Side::Uniform(length) = side {
+                within(
+                    field,
+                    length,
+                    length > 0.0 && body.kernel.is_some(),
+                    "> 0, with the kernel of a body that has it (PlanBuilder::kernel)",
+                )?;
+            }
+        }
         for &time in fields {
             within(
                 "time of a pressure field",
@@ -206,8 +216,8 @@ impl<'a> PlanBuilder<'a> {
         };
         let (laws, steps) = (converged.laws, &converged.steps);
         // rings of a half-space tell what cells lose of a peak; what cells lose of an elastic pressure is seen on any body
-        let is_half_space = body.kernel.is_none() && !body.sides.iter().any(|side| *side != Side::Found);
-        let is_known = is_half_space || steps.trace.is_none_or(|trace| trace.pressure_amplification <= AS_ELASTIC);
+        let is_known =
+            body.kernel.is_none() || steps.trace.is_none_or(|trace| trace.pressure_amplification <= AS_ELASTIC);
         let at_rim = steps.trace.is_some_and(|trace| !trace.cells.converges);
         let sides_for_pressure = needed(&laws).1;
         let doubt = match () {

@@ -199,6 +199,12 @@ fn plans_find_the_domain_whatever_its_size() {
         let plan = Plan::builder(&sphere, &material, &driven, until).accuracy(Accuracy::COARSE).build();
         refused([(plan.err(), "end of the run")]);
     }
+    // a body that has no such period
+    let plan = || Plan::builder(&sphere, &material, &driven, 1.0);
+    refused([
+        (plan().period(Axis::X1, 4.0e-3).build().err(), "period along x1"),
+        (plan().line(1.0).build().err(), "period or line along x2"),
+    ]);
     refused([0.0, -1.0, 1e-7, 0.2, 5.0, f64::NAN].map(|target| (Accuracy::new(target).err(), "accuracy")));
 }
 

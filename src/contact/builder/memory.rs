@@ -43,8 +43,8 @@ use crate::solver::{Bands, Extension};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Memory {
-    /// Cells that are computed: with [`Settings::symmetry`] perhaps half or a quarter of the grid, with
-    /// [`Settings::window`] at most.
+    /// Cells that are computed: with [`Settings::symmetry`](crate::contact::Settings::symmetry) perhaps half or a quarter of the grid, with
+    /// [`Settings::window`](crate::contact::Settings::window) at most.
     pub computed_cells: usize,
     /// Bytes of gap and pressure on the whole grid.
     pub grid: u64,
@@ -57,12 +57,12 @@ pub struct Memory {
     /// Bytes of the work space of the kernel, and of its spectrum, unless another contact with the same kernel has made
     /// that already.
     pub kernel: u64,
-    /// Bytes that each further step adds: fields of direct sums, up to [`Settings::history_limit`].
+    /// Bytes that each further step adds: fields of direct sums, up to [`Settings::history_limit`](crate::contact::Settings::history_limit).
     pub each_step: u64,
 }
 
 impl Memory {
-    /// All bytes of the contact as it is built, or, with [`Settings::window`], when its window has grown to the most.
+    /// All bytes of the contact as it is built, or, with [`Settings::window`](crate::contact::Settings::window), when its window has grown to the most.
     pub fn total(&self) -> u64 {
         let Memory { grid, state, history, solver, kernel, .. } = *self;
         [grid, state, history, solver, kernel].into_iter().fold(0, u64::saturating_add)
