@@ -1,9 +1,10 @@
 //! Pressures to an accuracy: of runs in space at any time, and of contacts on elastic states.
 
 use viscocontact::analytic::{GrowingSphere, Hertz};
+use viscocontact::contact::Edge;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
-use viscocontact::states::{Reach, Sweep};
+use viscocontact::states::{Reach, StatesError, Sweep};
 
 use crate::common::random_histories::{Control, FromSmallLoad};
 use crate::common::{
@@ -400,6 +401,63 @@ fn fields_without_states_are_found_by_graded_steps() {
             assert!(some.over.above(2.0) == 0 && 10 * some.low() <= some.told.count().max(10));
         }
     }
+}
+
+/// A plate on an elastic foundation bends away from the middle of its contact, which shrinks there while the load grows: no levels give its fields.
+#[test]
+fn fields_of_contacts_that_shrink_are_found_by_graded_steps() {
+    let (mut errors, mut told) = (Ratios::default(), Ratios::default());
+    for number in 0..from_environment("FIELD_PLATES", 3) {
+        let (mut draws, grid, ball) = (Draws::new(number), Grid::square(48, 1.0).unwrap(), Sphere::new(1.5).unwrap());
+        let length = draws.between(0.05, 0.08);
+        let plate = move |q1: f64, q2: f64| 1.0 / (1.0 + (length * f64::hypot(q1, q2)).powi(4)) + 1e-4;
+        let kernel = std::sync::Arc::new(InfluenceKernel::from_spectrum(&grid, plate).unwrap());
+        let terms =
+            [(draws.between(2.0, 8.0), draws.between(0.2, 1.0)), (draws.between(2.0, 8.0), draws.between(1.0, 9.0))];
+        let material = Material::incompressible(GeneralizedMaxwell::new(1.0, &terms).unwrap());
+        let (level, until) = (draws.scale(8e-4, 2e-3), 3.0);
+        let force = level / material.contact_compliance(until);
+        let sweep = Sweep::new(grid.clone(), &ball).kernel(std::sync::Arc::clone(&kernel)).accuracy(1e-2);
+        let sweep = sweep.run(Reach::Level(level));
+        assert!(matches!(sweep, Err(Error::States(StatesError::Shrinks { .. }))), "{sweep:?}");
+        let contact = |tolerance: f64| {
+            let builder = builder_of(&ball, grid.clone(), material.clone()).kernel(std::sync::Arc::clone(&kernel));
+            builder.settings(Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance)).build().unwrap()
+        };
+        let history = Ramp::new(Load::force(0.1 * force), Load::force(force), 1.0).unwrap();
+        let asked = [0.4, 1.0, draws.between(1.2, until)];
+        let mut times: Vec<f64> = (1..=600).map(|k| until * f64::from(k) / 600.0).chain(asked).collect();
+        times.extend([0.0, 1.0].iter().flat_map(|corner| (1..40).map(move |k| corner + 0.3 * 0.7f64.powi(k))));
+        times.extend(asked.iter().flat_map(|end| (1..40).map(move |k| end - 0.3 * 0.7f64.powi(k))));
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|a, b| *a - *b < 1e-9);
+        let (mut exact, mut fields) = (contact(1e-8), Vec::new());
+        exact.step(0.0, history.at(0.0)).unwrap();
+        for time in times {
+            exact.step(time - exact.time(), history.at(time)).unwrap();
+            fields.extend(asked.iter().any(|end| (end - time).abs() < 1e-9).then(|| exact.pressure().to_vec()));
+        }
+        for accuracy in [1e-2, 1e-3] {
+            let (mut contact, mut found) = (contact(1e-6), 0);
+            let run = contact.follow(&history, Stepping::adaptive(accuracy), until).sample_at(asked).unwrap();
+            let mut run = run.fields_to(accuracy).unwrap();
+            while run.next_step().unwrap().is_some() {
+                for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
+                    let off = fields[found].iter().zip(sample.contact().pressure()).map(|(a, b)| (a - b).abs());
+                    let over = off.sum::<f64>() / fields[found].iter().sum::<f64>() / accuracy;
+                    let field = sample.field().unwrap();
+                    assert_eq!(field.elastic_contacts, 0);
+                    errors.push(over, "");
+                    told.push(field.error.unwrap() / accuracy / over.max(0.1), "");
+                    found += 1;
+                }
+            }
+            assert_eq!(found, asked.len());
+        }
+    }
+    errors.print("L1 over asked", 0);
+    told.print("estimate over truth", 0);
+    assert!(errors.count() >= 18 && errors.greatest() < 2.0 && told.above(1.0 / 3.0) == told.count());
 }
 
 /// The numbers of a field in an archive of NumPy.
