@@ -81,7 +81,8 @@ pub(crate) struct FoundPressure {
 
 impl Beside {
     /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field: tilts change, or are free
-    /// under a given approach, the material has no series, nothing presses, or an elastic contact shrinks as its load grows.
+    /// under a given approach, the material has no series, or nothing presses. [`StatesError::Shrinks`](crate::states::StatesError::Shrinks) where an elastic contact
+    /// shrinks as its load grows.
     pub(crate) fn new(
         contact: &ViscoelasticContact,
         course: &Loading<'_>,
@@ -132,9 +133,7 @@ impl Beside {
         for k in (0..FIRST_LEVELS).rev() {
             let level = top * RATIO.powi(-k);
             let next = beside.solve(level)?;
-            if below.is_some_and(|below| beside.check(&below, &next).is_err()) {
-                return Ok(None);
-            }
+            below.iter().try_for_each(|below| beside.check(below, &next))?;
             below = Some(next);
         }
         let origin = undisturbed(course, &beside.curve_through(&beside.rows)?, interpolant, start)?;

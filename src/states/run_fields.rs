@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::{Scene, ViscoelasticContact};
-use crate::error::{Result, count_within};
+use crate::error::{Error, Result, StatesError, count_within};
 use crate::load::{Load, LoadHistory};
 use crate::run::Run;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
@@ -19,9 +19,10 @@ use crate::states::unless_refused;
 /// over the creep, as a part of the accuracy of the field.
 const OF_CREEP: f64 = 1.5;
 const MOST_CREEP: f64 = 15.0;
-/// Number and ratio of the graded steps before a field where levels do not give it.
-const GRADED: i32 = 12;
-const RATIO: f64 = 0.7;
+/// Number and ratio of the graded steps before a field where levels do not give it, and the share of the tolerance of all steps.
+const GRADED: (i32, f64, f64) = (12, 0.7, 1.0);
+/// The same where an elastic contact shrinks as its load grows: parts of the surface open while others are pressed.
+const GRADED_OF_SHRINKING: (i32, f64, f64) = (24, 0.84, 0.25);
 
 /// How the fields of a run in space are found.
 #[derive(Debug, Default)]
@@ -45,8 +46,10 @@ impl<'a> Run<'a> {
     /// elastic contacts beside the run give the pressure of [`Sample::contact`](crate::run::Sample::contact) and [`Run::within_step`] at any
     /// time: 6 for 1e-2 and 13 for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
     ///
-    /// Where an elastic contact shrinks as its load grows, load points or tilts change, or bodies are several, attract each other or are shared
-    /// out by ranks, 12 steps graded by 0.7 end before each of the times, and [`Run::contact`] has the pressure there. Under a given force the tolerance of all steps is then the
+    /// Where load points or tilts change, or bodies are several, attract each other or are shared out by ranks, 12 steps graded by 0.7 end before each
+    /// of the times, and [`Run::contact`] has the pressure there; 24 graded by 0.84, and a quarter of the tolerance of all steps, where an elastic
+    /// contact shrinks as its load grows: there half of the fields of plates on foundations err by half of the accuracy, and one of 30 by more than
+    /// twice, at most four times. Under a given force the tolerance of all steps is then the
     /// accuracy over two thirds of the creep, but a tenth at least. The estimate is the difference to a run beside in steps twice as long: half as
     /// much work again, and the memory of a contact. There is none once a step of that run has failed.
     ///
@@ -103,6 +106,8 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         let is_new = start == 0.0 || state.is_undisturbed();
         let kind = (settings.adaptive_interpolant(), start);
         let beside = (is_alone && is_new).then(|| Beside::new(contact, &course, accuracy, kind)).transpose();
+        let shrinks = matches!(beside, Err(Error::States(StatesError::Shrinks { .. })));
+        let (count, ratio, share) = if shrinks { GRADED_OF_SHRINKING } else { GRADED };
         if let Some(beside) = unless_refused(beside)?.flatten() {
             *self = InSpace::Beside(Mutex::new(Box::new(beside)));
             return Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY });
@@ -114,7 +119,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             while let Some(next) = corner.filter(|next| *next > since && *next < time) {
                 (since, corner) = (next, history.next_breakpoint(next));
             }
-            let graded = (1..=GRADED).map(|j| time - (time - since) * RATIO.powi(j));
+            let graded = (1..=count).map(|j| time - (time - since) * ratio.powi(j));
             stops.extend(graded.chain([time]));
         }
         *self = InSpace::Coarser(Coarser::new(contact, times, is_adaptive));
@@ -125,7 +130,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             }
             _ => accuracy,
         };
-        Ok(Prepared { stops, tolerance })
+        Ok(Prepared { stops, tolerance: share * tolerance })
     }
 
     fn follow(&mut self, contact: &ViscoelasticContact, history: &dyn LoadHistory, start: f64) {
