@@ -47,8 +47,8 @@ pub use step::StepError;
 pub use table::{Place, TableError};
 pub use text::TextError;
 pub use unsteady::Unsteady;
-pub(crate) use user::Failure;
 pub use user::UserError;
+pub(crate) use user::{Failure, unless_failed};
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};

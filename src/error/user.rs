@@ -51,6 +51,17 @@ impl PartialEq for UserError {
     }
 }
 
+/// What `compute` makes of values of a user's function, or the error of the function in this call: `failure` takes it, and one of an earlier
+/// call before.
+pub(crate) fn unless_failed<T>(
+    failure: impl Fn() -> Option<UserError>,
+    compute: impl FnOnce() -> crate::Result<T>,
+) -> crate::Result<T> {
+    drop(failure());
+    let computed = compute();
+    failure().map_or(computed, |failure| Err(failure.into()))
+}
+
 /// The last error of a closure, which returns a value that no check accepts in its place.
 #[derive(Clone, Default)]
 pub(crate) struct Failure(Arc<Mutex<Option<UserError>>>);

@@ -53,7 +53,7 @@ pub use wavy::Wavy;
 
 use std::fmt::Debug;
 
-use crate::error::{Error, Result, UserError};
+use crate::error::{Error, Result, UserError, unless_failed};
 use crate::{Grid, memory};
 
 /// The gap between the undeformed bodies at zero approach.
@@ -168,13 +168,14 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     // checked before filling a field that could not be used
     memory::check("gap and pressure of a contact", 16 * grid.len() as u128)?;
     let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
-    // an error of an earlier call is none of this one
-    drop(geometry.failure());
-    // a rank may have no rows
-    if !gap.is_empty() {
-        geometry.fill_gap(grid, &mut gap);
-    }
-    geometry.failure().map_or(Ok(gap), |failure| Err(failure.into()))
+    let fill = || {
+        // a rank may have no rows
+        if !gap.is_empty() {
+            geometry.fill_gap(grid, &mut gap);
+        }
+        Ok(gap)
+    };
+    unless_failed(|| geometry.failure(), fill)
 }
 
 /// Refuses NaN and −∞.

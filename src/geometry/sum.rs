@@ -52,8 +52,8 @@ impl Geometry for Sum {
     }
 
     fn failure(&self) -> Option<UserError> {
-        // all are taken, the first is told
-        self.parts.iter().fold(None, |first, shape| first.into_iter().chain(shape.failure()).next())
+        // the failures of all shapes are taken, and the first is returned
+        self.parts.iter().fold(None, |first, shape| first.or(shape.failure()))
     }
 
     fn waves(&self) -> Vec<Waves> {

@@ -164,16 +164,12 @@ fn plain(text: &str) -> String {
 /// longer than a letter.
 fn powers(factor: &str, sign: i32) -> Vec<Unit> {
     if let Some(power) = ["10^", "1e", "1E"].iter().find_map(|ten| factor.strip_prefix(ten)) {
-        return power
-            .parse::<i8>()
-            .map(|power| (Q::NUMBER, 10_f64.powi(sign * i32::from(power))))
-            .into_iter()
-            .collect();
+        return exponent(power).map(|power| (Q::NUMBER, 10_f64.powi(sign * power))).into_iter().collect();
     }
     let end = factor.find(|c: char| c == '^' || c == '-' || c.is_ascii_digit()).unwrap_or(factor.len());
     let (name, power) = factor.split_at(end);
-    let power = if power.is_empty() { Ok(1) } else { power.trim_start_matches('^').parse::<i8>() };
-    let Ok(power) = power.map(|power| sign * i32::from(power)) else { return Vec::new() };
+    let power = if power.is_empty() { Some(1) } else { exponent(power.trim_start_matches('^')) };
+    let Some(power) = power.map(|power| sign * power) else { return Vec::new() };
     let units = |fits: &dyn Fn(&str, &str) -> bool| -> Vec<Unit> {
         let named = prefixed().filter(|(prefix, names, _)| names.iter().any(|unit| fits(prefix, unit)));
         named.map(|(.., (quantity, size))| (Q(quantity.0.map(|one| power * one)), size.powi(power))).collect()
@@ -183,6 +179,11 @@ fn powers(factor: &str, sign: i32) -> Vec<Unit> {
         return exact;
     }
     units(&|prefix, unit| name.to_lowercase() == format!("{prefix}{unit}").to_lowercase())
+}
+
+/// An exponent of a unit; none has more than two digits.
+fn exponent(text: &str) -> Option<i32> {
+    text.parse::<i8>().ok().map(i32::from)
 }
 
 #[cfg(test)]

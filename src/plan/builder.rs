@@ -234,7 +234,10 @@ impl<'a> PlanBuilder<'a> {
             () if steps.resolve_pressure(accuracy) => None,
             () => Some("it is a peak in time, or at a fast rim, that steps do not resolve"),
         };
-        let laws = if doubt.is_none() { laws } else { laws.without_pressure() };
+        let (laws, stops) = match doubt {
+            None => (laws, steps.stops.clone()),
+            Some(_) => (laws.without_pressure(), Vec::new()),
+        };
         let (across, sides) = needed(&laws);
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_PLANNED_CELLS {
@@ -261,8 +264,8 @@ impl<'a> PlanBuilder<'a> {
             accuracy,
             fields: (!fields.is_empty()).then(|| accuracy.fields()),
             reach: size.reach,
-            steps: steps.run.steps.len() + if doubt.is_none() { steps.stops.len() } else { 0 },
-            stops: if doubt.is_none() { steps.stops.clone() } else { Vec::new() },
+            steps: steps.run.steps.len() + stops.len(),
+            stops,
             convolutions: converged.work(across),
             // adaptive steps keep the rate of the displacement
             bytes: memory.total() + 8 * memory.computed_cells as u64,

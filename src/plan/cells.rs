@@ -9,8 +9,8 @@ const TRIES: i32 = 17;
 const SAFETY: f64 = 2.0;
 /// The pressure of an outermost cell is at most so many times the mean over its width: it is the greatest just before the next cell joins.
 const OVERSHOOT: f64 = 2.0;
-/// What few cells exceed the levels by holds for contacts of so many times as many. It counts where the contact is smaller than this part of
-/// that of the greatest pressure.
+/// By how much a contact of few cells exceeds the levels holds for contacts of up to so many times as many cells. The excess counts where a contact is
+/// smaller than this part of the contact of the greatest pressure.
 const SIMILAR: f64 = 1.2;
 const SMALLER: f64 = 0.5;
 /// Where a pressure beside the middle comes as near the greatest as this, cells that join one after another scatter it: with 85 and 92 of them
@@ -48,8 +48,8 @@ pub(super) struct FewCells {
 }
 
 /// What cells lose of the `highest` pressure of a run, on a domain whose widest contact is so `wide`: up to the fewest that lose no more than
-/// is allowed, and whose outermost cells never exceed it, nor those of small contacts: these exceed the levels by what as few cells of a run did
-/// that stood `beside` them. In the middle cells lose what they lose of an elastic contact.
+/// is allowed, and whose outermost cells never exceed the highest pressure. Neither may the cells of small contacts: contacts of as few cells in a
+/// run `beside` the levels tell their excess. In the middle cells lose what they lose of an elastic contact.
 pub(super) fn cells(
     all: &[LevelState],
     highest: Option<&LevelState>,

@@ -301,8 +301,8 @@ impl Material {
 
     /// The error of a rheology of the user, as [`Rheology::failure`]: NaN stands for the value that it could not give.
     pub fn failure(&self) -> Option<UserError> {
-        // all are taken, the first is told
-        self.bodies.iter().fold(None, |first, body| first.into_iter().chain(body.rheology.failure()).next())
+        // the failures of both bodies are taken, and the first is returned
+        self.bodies.iter().fold(None, |first, body| first.or(body.rheology.failure()))
     }
 
     /// Accepts rheologies whose times are not NaN.

@@ -3,11 +3,11 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::contact::{Estimated, Figures, Limits, StepReport, ViscoelasticContact, Warnings, impl_contact};
-use crate::error::{Error, Result, StatesError, StepError, non_negative};
+use crate::error::{Error, Result, StatesError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
 use crate::load::Load;
-use crate::rheology::{Material, TemperatureHistory, is_known};
+use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
 use crate::states::curve::ElasticStates;
 use crate::states::elastic::state_under;
@@ -168,14 +168,10 @@ impl StatesContact {
         let (length, reduced) = self.reduced(time, dt)?;
         let (demand, times, interpolant) = (self.demand(load)?, (time, length), self.scene.interpolant);
         // time at rest does not count
-        let (age, known_until) = (reduced - self.undisturbed_until, self.scene.limits.known_until);
-        let known = |touched: bool| match !touched || is_known(age, known_until) {
-            true => Ok(()),
-            false => Err(Error::Step(StepError::BeyondMaterial { time, age, known_until })),
-        };
-        known(self.groups() > 0)?;
+        let age = reduced - self.undisturbed_until;
+        self.scene.limits.check_age(time, age, self.groups() > 0)?;
         let mut wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;
-        known(wanted.level > 0.0)?;
+        self.scene.limits.check_age(time, age, wanted.level > 0.0)?;
         if self.scene.elastic.is_some() && wanted.level > 0.0 {
             self.solve(wanted)?;
             wanted = self.levels.wanted(&self.states, times, interpolant, demand)?;

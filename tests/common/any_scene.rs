@@ -152,7 +152,7 @@ fn shape(draws: &mut Draws, line: bool) -> Box<dyn Geometry> {
     }
 }
 
-/// A load over a second: that of any body with these tilts; some bodies are pressed by a force first, and held then.
+/// A random load history of one second with these tilts; some bodies are pressed by a force first, and held then.
 fn history(draws: &mut Draws, lengths: [f64; 2], tilts: [bool; 2], line: bool, jumps: bool) -> Box<dyn LoadHistory> {
     let depth = draws.power_of_ten(-5.0, -4.2);
     let force = if line { 50.0 } else { 0.05 } * draws.power_of_ten(-1.0, 0.5);

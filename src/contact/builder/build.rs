@@ -15,7 +15,7 @@ use crate::contact::{
     ViscoelasticContact,
 };
 use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, coverage};
-use crate::error::{count_within, length, positive};
+use crate::error::{count_within, length, positive, unless_failed};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
 use crate::kernel::{InfluenceKernel, Layer};
@@ -196,9 +196,8 @@ impl Builder {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
-        if let Some(law) = self.attraction.as_deref() {
-            zone_is_resolved(law, &material, &self.grid)?;
-        }
+        let softening =
+            self.attraction.as_deref().map(|law| resolved_softening(law, &material, &self.grid)).transpose()?;
         let scene = Scene {
             grid: self.grid.clone(),
             kernel,
@@ -206,7 +205,7 @@ impl Builder {
             material,
             settings: self.settings,
             temperature: self.temperature.clone(),
-            softening: self.attraction.as_deref().map_or(0.0, softening),
+            softening: softening.unwrap_or(0.0),
             attraction: self.attraction.clone(),
             steady: self.steady,
             bodies,
@@ -279,19 +278,18 @@ fn longer_side(grid: &Grid) -> f64 {
     sides.map(|(side, _)| side).reduce(f64::max).unwrap_or(grid.spacing()[0])
 }
 
-/// Rejects a law that is no attraction, and a mesh on which even the elastic response has too short a zone.
-fn zone_is_resolved(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<()> {
-    let usable = || {
+/// The slope at which a law softens. Rejects a law that is no attraction, and a mesh on which even the elastic response has too short a zone.
+fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<f64> {
+    let of_law = || {
         positive("work of separation", law.work())?;
         length("range of the attraction", law.range())?;
-        Ok(laws::usable(law).map_err(AdhesionError::Law)?)
+        laws::usable(law).map_err(AdhesionError::Law)?;
+        Ok(softening(law))
     };
-    drop(law.failure());
-    let softening = usable().map(|()| softening(law));
-    let softening = law.failure().map_or(softening, |failure| Err(Error::User(failure)))?;
+    let softening = unless_failed(|| law.failure(), of_law)?;
     let cells = cells_in_zone(softening, material.checked_compliance(0.0, (0.0, 0.0))?, grid);
     if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
-        return Ok(());
+        return Ok(softening);
     }
     let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
     Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())

@@ -1,6 +1,7 @@
 //! Limits of the model and of a material, beyond which a step warns.
 
 use crate::contact::Warnings;
+use crate::error::{Error, Result, StepError};
 use crate::rheology::{FitWarning, Material, is_known};
 
 /// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
@@ -30,6 +31,16 @@ impl Limits {
         let is_doubt = |warning| !matches!(warning, FitWarning::BeginsLate { .. });
         let is_uncertain = material.fit_reports().any(|report| report.warning().is_some_and(is_doubt));
         Limits { known_until: material.known_until(), measured: material.measured(), is_uncertain, modulus }
+    }
+
+    /// Rejects a step to a `time` at which bodies that were ever `touched` have a loading time, their `age`, for which the material is not known.
+    pub(crate) fn check_age(&self, time: f64, age: f64, touched: bool) -> Result<()> {
+        let known_until = self.known_until;
+        if !touched || is_known(age, known_until) {
+            Ok(())
+        } else {
+            Err(Error::Step(StepError::BeyondMaterial { time, age, known_until }))
+        }
     }
 
     /// The warnings of a step of length `dt` to the loading time `age`, without its modulus.

@@ -10,7 +10,6 @@ use crate::contact::{Edge, Region, Scene, Solver, State, Step, Trial, Window};
 use crate::error::{AdhesionError, Convergence, Error, Result, StepError, coverage, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt, load_point};
-use crate::rheology::is_known;
 use crate::solver::{Counts, Freedom, Outcome, Solution};
 
 /// Rejects loads that no pressure can balance.
@@ -71,12 +70,7 @@ fn freedom(load: &Load, grid: &Grid) -> Freedom {
 /// time.
 pub(super) fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
     let Interval { time, reduced, .. } = step.interval;
-    let (age, known_until) = (reduced - state.clock.undisturbed_until, scene.material.known_until());
-    if !touched || is_known(age, known_until) {
-        Ok(())
-    } else {
-        Err(Error::Step(StepError::BeyondMaterial { time, age, known_until }))
-    }
+    scene.limits.check_age(time, reduced - state.clock.undisturbed_until, touched)
 }
 
 /// Rejects a compliance that overflows or underflows. It is 0 only in jumps of bodies without elastic response.

@@ -35,7 +35,7 @@ use crate::contact::{
     Computation, Edge, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial,
     ViscoelasticContact,
 };
-use crate::error::{Error, Result, StepError, coverage, non_negative};
+use crate::error::{Error, Result, StepError, coverage, non_negative, unless_failed};
 use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
@@ -335,11 +335,8 @@ impl Computation {
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
         let given = [c, bodies.greatest_motion(&scene.grid)];
         if let Some(law) = scene.attraction.as_deref() {
-            // what failed in an earlier call is none of this step's
-            drop(law.failure());
-            let solved = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] }
-                .solve(window, trial);
-            law.failure().map_or(solved, |failure| Err(Error::User(failure)))?;
+            let attracted = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] };
+            unless_failed(|| law.failure(), || attracted.solve(window, trial))?;
         } else {
             guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
             if c == 0.0 {

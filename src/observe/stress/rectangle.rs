@@ -64,8 +64,8 @@ pub(super) fn corner(xi: f64, eta: f64, [all, by_ratio]: Weights) -> Stress {
 }
 
 /// The stress at a point below a field on rectangles: the sum over all corners, weighted by the double difference of the field
-/// at the corner. Each corner is computed once; corners between equal values are skipped. The sides of the rectangles are those of
-/// the cells, or endless along an axis with one cell.
+/// at the corner. Each corner is computed once; corners between equal values are skipped. The rectangles have the sides of
+/// the cells, or are endless along an axis with one cell.
 pub(super) fn below_cells(grid: &Grid, sides: [f64; 2], field: &[f64], point: [f64; 3], weights: Weights) -> Stress {
     let ([x, y, z], [n1, n2], [d1, d2]) = (point, grid.cells(), sides);
     let mut sum = Stress::default();
