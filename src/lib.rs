@@ -113,15 +113,18 @@
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
+#![cfg_attr(not(feature = "full"), allow(dead_code, unused_imports, reason = "rooms behind features use them"))]
 
 #[macro_use]
 mod values;
 
 pub mod adhesion;
+#[cfg(feature = "analytic")]
 pub mod analytic;
 mod ascending;
 mod axis;
 pub mod contact;
+mod dense;
 mod error;
 mod events;
 mod extent;
@@ -130,9 +133,10 @@ mod file;
 pub mod geometry;
 mod grid;
 // the programs of the guide run only with the features that they use
-#[cfg(all(doc, any(not(doctest), all(feature = "checkpoint", feature = "npy", feature = "plot"))))]
+#[cfg(all(doc, any(not(doctest), all(feature = "full", feature = "npy"))))]
 pub mod guide;
 mod hereditary;
+#[cfg(feature = "text")]
 pub mod input;
 mod kernel;
 #[cfg(feature = "laws")]
@@ -143,6 +147,7 @@ mod memory;
 pub mod motion;
 pub mod numeric;
 pub mod observe;
+#[cfg(feature = "output")]
 pub mod output;
 pub mod parallel;
 #[cfg(doc)]
@@ -151,6 +156,7 @@ pub mod paper {
 
     use crate::*;
 }
+#[cfg(feature = "plan")]
 pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;
@@ -158,8 +164,10 @@ mod quadrature;
 pub mod rheology;
 mod rounded;
 pub mod run;
+#[cfg(feature = "sliding")]
 pub mod sliding;
 mod solver;
+#[cfg(feature = "states")]
 pub mod states;
 mod sum;
 
@@ -169,6 +177,7 @@ pub use error::{
     Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, TextError, Trend, UserError,
 };
 pub use grid::Grid;
+#[cfg(feature = "text")]
 pub use input::{Delimiter, TextFormat};
 pub use kernel::{InfluenceKernel, Layer, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
@@ -190,19 +199,26 @@ pub mod prelude {
         ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
-        Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
-        RoughSpec, Roughness, Shifted, Sphere, SurfaceStatistics, Wavy,
+        Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Repeated, Shifted, Sphere, Wavy,
     };
+    #[cfg(feature = "surfaces")]
+    pub use crate::geometry::{Anisotropy, HeightMap, LengthUnit, Rough, RoughSpec, Roughness, SurfaceStatistics};
     pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
+    #[cfg(feature = "output")]
     pub use crate::output::{CsvHistory, Earlier, Field, FrameSeries, Metadata};
+    #[cfg(feature = "plan")]
     pub use crate::plan::{Accuracy, Plan};
+    #[cfg(feature = "data")]
+    pub use crate::rheology::Measurements;
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
-        KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Tension, Zener,
+        KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, Tension, Zener,
     };
     pub use crate::run::{Crossing, Run, SteadyMotion, Stepping, Times};
+    #[cfg(feature = "sliding")]
     pub use crate::sliding::SteadySliding;
+    #[cfg(feature = "states")]
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }

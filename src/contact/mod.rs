@@ -51,6 +51,7 @@ pub use moving::along_path::TravelReport;
 pub use read::energies::{Energies, EnergyBalance};
 pub(crate) use read::limits::{DEEP, Limits, STEEP};
 pub use read::report::{BodyState, Estimated, Figures, StepReport};
+#[cfg(feature = "stress")]
 pub use read::stress::StressHistory;
 pub use read::warnings::Warnings;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};

@@ -21,15 +21,14 @@ mod cylinder;
 mod ellipsoid;
 mod flat_punch;
 mod function;
-mod height_map;
-mod height_spectrum;
+#[cfg(feature = "laws")]
 pub mod laws;
 mod repeated;
-mod rough;
 mod shifted;
 mod sphere;
-mod statistics;
 mod sum;
+#[cfg(feature = "surfaces")]
+mod surfaces;
 mod waves;
 mod wavy;
 
@@ -39,14 +38,13 @@ pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
-pub use height_map::{Form, HeightMap, LengthUnit, ResampledMap, ResamplingError};
 pub use repeated::Repeated;
-pub use rough::{Anisotropy, Rough, RoughSpec, Roughness, SharedRough};
 pub use shifted::Shifted;
 pub use sphere::Sphere;
-pub use statistics::SurfaceStatistics;
 pub use sum::Sum;
 pub(crate) use sum::added;
+#[cfg(feature = "surfaces")]
+pub use surfaces::*;
 pub(crate) use waves::Missed;
 pub use waves::Waves;
 pub use wavy::Wavy;

@@ -1,8 +1,7 @@
 //! Checks that an operator is positive definite.
 
-use faer::{Mat, Side};
-
 use super::SpectralOperator;
+use crate::dense::extreme_eigenvalues;
 use crate::sum::sum_of_pairs;
 
 /// Lanczos steps: the extreme eigenvalues converge first.
@@ -34,18 +33,8 @@ pub(super) fn least_eigenvalue(operator: &SpectralOperator, cells: usize) -> (f6
         std::mem::swap(&mut previous, &mut vector);
         vector.iter_mut().zip(&image).for_each(|(vector, image)| *vector = image / next);
     }
-    // with NaN or overflow the eigenvalue solver would run long and find nothing
     if !diagonal.iter().chain(&beside).all(|value| value.is_finite()) {
         return (f64::NAN, f64::NAN);
     }
-    let entry = |i: usize, j: usize| match i.abs_diff(j) {
-        0 => diagonal[i],
-        1 => beside[i.min(j)],
-        _ => 0.0,
-    };
-    let matrix = Mat::from_fn(diagonal.len(), diagonal.len(), entry);
-    // in ascending order
-    matrix
-        .self_adjoint_eigenvalues(Side::Lower)
-        .map_or((f64::NAN, f64::NAN), |values| (values[0], values[values.len() - 1]))
+    extreme_eigenvalues(&diagonal, &beside)
 }

@@ -14,6 +14,7 @@
 
 mod function;
 mod history;
+#[cfg(feature = "laws")]
 pub mod laws;
 mod periodic;
 mod piecewise_linear;

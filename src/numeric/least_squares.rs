@@ -1,8 +1,7 @@
 //! Non-linear least squares by the method of Levenberg and Marquardt.
 
-use faer::{Col, Mat};
-
-use super::non_negative::solve;
+use faer::linalg::solvers::SolveLstsqCore;
+use faer::{Col, Conj, Mat};
 
 /// Fraction of the sum of squares that no step is worth.
 const NOTHING: f64 = 1e-12;
@@ -184,8 +183,9 @@ impl Linear {
             Some(_) => 0.0,
         });
         let known = self.q.transpose() * right;
-        let solved = solve(&matrix, &Col::from_fn(rows + count, |i| if i < rows { known[i] } else { 0.0 }));
-        Col::from_fn(count, |j| solved[j])
+        let mut solved = Mat::from_fn(rows + count, 1, |i, _| if i < rows { known[i] } else { 0.0 });
+        matrix.col_piv_qr().solve_lstsq_in_place_with_conj(Conj::No, solved.as_mut());
+        Col::from_fn(count, |j| solved[(j, 0)])
     }
 
     /// The reduction of the sum of squares by a step.

@@ -1,7 +1,6 @@
 //! Non-negative least squares.
 
-use faer::linalg::solvers::SolveLstsqCore;
-use faer::{Col, Conj, Mat, Scale};
+use crate::dense::{Matrix, norm, product};
 
 /// Solves min |A x − b| over x ≥ 0 by the active set method of Lawson & Hanson (*Solving Least Squares
 /// Problems*, 1974, chapter 23), with A of one row for each of `right` and so many columns. The solution is sparse: few of many
@@ -16,27 +15,26 @@ use faer::{Col, Conj, Mat, Scale};
 /// assert!((found[0] - 2.0).abs() < 1e-12 && found[1] == 0.0);
 /// ```
 pub fn non_negative_least_squares(right: &[f64], columns: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<f64> {
-    let a = &Mat::from_fn(right.len(), columns, entry);
-    let b = &Col::from_fn(right.len(), |row| right[row]);
+    let a = Matrix::from_fn(right.len(), columns, entry);
     // columns are normalised, so that gradients are comparable
-    let norms: Vec<f64> = (0..columns).map(|j| a.col(j).norm_l2()).collect();
+    let norms: Vec<f64> = (0..columns).map(|j| norm(a.column(j))).collect();
     let mut x = vec![0.0; columns];
     let mut passive: Vec<usize> = Vec::new();
     let mut refused = vec![false; columns];
-    let enough = 1e-14 * b.norm_l2();
+    let enough = 1e-14 * norm(right);
     for _ in 0..3 * columns {
-        let mut residual = b.clone();
+        let mut residual = right.to_vec();
         for &j in &passive {
-            residual -= Scale(x[j]) * a.col(j);
+            residual.iter_mut().zip(a.column(j)).for_each(|(left, entry)| *left -= x[j] * entry);
         }
-        let gradient = |j: usize| (a.col(j).transpose() * &residual) / norms[j];
+        let gradient = |j: usize| product(a.column(j), &residual) / norms[j];
         let candidates = (0..columns).filter(|j| norms[*j] > 0.0 && !refused[*j] && !passive.contains(j));
         let best = candidates.map(|j| (gradient(j), j)).max_by(|one, other| one.0.total_cmp(&other.0));
-        let Some((_, entering)) = best.filter(|(steepest, _)| *steepest > enough && passive.len() < a.nrows()) else {
+        let Some((_, entering)) = best.filter(|(steepest, _)| *steepest > enough && passive.len() < a.rows()) else {
             break;
         };
         passive.push(entering);
-        let mut solved = least_squares(a, &passive, b);
+        let mut solved = a.of_columns(&passive).least_squares(right);
         if solved.last().is_none_or(|&value| value <= 0.0) || solved.iter().any(|value| !value.is_finite()) {
             // rounding: the strength is zero, or the column depends on the others
             passive.pop();
@@ -61,7 +59,7 @@ pub fn non_negative_least_squares(right: &[f64], columns: usize, entry: impl Fn(
                     *value = 0.0;
                 }
             }
-            solved = least_squares(a, &passive, b);
+            solved = a.of_columns(&passive).least_squares(right);
         }
         for (&j, &value) in passive.iter().zip(&solved) {
             x[j] = value.max(0.0);
@@ -69,19 +67,6 @@ pub fn non_negative_least_squares(right: &[f64], columns: usize, entry: impl Fn(
         refused.fill(false);
     }
     x
-}
-
-/// The least squares solution on some columns.
-fn least_squares(a: &Mat<f64>, columns: &[usize], b: &Col<f64>) -> Vec<f64> {
-    let part = Mat::from_fn(a.nrows(), columns.len(), |i, k| a[(i, columns[k])]);
-    solve(&part, b)
-}
-
-/// min |A x − b| by Householder QR with column pivoting; at least as many rows as columns.
-pub(crate) fn solve(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64> {
-    let mut right = Mat::from_fn(b.nrows(), 1, |i, _| b[i]);
-    a.col_piv_qr().solve_lstsq_in_place_with_conj(Conj::No, right.as_mut());
-    (0..a.ncols()).map(|j| right[(j, 0)]).collect()
 }
 
 #[cfg(test)]
@@ -98,12 +83,12 @@ mod tests {
         };
         let mut zeros = 0;
         for _ in 0..200 {
-            let a = Mat::from_fn(12, 8, |_, _| random());
+            let entries: Vec<f64> = (0..96).map(|_| random()).collect();
             let b: Vec<f64> = (0..12).map(|_| random()).collect();
-            let x = non_negative_least_squares(&b, 8, |i, j| a[(i, j)]);
-            let left = |i: usize| b[i] - (0..8).map(|j| a[(i, j)] * x[j]).sum::<f64>();
+            let x = non_negative_least_squares(&b, 8, |i, j| entries[8 * i + j]);
+            let left = |i: usize| b[i] - (0..8).map(|j| entries[8 * i + j] * x[j]).sum::<f64>();
             for j in 0..8 {
-                let slope: f64 = (0..12).map(|i| a[(i, j)] * left(i)).sum();
+                let slope: f64 = (0..12).map(|i| entries[8 * i + j] * left(i)).sum();
                 assert!(x[j] >= 0.0 && slope < 1e-10 && (x[j] == 0.0 || slope.abs() < 1e-10), "{x:?} {slope}");
                 zeros += usize::from(x[j] == 0.0);
             }

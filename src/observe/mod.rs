@@ -19,6 +19,7 @@ mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
 pub(crate) mod profile;
+#[cfg(feature = "stress")]
 mod stress;
 
 pub use asymmetry::Asymmetry;
@@ -26,6 +27,7 @@ pub use distribution::Distribution;
 pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
 pub use profile::LineProfile;
+#[cfg(feature = "stress")]
 pub use stress::{Stress, StressPeak, StressSection, StressVolume, SubsurfaceStress};
 
 /// A sphere pressed on an elastic half-space, for the tests of most observations.

@@ -41,9 +41,9 @@ mod npy;
 #[cfg(feature = "npy")]
 mod npz;
 mod series;
-mod sliding;
-#[cfg(feature = "npy")]
+#[cfg(all(feature = "npy", feature = "states"))]
 mod states;
+#[cfg(feature = "stress")]
 mod stress;
 mod vtk;
 
@@ -54,8 +54,9 @@ pub use metadata::Metadata;
 #[cfg(feature = "npy")]
 pub use npy::{write_field_npy, write_npy};
 pub use series::FrameSeries;
-#[cfg(feature = "npy")]
+#[cfg(all(feature = "npy", feature = "states"))]
 pub use states::{read_states, write_states};
+#[cfg(feature = "stress")]
 pub use stress::write_stress;
 
 use crate::contact::Contact;

@@ -57,7 +57,9 @@ mod map;
 mod palette;
 mod picture;
 mod quantity;
+#[cfg(feature = "stress")]
 mod section;
+#[cfg(feature = "sliding")]
 mod sliding;
 
 pub use animation::Animation;

@@ -69,6 +69,7 @@ mod generalized_maxwell;
 mod interconversion;
 mod kelvin_voigt;
 mod kww;
+#[cfg(feature = "laws")]
 pub mod laws;
 pub mod library;
 mod log_creep;
@@ -79,6 +80,7 @@ mod power_law;
 mod series;
 mod slow_creep;
 mod spectrum;
+#[cfg(feature = "data")]
 mod table;
 mod temperature_history;
 mod tension;
@@ -105,8 +107,8 @@ pub use slow_creep::SlowCreep;
 #[cfg(feature = "checkpoint")]
 pub(crate) use spectrum::SavedRelaxation;
 pub use spectrum::{CreepSpectrum, GeneralizedKelvin, RelaxationSpectrum};
-pub use table::Units;
-pub use table::{Experiment, Isotherm, MasterCurve, Measurements};
+#[cfg(feature = "data")]
+pub use table::{Experiment, Isotherm, MasterCurve, Measurements, Units};
 pub use temperature_history::TemperatureHistory;
 pub use tension::Tension;
 pub(crate) use time_temperature::GAS_CONSTANT;

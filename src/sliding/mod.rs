@@ -11,6 +11,7 @@ mod bodies;
 mod coefficients;
 mod contact_problem;
 mod creep;
+mod csv;
 mod gmres;
 mod layer_on_base;
 mod operator;

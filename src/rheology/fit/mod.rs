@@ -10,20 +10,17 @@
 //! [`Search::measured`].
 
 mod basis;
-mod measured;
 mod polish;
 mod report;
-mod uncertainty;
 
 use crate::numeric::non_negative_least_squares;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
-pub(in crate::rheology) use report::MOST_MISFIT;
+pub(in crate::rheology) use report::{KNOWN, MOST_MISFIT};
 pub use report::{FitReport, FitSample, FitWarning};
 
-use measured::DENSITY;
-use polish::polish;
+pub(in crate::rheology) use polish::polish;
 
 /// The class of series to search.
 #[derive(Debug, Clone)]
@@ -43,7 +40,7 @@ const DENSITIES: [f64; 4] = [2.0, 3.0, 5.0, 8.0];
 const TRIES: usize = 3;
 /// Iterations of the polish between mergers, and at the end.
 const BRIEF: usize = 12;
-const LONG: usize = 60;
+pub(in crate::rheology) const LONG: usize = 60;
 
 impl Search {
     /// The series of the fewest terms found whose misfit is at most `most` at every sample; else the one that comes
@@ -68,13 +65,13 @@ impl Search {
     }
 
     /// Non-negative least squares with `density` times per decade.
-    fn on_grid(&self, samples: &[Sample], density: f64) -> FittedSeries {
+    pub(in crate::rheology) fn on_grid(&self, samples: &[Sample], density: f64) -> FittedSeries {
         self.least_squares(samples, self.grid(density), |_| 1.0, 0.0)
     }
 
     /// Non-negative least squares of the misfit with terms at `times`, and of `smoothing` times the squared second
     /// differences of their strengths, each relative to `level` at its time.
-    fn least_squares(
+    pub(in crate::rheology) fn least_squares(
         &self,
         samples: &[Sample],
         times: Vec<f64>,
@@ -116,7 +113,7 @@ impl Search {
 
     /// Merges terms while a series with one term fewer is preferred to the current one, trying the `tries` cheapest
     /// mergers.
-    fn thinned(
+    pub(in crate::rheology) fn thinned(
         &self,
         start: FittedSeries,
         samples: &[Sample],
@@ -139,7 +136,7 @@ impl Search {
     }
 
     /// Log-spaced times, `density` per decade.
-    fn grid(&self, density: f64) -> Vec<f64> {
+    pub(in crate::rheology) fn grid(&self, density: f64) -> Vec<f64> {
         let [first, last] = self.times.map(f64::log10);
         let steps = ((last - first) * density).ceil().max(1.0) as usize;
         (0..=steps).map(|k| 10f64.powf(first + (last - first) * k as f64 / steps as f64)).collect()

@@ -1,9 +1,7 @@
 //! Optimises strengths and times of a series together, by least squares of the misfit.
 
-use faer::{Col, Mat};
-
 use super::{FittedSeries, MaterialFunction, Sample, Search};
-use crate::numeric::solve;
+use crate::dense::Matrix;
 
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;
@@ -14,7 +12,7 @@ const DECAYED: f64 = 30.0;
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. The strength of a term of
 /// relaxation is its modulus at the first sample: the modulus at t = 0 changes by orders of magnitude with the time. Ends after
 /// `iterations`, when `done`, or when the squares no longer decrease.
-pub(crate) fn polish(
+pub(in crate::rheology) fn polish(
     start: &FittedSeries,
     samples: &[Sample],
     search: &Search,
@@ -53,11 +51,11 @@ pub(crate) fn polish(
 }
 
 /// Derivatives of the misfits by ln constant, ln slope, and each (ln strength, ln time), and the misfits.
-fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Mat<f64>, Col<f64>) {
+fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Matrix, Vec<f64>) {
     let [constant_moves, slope_moves] = moving_ends(series, search);
     let ends = usize::from(constant_moves) + usize::from(slope_moves);
-    let mut jacobian = Mat::zeros(samples.len(), ends + 2 * series.terms.len());
-    let mut misfits = Col::zeros(samples.len());
+    let mut jacobian = Matrix::zeros(samples.len(), ends + 2 * series.terms.len());
+    let mut misfits = vec![0.0; samples.len()];
     let first = first_time(samples);
     for (i, sample) in samples.iter().enumerate() {
         let (function, root) = (sample.function, sample.weight.sqrt());
@@ -89,16 +87,16 @@ fn moving_ends(series: &FittedSeries, search: &Search) -> [bool; 2] {
 }
 
 /// min |J δ + r|² + damping |δ|².
-fn damped_step(jacobian: &Mat<f64>, misfits: &Col<f64>, damping: f64) -> Vec<f64> {
-    let (m, n) = (jacobian.nrows(), jacobian.ncols());
-    let scale = damping.sqrt() * (jacobian.norm_l2() / (n as f64).sqrt()).max(1e-300);
-    let matrix = Mat::from_fn(m + n, n, |i, j| match i {
+fn damped_step(jacobian: &Matrix, misfits: &[f64], damping: f64) -> Vec<f64> {
+    let (m, n) = (jacobian.rows(), jacobian.columns());
+    let scale = damping.sqrt() * (jacobian.norm() / (n as f64).sqrt()).max(1e-300);
+    let matrix = Matrix::from_fn(m + n, n, |i, j| match i {
         _ if i < m => jacobian[(i, j)],
         _ if i - m == j => scale,
         _ => 0.0,
     });
-    let right = Col::from_fn(m + n, |i| if i < m { -misfits[i] } else { 0.0 });
-    solve(&matrix, &right)
+    let right: Vec<f64> = misfits.iter().map(|misfit| -misfit).chain(std::iter::repeat_n(0.0, n)).collect();
+    matrix.least_squares(&right)
 }
 
 /// The time at which the strength of a term is taken.

@@ -1,7 +1,6 @@
 use crate::values::Counted;
 use std::fmt;
 
-use super::uncertainty::{KNOWN, Uncertainty};
 use super::{FittedSeries, MaterialFunction, Sample};
 
 /// One given value and the value of the fitted series.
@@ -28,13 +27,8 @@ impl FitSample {
 
 /// Greatest root mean square misfit of the nearest series to measurements that are accepted.
 pub(crate) const MOST_MISFIT: f64 = 0.1;
-/// Uncertainties and systematic misfits below this need no warning.
-const TOLERABLE: f64 = 5e-3;
-/// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
-const OVER_SCATTER: f64 = 2.0;
-/// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less
-/// for misfits that follow one another.
-const SYSTEMATIC: f64 = 1.0;
+/// Creep that is less uncertain than this is known.
+pub(in crate::rheology) const KNOWN: f64 = 0.05;
 
 /// Why a series fitted to measurements should be inspected before use. `Display` explains it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,11 +92,11 @@ impl fmt::Display for FitWarning {
 #[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitReport {
-    samples: Vec<FitSample>,
+    pub(in crate::rheology) samples: Vec<FitSample>,
     terms: usize,
-    wrong_way: f64,
-    interval: Vec<(f64, f64)>,
-    warning: Option<FitWarning>,
+    pub(in crate::rheology) wrong_way: f64,
+    pub(in crate::rheology) interval: Vec<(f64, f64)>,
+    pub(in crate::rheology) warning: Option<FitWarning>,
 }
 
 debug_by! {
@@ -126,35 +120,6 @@ impl FitReport {
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
         FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
-    }
-
-    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, the interval of
-    /// their creep, and the report of the nearest series, by which they are systematically off.
-    pub(crate) fn of_measurements(
-        self,
-        wrong_way: f64,
-        ambiguity: f64,
-        uncertainty: Uncertainty,
-        nearest: &FitReport,
-    ) -> FitReport {
-        let Uncertainty { interval, known_from: until } = uncertainty;
-        let (rms, first) = (self.rms_misfit(), interval[0].0);
-        let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
-            Some(FitWarning::FewSamples { uncertainty: ambiguity })
-        } else if nearest.rms_misfit() > TOLERABLE && nearest.is_systematic() {
-            Some(FitWarning::Systematic { rms: nearest.rms_misfit() })
-        } else {
-            (until > first).then_some(FitWarning::BeginsLate { first, until })
-        };
-        FitReport { wrong_way, interval, warning, ..self }
-    }
-
-    /// Whether the misfits of neighbouring samples are correlated.
-    fn is_systematic(&self) -> bool {
-        let neighbours = self.samples.windows(2).filter(|pair| pair[0].function == pair[1].function);
-        let (changes, pairs) = neighbours
-            .fold((0.0, 0.0), |(sum, count), pair| (sum + (pair[1].misfit() - pair[0].misfit()).powi(2), count + 1.0));
-        changes < SYSTEMATIC * pairs * self.rms_misfit().powi(2)
     }
 
     /// Whether the series is exact and nothing was fitted.

@@ -4,7 +4,9 @@ mod data;
 mod file;
 mod isotherm;
 mod master_curve;
+mod measured;
 mod shift;
+mod uncertainty;
 
 pub use file::Units;
 pub use isotherm::Isotherm;

@@ -5,7 +5,8 @@
 //! determine as many parameters as there are values, the sparsest series ripples between the rows; then the smoothest
 //! spectrum that explains the data is computed, and a sparse series is fitted to its curve.
 
-use super::{FittedSeries, LONG, MaterialFunction, Sample, Search, polish};
+use crate::rheology::MaterialFunction;
+use crate::rheology::fit::{FittedSeries, LONG, Sample, Search, polish};
 
 /// Accuracy of the best measurements: misfits below this need no further term.
 pub(super) const FLOOR: f64 = 3e-5;

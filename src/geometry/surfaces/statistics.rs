@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::error::{Error, MapError, Result, count_within, finite, positive};
 use crate::geometry::HeightMap;
-use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
+use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::memory;
 
 /// Statistics of a surface over its known points.

@@ -2,7 +2,7 @@
 
 use super::HeightMap;
 use crate::error::{Error, MapError, Result};
-use crate::geometry::statistics::FLAT;
+use crate::geometry::surfaces::statistics::FLAT;
 use crate::{Grid, memory};
 
 /// A map interpolated onto another grid, and the error of the interpolation.

@@ -14,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::error::{Error, MapError, Result, within};
-use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
+use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap, Waves};
 use crate::parallel::{Rows, part};
 use crate::{Grid, memory};

@@ -8,7 +8,7 @@ use crate::error::{MapError, Result};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::by_lines;
 
-pub(in crate::geometry::height_map) const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
+pub(in crate::geometry::surfaces::height_map) const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
 const FORMAT: &str = "GSF";
 
 impl HeightMap {

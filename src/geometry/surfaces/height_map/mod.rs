@@ -17,7 +17,7 @@ use std::fmt;
 
 use crate::Grid;
 use crate::error::{Error, LONGEST, MapError, Result, exact_length};
-use crate::geometry::height_spectrum::HeightSpectrum;
+use crate::geometry::surfaces::height_spectrum::HeightSpectrum;
 use crate::geometry::{Geometry, Waves};
 use crate::values::Counted;
 

@@ -8,10 +8,10 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::measured::{FLOOR, Measured};
-use super::{DENSITY, FittedSeries, MaterialFunction, Sample, Search};
+use super::measured::{DENSITY, FLOOR, Measured};
 use crate::error::Result;
-use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
+use crate::rheology::fit::{FittedSeries, KNOWN, Sample, Search};
+use crate::rheology::{CreepSpectrum, FitReport, FitWarning, MaterialFunction, RelaxationSpectrum};
 
 /// Number of tables drawn.
 const DRAWN: usize = 16;
@@ -22,8 +22,13 @@ const DEVIATIONS: f64 = 2.2;
 const PER_DECADE: f64 = 8.0;
 /// A body relaxes before the first sample from at most so many times the modulus measured there.
 const HIDDEN_MODULUS: f64 = 10.0;
-/// Creep that is less uncertain than this is known.
-pub(super) const KNOWN: f64 = 0.05;
+/// Uncertainties and systematic misfits below this need no warning.
+const TOLERABLE: f64 = 5e-3;
+/// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
+const OVER_SCATTER: f64 = 2.0;
+/// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less
+/// for misfits that follow one another.
+const SYSTEMATIC: f64 = 1.0;
 
 /// An interval of the creep compliance of a table.
 #[derive(Debug, Clone)]
@@ -122,6 +127,37 @@ impl Measured {
             }
         }
         series
+    }
+}
+
+impl FitReport {
+    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, the interval of
+    /// their creep, and the report of the nearest series, by which they are systematically off.
+    pub(crate) fn of_measurements(
+        self,
+        wrong_way: f64,
+        ambiguity: f64,
+        uncertainty: Uncertainty,
+        nearest: &FitReport,
+    ) -> FitReport {
+        let Uncertainty { interval, known_from: until } = uncertainty;
+        let (rms, first) = (self.rms_misfit(), interval[0].0);
+        let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
+            Some(FitWarning::FewSamples { uncertainty: ambiguity })
+        } else if nearest.rms_misfit() > TOLERABLE && nearest.is_systematic() {
+            Some(FitWarning::Systematic { rms: nearest.rms_misfit() })
+        } else {
+            (until > first).then_some(FitWarning::BeginsLate { first, until })
+        };
+        FitReport { wrong_way, interval, warning, ..self }
+    }
+
+    /// Whether the misfits of neighbouring samples are correlated.
+    fn is_systematic(&self) -> bool {
+        let neighbours = self.samples.windows(2).filter(|pair| pair[0].function == pair[1].function);
+        let (changes, pairs) = neighbours
+            .fold((0.0, 0.0), |(sum, count), pair| (sum + (pair[1].misfit() - pair[0].misfit()).powi(2), count + 1.0));
+        changes < SYSTEMATIC * pairs * self.rms_misfit().powi(2)
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use crate::error::{Error, MapError, Result};
 use crate::geometry::HeightMap;
-use crate::geometry::height_map::read::gsf;
+use crate::geometry::surfaces::height_map::read::gsf;
 
 impl HeightMap {
     /// Writes the map as a Gwyddion Simple Field 1.0, in single precision and in m; see [`HeightMap::from_gsf`].

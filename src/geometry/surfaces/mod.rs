@@ -1,0 +1,10 @@
+//! Measured and random rough surfaces, and their statistics. Feature `surfaces`.
+
+mod height_map;
+mod height_spectrum;
+mod rough;
+mod statistics;
+
+pub use height_map::{Form, HeightMap, LengthUnit, ResampledMap, ResamplingError};
+pub use rough::{Anisotropy, Rough, RoughSpec, Roughness, SharedRough};
+pub use statistics::SurfaceStatistics;
