@@ -1,6 +1,6 @@
 //! Files that are written completely or not at all, and files that grow by complete pieces.
 
-use std::fs::{self, FileType};
+use std::fs::{self, File, FileType};
 use std::io;
 use std::path::Path;
 
@@ -13,6 +13,16 @@ mod part;
 
 pub(crate) use appending::Appending;
 pub(crate) use part::{Part, replace};
+
+/// Opens a file for reading.
+pub(crate) fn open(path: &Path) -> Result<File> {
+    File::open(path).map_err(|error| unreadable(path.display().to_string(), error))
+}
+
+/// The error of reading a file.
+pub(crate) fn unreadable(file: String, error: io::Error) -> Error {
+    Error::File(FileError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) })
+}
 
 /// The error of writing a file.
 pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {

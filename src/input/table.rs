@@ -59,7 +59,7 @@ impl TextTable {
     /// ([`TextError::Preamble`]).
     pub fn open(path: impl AsRef<Path>, format: TextFormat) -> Result<TextTable> {
         let path = path.as_ref();
-        TextTable::named(super::open(path)?, &path.display().to_string(), format)
+        TextTable::named(crate::file::open(path)?, &path.display().to_string(), format)
     }
 
     /// [`TextTable::open`] from any reader.

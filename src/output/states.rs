@@ -9,13 +9,13 @@ use zip::ZipArchive;
 
 use crate::contact::Warnings;
 use crate::error::{Error, FileError, Result, poisson_ratio};
-use crate::file::{npy, replace};
+use crate::file::{npy, open, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
 use crate::output::npz::Archive;
 use crate::solver::RigidMotion;
 use crate::states::{ElasticState, ElasticStates, Pressed};
-use crate::{Grid, input};
+use crate::Grid;
 
 /// An array with a number for each state: its name, and how the number is read from the state and put into it.
 type Column = (&'static str, fn(&ElasticState) -> f64, fn(&mut ElasticState, f64));
@@ -174,7 +174,7 @@ fn refused(path: &Path, reason: &dyn ToString) -> Error {
 
 /// The arrays of real numbers in an archive, by their names.
 fn read_arrays(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
-    let opened = input::open(path)?;
+    let opened = open(path)?;
     // arrays are not compressed
     let length = opened.metadata().map_err(|error| refused(path, &error))?.len();
     let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| refused(path, &error))?;

@@ -93,7 +93,7 @@ impl fmt::Display for FitWarning {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitReport {
     pub(in crate::rheology) samples: Vec<FitSample>,
-    terms: usize,
+    pub(in crate::rheology) terms: usize,
     pub(in crate::rheology) wrong_way: f64,
     pub(in crate::rheology) interval: Vec<(f64, f64)>,
     pub(in crate::rheology) warning: Option<FitWarning>,

@@ -4,7 +4,8 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::error::{Error, Place, Result, TableError, TextError, positive};
-use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, open, same, symbol};
+use crate::file::open;
+use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same, symbol};
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::{Experiment, Measurements};
 

@@ -249,7 +249,7 @@ impl Geometry for HeightMap {
             assert_eq!(gap.len(), grid.len(), "gap must have one value per cell");
             self.fill_by_fourier_shift(grid, by, gap);
         } else {
-            super::fill_by_points(self, grid, by, gap);
+            crate::geometry::fill_by_points(self, grid, by, gap);
         }
     }
 

@@ -21,6 +21,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::error::{MapError, Result};
+use crate::file::open;
 use crate::geometry::HeightMap;
 use crate::{Grid, input, memory};
 
@@ -61,11 +62,11 @@ impl HeightMap {
         let name = || path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
-            "gsf" => HeightMap::from_gsf(input::open(path)?, None),
-            "sdf" => HeightMap::from_sdf(input::open(path)?),
-            "sur" | "pro" => HeightMap::from_sur(input::open(path)?),
+            "gsf" => HeightMap::from_gsf(open(path)?, None),
+            "sdf" => HeightMap::from_sdf(open(path)?),
+            "sur" | "pro" => HeightMap::from_sur(open(path)?),
             #[cfg(feature = "x3p")]
-            "x3p" => HeightMap::from_x3p(input::open(path)?),
+            "x3p" => HeightMap::from_x3p(open(path)?),
             _ => Err(MapError::Extension { file: name(), known: KNOWN }.into()),
         }
     }
