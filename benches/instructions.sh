@@ -15,7 +15,7 @@ compiler=$(rustc --version | cut -d' ' -f2)
 if [[ " $* " = *" --release "* ]]; then
     build=release
     # beside the main example, so that one build of the crate serves both
-    cargo build --quiet --release --features plot --example step_loaded_sphere --bin instructions
+    cargo build --quiet --release --features analytic,plot --example step_loaded_sphere --bin instructions
     program=${CARGO_TARGET_DIR:-target}/release/instructions
 else
     build=tests

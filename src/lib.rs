@@ -100,8 +100,26 @@
 //!
 //! # Features
 //!
-//! `rayon` (default): threads, from 2¹⁵ computed cells on. `checkpoint`: save and resume, [`run::Run`]`::autosave_to`. `plot`: PNG, SVG and GIF. `npy`: NPZ and
-//! NPY files. `x3p`: X3P height maps. `serde`: serialised loads, settings, spectra and reports. `laws`: `proptest` strategies. `tracing`: events.
+//! Without features the crate is the stepper with analytic shapes, materials, loads and runs. The other rooms are
+//! features, and `full` is all of them:
+//!
+//! | feature | room |
+//! |---|---|
+//! | `analytic` | [`analytic`] |
+//! | `checkpoint` | save and resume: [`ViscoelasticContact::save`], [`run::Run::autosave_to`] |
+//! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`numeric::least_squares`] |
+//! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
+//! | `output` | [`output`]: CSV, VTK |
+//! | `plan` | [`plan`] |
+//! | `plot` | [`plot`]: PNG, SVG and GIF |
+//! | `sliding` | [`sliding`] |
+//! | `states` | [`states`] |
+//! | `stress` | [`observe::SubsurfaceStress`], [`contact::StressHistory`] |
+//! | `surfaces` | [`geometry::HeightMap`], [`geometry::Rough`], [`geometry::SurfaceStatistics`] |
+//! | `text` | [`input`] |
+//!
+//! Beside the rooms: `rayon` (default): threads, from 2¹⁵ computed cells on. `npy`: NPZ and NPY files. `x3p`: X3P height
+//! maps. `serde`: serialised loads, settings, spectra and reports. `tracing`: events.
 //!
 //! # Limitations
 //!
@@ -198,11 +216,11 @@ pub mod prelude {
         BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, Solver, StepError, StepReport, TimeRule,
         ViscoelasticContact, Warnings,
     };
+    #[cfg(feature = "surfaces")]
+    pub use crate::geometry::{Anisotropy, HeightMap, LengthUnit, Rough, RoughSpec, Roughness, SurfaceStatistics};
     pub use crate::geometry::{
         Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Repeated, Shifted, Sphere, Wavy,
     };
-    #[cfg(feature = "surfaces")]
-    pub use crate::geometry::{Anisotropy, HeightMap, LengthUnit, Rough, RoughSpec, Roughness, SurfaceStatistics};
     pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
     #[cfg(feature = "output")]
@@ -224,5 +242,5 @@ pub mod prelude {
 }
 
 #[doc = include_str!("../README.md")]
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "full"))]
 struct Readme;

@@ -63,10 +63,8 @@ impl Geometry for Sum {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_abs_diff_eq;
-
     use super::*;
-    use crate::geometry::{FlatPunch, FnGeometry, HeightMap, Shifted, Sphere};
+    use crate::geometry::{FlatPunch, FnGeometry, Sphere};
 
     #[test]
     fn gaps_add_up_and_infinity_prevails() {
@@ -80,22 +78,5 @@ mod tests {
         let mut gap = vec![f64::NAN; 16];
         sum.fill_gap(&grid, &mut gap);
         assert_eq!((gap[0], gap[6]), (f64::INFINITY, sum.initial_gap(-0.5, 0.5)));
-    }
-
-    #[test]
-    fn each_part_is_shifted_by_its_own_method() {
-        // A wave with a period of 3 points is shifted exactly only by its Fourier series: bicubic interpolation errs by
-        // a tenth.
-        let wave = |x: f64| (std::f64::consts::TAU * x / 3.0).cos();
-        let map = HeightMap::new([9, 1], [9.0, 1.0], (0..9).map(|i| wave(i as f64 - 4.0)).collect()).unwrap();
-        let moved = Shifted::new(Sum::new(map.periodic(), Sphere::new(1.0).unwrap()), [0.2, 0.0]).unwrap();
-        let moved = Shifted::new(moved, [0.2, 0.0]).unwrap();
-        let grid = Grid::new([9, 1], [9.0, 1.0]).unwrap();
-        let mut gap = vec![0.0; 9];
-        moved.fill_gap(&grid, &mut gap);
-        for (i, h) in gap.iter().enumerate() {
-            let x = i as f64 - 4.4;
-            assert_abs_diff_eq!(*h, 1.0 - wave(x) + 0.5 * x * x, epsilon = 1e-13);
-        }
     }
 }

@@ -9,7 +9,7 @@
 //! | [`Attraction`](crate::adhesion::Attraction) | [`adhesion`] | [`strategies::attractions`] |
 //! | a whole contact | | [`strategies::scenarios`] |
 //!
-//! The laws need no feature; the strategies implement [`proptest`](https://docs.rs/proptest)'s trait. The models of the crate are tested
+//! The strategies implement [`proptest`](https://docs.rs/proptest)'s trait. The models of the crate are tested
 //! with the same functions.
 //!
 //! ```

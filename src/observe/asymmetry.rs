@@ -57,12 +57,11 @@ impl Asymmetry {
 mod tests {
     use approx::assert_abs_diff_eq;
 
-    use crate::analytic::Hertz;
-    use crate::observe::sphere;
+    use crate::observe::{hertz, sphere};
 
     #[test]
     fn a_sphere_off_the_origin() {
-        let a = Hertz::new(10.0e-3, 4.0e6, 0.2).unwrap().contact_radius;
+        let [a, _] = hertz(0.2);
         let contact = sphere([120, 100], [2.4e-3, 2.0e-3], [0.3e-3, -0.2e-3], 0.2);
         let found = contact.asymmetry([0.1e-3, -0.2e-3]).unwrap().unwrap();
         let [x1, x2] = found.center_of_pressure;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use zip::ZipArchive;
 
+use crate::Grid;
 use crate::contact::Warnings;
 use crate::error::{Error, FileError, Result, poisson_ratio};
 use crate::file::{npy, open, replace};
@@ -15,7 +16,6 @@ use crate::output::Metadata;
 use crate::output::npz::Archive;
 use crate::solver::RigidMotion;
 use crate::states::{ElasticState, ElasticStates, Pressed};
-use crate::Grid;
 
 /// An array with a number for each state: its name, and how the number is read from the state and put into it.
 type Column = (&'static str, fn(&ElasticState) -> f64, fn(&mut ElasticState, f64));

@@ -128,7 +128,9 @@ mod tests {
     /// ends of the three ways to compute the function.
     #[test]
     fn agrees_with_its_series() {
-        for alpha in [0.3, 0.5, NEAR_POLES, NEAR_POLES + 1e-12, 0.7, 0.8, 0.9, 0.97, 0.99, 0.999, 1.0 - 1e-6, 1.0 - 1e-12] {
+        for alpha in
+            [0.3, 0.5, NEAR_POLES, NEAR_POLES + 1e-12, 0.7, 0.8, 0.9, 0.97, 0.99, 0.999, 1.0 - 1e-6, 1.0 - 1e-12]
+        {
             for x in [0.29, 0.3, 0.5, 0.7, 0.9, 0.99, 1.0, 1.01, 1.3, 2.0] {
                 // 1/Γ is 0 where it underflows
                 let term = |k: i32| -f64::powi(-x, k) / libm::tgamma((1.0 + alpha * f64::from(k)).min(170.0));

@@ -76,7 +76,54 @@ fn source_of(folder: &str, name: &str) -> Option<PathBuf> {
     files.into_iter().find(|file| file.exists())
 }
 
-/// Options name what there is, manifests and files in backquotes are there, and who draws asks for the feature.
+/// The features that an example requires, by the manifest.
+fn features_of(example: &str) -> Vec<String> {
+    let manifest = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let entry = format!("[[example]]\nname = \"{example}\"\nrequired-features = [");
+    let list = manifest.split_once(&entry).map_or("", |(_, rest)| rest.split(']').next().unwrap());
+    list.split('"').skip(1).step_by(2).map(String::from).collect()
+}
+
+/// What programs name, and the feature that it needs.
+const ROOMS: [(&str, &[&str]); 10] = [
+    ("analytic", &["analytic::"]),
+    ("checkpoint", &[".save(", "autosave_to", "resume("]),
+    ("data", &["Measurements", "MasterCurve"]),
+    ("laws", &["laws::"]),
+    ("output", &["CsvHistory", "FrameSeries", "output::"]),
+    ("plan", &["Plan::", "Accuracy::"]),
+    ("plot", &["plot::"]),
+    ("sliding", &["build_sliding", "SlidingSweep"]),
+    ("states", &["ElasticStates", "StatesContact", "Sweep::new", "fields_to"]),
+    ("surfaces", &["HeightMap", "Rough::", "RoughSpec"]),
+];
+
+/// Every page of the guides names the features of its programs, as the README does.
+#[test]
+fn pages_name_the_features_of_their_programs() {
+    let (mut missing, mut found) = (Vec::new(), 0);
+    let guides = files_of(&root().join("docs/guide"), "md");
+    for path in guides.into_iter().chain([root().join("README.md")]) {
+        let text = fs::read_to_string(&path).unwrap();
+        let programs: Vec<&str> = text.split("```").skip(1).step_by(2).collect();
+        for (feature, names) in ROOMS {
+            // pictures and tables are saved, too
+            let uses = |program: &str| {
+                names.iter().any(|name| program.contains(name))
+                    && (feature != "checkpoint" || program.contains("resume"))
+            };
+            if programs.iter().any(|program| uses(program)) {
+                found += 1;
+                if !text.contains(&format!("`{feature}`")) {
+                    missing.push(format!("{}: {feature}", path.display()));
+                }
+            }
+        }
+    }
+    assert!(missing.is_empty() && found > 15, "{found} {missing:#?}");
+}
+
+/// Options name what there is, manifests and files in backquotes are there, and commands ask for the features of their example.
 #[test]
 fn commands_and_files_exist() {
     let mut missing = Vec::new();
@@ -96,11 +143,14 @@ fn commands_and_files_exist() {
         }
         for command in between(&text, "cargo run ", '\n') {
             let Some((options, rest)) = command.split_once("--example ") else { continue };
-            let source = source_of("examples", name_in(rest)).map(|path| fs::read_to_string(path).unwrap());
-            let draws = source.is_some_and(|source| source.contains("viscocontact::plot"));
-            if draws && !options.contains("--features plot") {
-                missing.push(format!("{}: --features plot in {command}", path.display()));
-            }
+            let asked: Vec<&str> =
+                options.split_once("--features ").map_or("", |(_, features)| features.trim()).split(',').collect();
+            let needed = features_of(name_in(rest)).into_iter().filter(|_| !asked.contains(&"full"));
+            missing.extend(
+                needed
+                    .filter(|feature| !asked.contains(&&**feature))
+                    .map(|feature| format!("{}: {feature} in {command}", path.display())),
+            );
         }
         for manifest in between(&text, "--manifest-path ", '\n') {
             let manifest = manifest.split([' ', '`']).next().unwrap_or(manifest);

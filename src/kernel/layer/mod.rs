@@ -5,7 +5,8 @@ mod remainder;
 mod table;
 mod wave;
 
-#[cfg(test)]
+// against matrices of faer, which `data` brings
+#[cfg(all(test, feature = "data"))]
 mod tests;
 
 use std::f64::consts::FRAC_2_PI;

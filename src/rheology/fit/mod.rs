@@ -17,8 +17,8 @@ use crate::numeric::non_negative_least_squares;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
-pub(in crate::rheology) use report::{KNOWN, MOST_MISFIT};
 pub use report::{FitReport, FitSample, FitWarning};
+pub(in crate::rheology) use report::{KNOWN, MOST_MISFIT};
 
 pub(in crate::rheology) use polish::polish;
 
