@@ -80,12 +80,14 @@ impl Matrix {
             (0..rows).for_each(|i| self.data.swap(rank * rows + i, pivot * rows + i));
             let (reduced, others) = self.data.split_at_mut((rank + 1) * rows);
             let own = &mut reduced[rank * rows + rank..];
-            // H = 1 − v vᵀ/(v₀ length), v = a + sign(a₀) length e₀, takes a to −sign(a₀) length e₀
+            // H = 1 − τ v vᵀ, v = (a − r e₀)/(a₀ − r), τ = (r − a₀)/r takes a to r e₀, r = −sign(a₀) |a|
             let diagonal = -length.copysign(own[0]);
-            own[0] -= diagonal;
-            let scale = -1.0 / (diagonal * own[0]);
+            let first = own[0] - diagonal;
+            let tau = -first / diagonal;
+            own.iter_mut().for_each(|value| *value /= first);
+            own[0] = 1.0;
             let reflect = |field: &mut [f64]| {
-                let along = scale * product(own, field);
+                let along = tau * product(own, field);
                 field.iter_mut().zip(&*own).for_each(|(value, v)| *value -= along * v);
             };
             others.chunks_exact_mut(rows).for_each(|column| reflect(&mut column[rank..]));
