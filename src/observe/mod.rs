@@ -19,6 +19,7 @@ mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
 pub(crate) mod profile;
+pub(crate) mod resolution;
 mod stress;
 
 pub use asymmetry::Asymmetry;

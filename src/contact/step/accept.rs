@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::read::limits::{DEEP, LONG_STEP};
-use crate::contact::{Computation, Edge, Figures, Scene, Step, TimeRule, Warnings};
+use crate::contact::{Computation, Edge, Figures, Scene, State, Step, TimeRule, Warnings};
 use crate::extent::Extent;
+use crate::observe::resolution::{Outline, Resolution};
 use crate::solver::RigidMotion;
 
 impl Computation {
@@ -46,11 +47,29 @@ impl Computation {
     }
 }
 
+/// Bodies whose cells are counted together.
+const TOGETHER: usize = 8;
+
+impl Computation {
+    /// Cells across the contact of the body with the fewest, with all pressed cells in `reach`. A call of all ranks.
+    pub(super) fn cells_across(&self, scene: &Scene, reach: Extent) -> f64 {
+        let State { region, indenter, current, .. } = &self.state;
+        let (rows, cells, periodic) = (region.rows(), scene.grid.cells(), scene.kernel.periodic_axes());
+        let outline = Outline { rows: &rows, pressure: &current.solution.pressure, ends: region.ends(periodic) };
+        if scene.bodies == 1 {
+            return outline.resolution().across(reach, cells, periodic);
+        }
+        let body = |k: usize| indenter.gap().owner(indenter.index(&scene.grid, region, k));
+        let found = (0..scene.bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
+        let across = |(resolution, extent): (Resolution, Option<Extent>)| {
+            extent.map(|extent| resolution.across(region.shown_extent(extent), cells, periodic))
+        };
+        found.filter_map(across).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// Contact this near to an edge is near it \[cells\].
 const EDGE_MARGIN: usize = 2;
-/// Fewer cells resolve no contact: across, and in all.
-const MIN_CELLS_ACROSS: usize = 8;
-const MIN_CELLS: usize = 50;
 /// Fewer cells resolve the zone of an attraction badly.
 pub(super) const COARSE_ZONE: f64 = 4.0;
 
@@ -65,22 +84,11 @@ pub(super) fn collect_warnings(
     let Computation { state, trial, .. } = computation;
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
-    let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
-    let (mut near, mut few) = (false, false);
-    if let Some(Extent { low, high }) = reach {
-        let all_in_touch = contact_cells == scene.grid.len();
-        let mut line = false;
-        for axis in 0..2 {
-            // across a line, or around a period, contact has no end that a mesh could miss
-            if axes[axis] == 1 && periodic[axis] {
-                line = true;
-                continue;
-            }
-            few |= high[axis] + 1 - low[axis] < MIN_CELLS_ACROSS && !(periodic[axis] && all_in_touch);
-            near |= !periodic[axis] && (low[axis] <= EDGE_MARGIN || high[axis] + EDGE_MARGIN + 1 >= axes[axis]);
-        }
-        few |= !line && contact_cells < MIN_CELLS && !(periodic == [true; 2] && all_in_touch);
-    }
+    let solution = &state.current.solution;
+    let near = reach.is_some_and(|Extent { low, high }| {
+        let at_end = |axis: usize| low[axis] <= EDGE_MARGIN || high[axis] + EDGE_MARGIN + 1 >= axes[axis];
+        (0..2).any(|axis| !periodic[axis] && at_end(axis))
+    });
     let of_material =
         if state.is_undisturbed() { Warnings::empty() } else { scene.limits.warnings(state.clock.age(), dt) };
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
@@ -90,7 +98,7 @@ pub(super) fn collect_warnings(
         (Warnings::COARSE_ZONE, figures.cells_in_zone.is_some()),
         (Warnings::BEYOND_EDGE, figures.beyond_edge.is_some()),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
-        (Warnings::FEW_CELLS, few),
+        (Warnings::FEW_CELLS, figures.cells_across.is_some()),
         (Warnings::RINGS, oscillates),
         (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
         (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
