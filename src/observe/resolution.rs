@@ -18,13 +18,6 @@ pub(crate) struct Ends {
     pub(crate) joined: bool,
 }
 
-impl Ends {
-    /// Of an axis of the whole grid.
-    pub(crate) fn of_axis(periodic: bool) -> Ends {
-        Ends { open: [!periodic; 2], joined: periodic }
-    }
-}
-
 /// A pressure on some rows, and how it goes on beyond them.
 pub(crate) struct Outline<'a> {
     pub(crate) rows: &'a Rows,
@@ -110,5 +103,63 @@ impl Resolution {
             (of_chord * 2.0 * self.cells / self.sides[axis]).min(extent)
         };
         (0..2).filter(|&axis| !is_line(axis) && self.sides[axis] > 0.0).map(along).fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parallel::Threads;
+
+    /// Random spots on fields of one band and of several, on one rank and on three, against sides counted one by one.
+    #[test]
+    fn sides_are_counted_whatever_the_number_of_ranks() {
+        let mut state = 9_u64;
+        let mut below = |n: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % n
+        };
+        let mut in_bands = 0;
+        for scene in 0..40 {
+            let cells =
+                if scene % 8 == 0 { [120 + below(60), 150 + below(60)] } else { [1 + below(20), 1 + below(20)] };
+            let [n1, n2] = cells;
+            let (joined, folded) = ([below(2) == 1, below(2) == 1], [below(2) == 1, below(2) == 1]);
+            let ends =
+                [0, 1].map(|axis| Ends { open: [!joined[axis] && !folded[axis], !joined[axis]], joined: joined[axis] });
+            let most = below(4);
+            let pressure: Vec<f64> = (0..n1 * n2).map(|_| if below(4) <= most { 1.0 } else { 0.0 }).collect();
+            let pressed = |k: usize| pressure[k] > 0.0;
+            let ended = |k: usize, axis: usize| {
+                let (at, n, stride) = if axis == 0 { (k / n2, n1, n2) } else { (k % n2, n2, 1) };
+                let Ends { open, joined } = ends[axis];
+                let around = k - at * stride;
+                let before = if at > 0 {
+                    !pressed(k - stride)
+                } else {
+                    open[0] || joined && !pressed(around + (n - 1) * stride)
+                };
+                let after = if at + 1 < n { !pressed(k + stride) } else { open[1] || joined && !pressed(around) };
+                f64::from(u8::from(before)) + f64::from(u8::from(after))
+            };
+            let expected = [0, 1].map(|axis| (0..n1 * n2).filter(|&k| pressed(k)).map(|k| ended(k, axis)).sum::<f64>());
+            let rows = Rows::all(cells);
+            let outline = Outline { rows: &rows, pressure: &pressure, ends };
+            let found = outline.resolution();
+            assert_eq!((found.cells, found.sides[1]), (pressure.iter().sum(), expected[1]), "{scene}");
+            let exact = if outline.is_one_band() { 1e-12 } else { 0.1 };
+            in_bands += usize::from(!outline.is_one_band());
+            assert!((found.sides[0] - expected[0]).abs() <= exact * expected[0], "{scene}: {found:?} {expected:?}");
+            let on_ranks = Threads::run(3, |ranks| {
+                let rows = Rows::of_rank(cells, ranks);
+                let own = &pressure[rows.own().start * n2..rows.own().end * n2];
+                Outline { rows: &rows, pressure: own, ends }.resolution()
+            });
+            assert!(on_ranks.unwrap().iter().all(|other| *other == found), "{scene}");
+            let [(one, extent)] = outline.resolutions::<1>(0, |_| 0);
+            assert_eq!((one.cells, one.sides), (found.cells, expected), "{scene}");
+            assert_eq!(extent.is_some(), found.cells > 0.0, "{scene}");
+        }
+        assert!(in_bands > 3);
     }
 }

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::read::limits::{DEEP, LONG_STEP};
-use crate::contact::{Computation, Edge, Figures, Scene, State, Step, TimeRule, Warnings};
+use crate::contact::{Computation, Edge, Figures, Scene, State, Step, TimeRule, ViscoelasticContact, Warnings};
 use crate::extent::Extent;
-use crate::observe::resolution::{Outline, Resolution};
+use crate::observe::resolution::{LEAST_ACROSS, Outline, Resolution};
 use crate::solver::RigidMotion;
 
 impl Computation {
@@ -50,21 +50,33 @@ impl Computation {
 /// Bodies whose cells are counted together.
 const TOGETHER: usize = 8;
 
-impl Computation {
-    /// Cells across the contact of the body with the fewest, with all pressed cells in `reach`. A call of all ranks.
-    pub(super) fn cells_across(&self, scene: &Scene, reach: Extent) -> f64 {
-        let State { region, indenter, current, .. } = &self.state;
-        let (rows, cells, periodic) = (region.rows(), scene.grid.cells(), scene.kernel.periodic_axes());
+impl ViscoelasticContact {
+    /// Cells across the contact of the body with the fewest, if they are few; `reach` holds all pressed cells. A call of all ranks.
+    pub(crate) fn few_cells(&self, reach: Extent) -> Option<f64> {
+        let (Scene { grid, kernel, bodies, .. }, state) = (&*self.scene, &self.computation.state);
+        let State { region, indenter, current, .. } = state;
+        let (rows, cells, periodic) = (region.rows(), grid.cells(), kernel.periodic_axes());
         let outline = Outline { rows: &rows, pressure: &current.solution.pressure, ends: region.ends(periodic) };
-        if scene.bodies == 1 {
-            return outline.resolution().across(reach, cells, periodic);
-        }
-        let body = |k: usize| indenter.gap().owner(indenter.index(&scene.grid, region, k));
-        let found = (0..scene.bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
-        let across = |(resolution, extent): (Resolution, Option<Extent>)| {
-            extent.map(|extent| resolution.across(region.shown_extent(extent), cells, periodic))
+        let across = if *bodies == 1 {
+            outline.resolution().across(reach, cells, periodic)
+        } else {
+            let body = |k: usize| indenter.gap().owner(indenter.index(grid, region, k));
+            let found = (0..*bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
+            let across = |(resolution, extent): (Resolution, Option<Extent>)| {
+                extent.map(|extent| resolution.across(region.shown_extent(extent), cells, periodic))
+            };
+            found.filter_map(across).fold(f64::INFINITY, f64::min)
         };
-        found.filter_map(across).fold(f64::INFINITY, f64::min)
+        Some(across).filter(|across| *across < LEAST_ACROSS)
+    }
+}
+
+impl State {
+    /// Whether the heights of the shapes are so far from 0 that their rounding counts, over the depth of the contact.
+    pub(crate) fn heights_are_lost(&self, scene: &Scene) -> bool {
+        let datum = self.indenter.gap().datum;
+        let depth = self.current.motions.iter().map(|motion| motion.approach - datum).fold(0.0, f64::max);
+        self.current.contact_cells > 0 && f64::EPSILON * datum.abs() > scene.settings.tolerance * depth
     }
 }
 
@@ -101,7 +113,7 @@ pub(super) fn collect_warnings(
         (Warnings::FEW_CELLS, figures.cells_across.is_some()),
         (Warnings::RINGS, oscillates),
         (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
-        (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
+        (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance || state.heights_are_lost(scene)),
         (Warnings::MODULUS, figures.modulus.is_some()),
         (Warnings::STEEP, figures.max_slope.is_some()),
         (Warnings::DEEP, figures.compression > Some(DEEP)),

@@ -40,7 +40,6 @@ use crate::events;
 use crate::extent::Extent;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::Load;
-use crate::observe::resolution::LEAST_ACROSS;
 use crate::parallel::in_pool;
 use crate::solver::{Freedom, RigidMotion, Solution, Stop};
 use accept::{COARSE_ZONE, collect_warnings};
@@ -228,9 +227,7 @@ impl ViscoelasticContact {
         let figures = Figures {
             max_slope: indenter.steepest(&scene.grid, region, pressure),
             compression: scene.compression(indenter, region, pressure, motion),
-            cells_across: reach
-                .map(|reach| self.computation.cells_across(scene, reach))
-                .filter(|cells| *cells < LEAST_ACROSS),
+            cells_across: reach.and_then(|reach| self.few_cells(reach)),
             cells_in_wave: self.missed.cells,
             periods: self.missed.periods,
             cells_in_zone: (scene.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
