@@ -32,7 +32,7 @@ impl StepReport {
         })
     }
 
-    /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_in_wave", "periods",
+    /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
     /// "cells_in_zone", "modulus" [Pa] and "touch" [m].
     #[getter]
     fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -40,6 +40,7 @@ impl StepReport {
         Ok(dict! { py;
             "max_slope": of.max_slope,
             "compression": of.compression,
+            "cells_across": of.cells_across,
             "cells_in_wave": of.cells_in_wave,
             "periods": of.periods,
             "cells_in_zone": of.cells_in_zone,

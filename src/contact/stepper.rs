@@ -100,6 +100,17 @@ impl ViscoelasticContact {
         state.sum_up();
         self.view.refresh(state);
     }
+
+    /// Scales the pressure of a steady motion to that under `load`, of a body with moduli `factor` times as great.
+    pub(crate) fn scale_steady(&mut self, load: Load, factor: f64) {
+        if factor != 1.0 {
+            let state = &mut self.computation.state;
+            state.loads[0] = load;
+            state.current.solution.pressure.iter_mut().for_each(|p| *p *= factor);
+            state.sum_up();
+            self.view.refresh(state);
+        }
+    }
 }
 
 /// A contact in space ([`ViscoelasticContact`]) or on elastic states ([`StatesContact`](crate::states::StatesContact)): what

@@ -19,6 +19,20 @@ pub enum MaterialError {
         rheology: String,
     },
 
+    /// The exponential series of a rheology of the user is that of another creep compliance: they differ by more than 1e-3. The law
+    /// [`spectrum_reproduces_creep`](crate::rheology::laws::spectrum_reproduces_creep) tests it.
+    #[error(
+        "Rheology::creep_spectrum is the series of another body: J({} s) = {} 1/Pa by the series, but {} 1/Pa by Rheology::creep_compliance; return the series of the same function, or None", rounded(*.time, 5), rounded(*.series, 5), rounded(*.creep, 5)
+    )]
+    OtherSeries {
+        /// Time at which both were evaluated \[s\].
+        time: f64,
+        /// The creep compliance \[1/Pa\].
+        creep: f64,
+        /// The value of the series \[1/Pa\].
+        series: f64,
+    },
+
     /// A creep compliance returned a value that no body can have: negative, not finite, or less than at an earlier
     /// time; or, where a series is fitted, 0 after t = 0.
     #[error(
@@ -62,6 +76,17 @@ pub enum MaterialError {
         to: f64,
         /// Relative accuracy reached.
         accuracy: f64,
+    },
+
+    /// Moduli that change with temperature ([`TimeTemperature::with_vertical_factors`](crate::rheology::TimeTemperature::with_vertical_factors))
+    /// are not modelled in this scene: where the temperature changes, and in sweeps of steady motions with a second body or a bulk
+    /// that does not follow the law.
+    #[error(
+        "{what} does not cover moduli that change with temperature (vertical factors b_T): move each material to one temperature by TimeTemperature::at, or leave the factors out with TimeTemperature::without_vertical_factors"
+    )]
+    VerticalFactors {
+        /// What does not cover them.
+        what: &'static str,
     },
 
     /// No published material has this name.

@@ -219,14 +219,14 @@ pub enum Error {
     #[error(transparent)]
     States(#[from] StatesError),
 
-    /// A run cannot be resumed from a checkpoint. The cause is the [`source`](std::error::Error::source) of the error.
+    /// A run cannot be resumed from a checkpoint.
     #[cfg(feature = "checkpoint")]
-    #[error("no run can be resumed from {}", .path.display())]
+    #[error("no run can be resumed from {}: {cause}", .path.display())]
     Checkpoint {
         /// The file.
         path: std::path::PathBuf,
-        /// The cause.
-        source: CheckpointError,
+        /// Why not.
+        cause: CheckpointError,
     },
 
     /// A step of a contact failed, or a run of steps. The contact is as it was.

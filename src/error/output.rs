@@ -87,7 +87,7 @@ impl Error {
             Error::Output(error) => Some(error.kind()),
             Error::File(FileError::Unreadable { kind, .. }) | Error::Map(MapError::Unwritable { kind, .. }) => *kind,
             #[cfg(feature = "checkpoint")]
-            Error::Checkpoint { source, .. } => source.io_kind(),
+            Error::Checkpoint { cause, .. } => cause.io_kind(),
             _ => None,
         }
     }

@@ -45,6 +45,8 @@ pub(crate) struct Pressed<'a> {
     pub(crate) gap: &'a [f64],
     /// A rectangle of cells that contains the contact; `None` without contact.
     pub(crate) extent: Option<Extent>,
+    /// The body of each cell, and the one whose contact it is; `None` for all of them.
+    pub(crate) body: Option<(&'a [u16], u16)>,
 }
 
 impl Pressed<'_> {
@@ -157,7 +159,12 @@ impl Pressed<'_> {
 
     /// Pressure in a cell, wrapped along periodic axes; zero beyond the grid.
     pub(crate) fn pressure_at(&self, cell: [isize; 2]) -> f64 {
-        self.index(cell).map_or(0.0, |k| self.pressure[k])
+        self.index(cell).map_or(0.0, |k| self.own(k))
+    }
+
+    /// Pressure in a cell under the body.
+    pub(crate) fn own(&self, k: usize) -> f64 {
+        if self.body.is_some_and(|(owner, body)| owner[k] != body) { 0.0 } else { self.pressure[k] }
     }
 
     /// Whether there is something to touch in a cell; nothing beyond the grid.

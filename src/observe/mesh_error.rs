@@ -143,14 +143,36 @@ enum Peak {
 }
 
 impl Pressed<'_> {
+    /// The greatest errors due to the mesh of the contacts of several bodies, `owner` being that of each cell. `None` if one of them has none.
+    pub(crate) fn mesh_error_of_bodies(&self, owner: &[u16], bodies: usize) -> Option<MeshError> {
+        let n2 = self.grid.cells()[1];
+        let of_body = |body: u16| {
+            let pressed = Pressed { body: Some((owner, body)), ..*self };
+            let own = || self.extent.into_iter().flat_map(Extent::cells).filter(|[i, j]| pressed.own(i * n2 + j) > 0.0);
+            let extent = Extent::hull(own().map(Extent::of))?;
+            Some(Pressed { extent: Some(extent), ..pressed }.mesh_error(own().count()))
+        };
+        let worst = |a: Option<MeshError>, b: Option<MeshError>| {
+            a.zip(b).map(|(a, b)| {
+                let both_known = a.max_pressure.and(b.max_pressure);
+                MeshError { max_pressure: both_known.and(a.max(b).max_pressure), ..a.max(b) }
+            })
+        };
+        (0..bodies as u16).filter_map(of_body).reduce(worst).flatten()
+    }
+
     /// The errors due to the mesh of a contact of `contact_cells` cells. `None` without a rim, and where the cells do not
     /// resolve the contact or the periodic gap.
     pub(crate) fn mesh_error(&self, contact_cells: usize) -> Option<MeshError> {
         let extent @ Extent { low, high } = self.extent?;
         let n2 = self.grid.cells()[1];
-        let rows = (low[0]..=high[0]).map(|i| &self.pressure[i * n2..][low[1]..=high[1]]);
-        let (total, highest) =
-            rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))));
+        let (total, highest) = if self.body.is_some() {
+            let own = |cell: [usize; 2]| self.own(cell[0] * n2 + cell[1]);
+            extent.cells().map(own).fold((0.0, 0.0_f64), |(total, highest), p| (total + p, highest.max(p)))
+        } else {
+            let rows = (low[0]..=high[0]).map(|i| &self.pressure[i * n2..][low[1]..=high[1]]);
+            rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))))
+        };
         let rim = self.rim(extent);
         if total == 0.0 || rim.cells == 0 {
             return None;
@@ -193,7 +215,7 @@ impl Pressed<'_> {
         let least = OTHER_PEAKS * highest;
         let mut worst = 0.0_f64;
         for [i, j] in extent.cells() {
-            let p = self.pressure[i * self.grid.cells()[1] + j];
+            let p = self.own(i * self.grid.cells()[1] + j);
             if p < least {
                 continue;
             }
@@ -227,10 +249,10 @@ impl Pressed<'_> {
     fn rim(&self, extent: Extent) -> Rim {
         let [n1, n2] = self.grid.cells();
         let mut rim = Rim::default();
-        for [i, j] in extent.cells().filter(|[i, j]| self.pressure[i * n2 + j] != 0.0) {
+        for [i, j] in extent.cells().filter(|[i, j]| self.own(i * n2 + j) != 0.0) {
             // most cells are inside, which takes few comparisons; beside an end of the grid may be the other end
             let k = i * n2 + j;
-            let beside = || [k - n2, k - 1, k + 1, k + n2].iter().all(|&k| self.pressure[k] != 0.0);
+            let beside = || [k - n2, k - 1, k + 1, k + n2].iter().all(|&k| self.own(k) != 0.0);
             if !(i > 0 && i + 1 < n1 && j > 0 && j + 1 < n2 && beside()) {
                 self.add_cell([i, j], &mut rim);
             }
@@ -240,7 +262,7 @@ impl Pressed<'_> {
 
     /// Adds a cell in contact, if it is on the rim.
     fn add_cell(&self, cell: [usize; 2], rim: &mut Rim) {
-        let p = self.pressure[cell[0] * self.grid.cells()[1] + cell[1]];
+        let p = self.own(cell[0] * self.grid.cells()[1] + cell[1]);
         let from = cell.map(|index| index as isize);
         let (mut on_rim, mut unknown) = (false, false);
         for side in SIDES {
@@ -324,7 +346,15 @@ mod tests {
             }
             let gap = vec![0.0; grid.len()];
             let periodic = [below(2) == 1, below(2) == 1];
-            let pressed = Pressed { grid: &grid, first: None, periodic, pressure: &pressure, gap: &gap, extent: None };
+            let pressed = Pressed {
+                grid: &grid,
+                first: None,
+                periodic,
+                pressure: &pressure,
+                gap: &gap,
+                extent: None,
+                body: None,
+            };
             let mut expected = (0, 0.0, 0);
             for k in (0..grid.len()).filter(|&k| pressure[k] != 0.0) {
                 let [i, j] = [k / cells[1], k % cells[1]].map(|index| index as isize);

@@ -19,7 +19,9 @@ mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
 pub(crate) mod profile;
+pub(crate) mod resolution;
 #[cfg(feature = "stress")]
+mod stress;
 mod stress;
 
 pub use asymmetry::Asymmetry;

@@ -20,7 +20,7 @@ use crate::states::{ElasticState, ElasticStates, Pressed};
 /// An array with a number for each state: its name, and how the number is read from the state and put into it.
 type Column = (&'static str, fn(&ElasticState) -> f64, fn(&mut ElasticState, f64));
 
-const COLUMNS: [Column; 12] = [
+const COLUMNS: [Column; 13] = [
     ("level", |state| state.level, |state, x| state.level = x),
     ("approach", |state| state.approach, |state, x| state.approach = x),
     ("stiffness", |state| state.stiffness, |state, x| state.stiffness = x),
@@ -35,6 +35,7 @@ const COLUMNS: [Column; 12] = [
     ),
     ("max_slope", |state| number(state.figures.max_slope), |state, x| state.figures.max_slope = figure(x)),
     ("compression", |state| number(state.figures.compression), |state, x| state.figures.compression = figure(x)),
+    ("cells_across", |state| number(state.figures.cells_across), |state, x| state.figures.cells_across = figure(x)),
     ("cells_in_wave", |state| number(state.figures.cells_in_wave), |state, x| state.figures.cells_in_wave = figure(x)),
     ("periods", |state| number(state.figures.periods), |state, x| state.figures.periods = figure(x)),
 ];

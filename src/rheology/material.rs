@@ -219,7 +219,7 @@ impl Material {
     }
 
     /// The contact creep compliance C(t) \[1/Pa\] at t ≥ 0 \[s\]: the factor of the material in Eq. 8 and Eq. 12 of the
-    /// [paper](crate::paper).
+    /// [paper](crate::paper). NaN beyond [`Material::known_until`], where steps fail.
     pub fn contact_compliance(&self, t: f64) -> f64 {
         self.bodies.iter().map(|body| body.contact_compliance(t)).sum()
     }
@@ -248,6 +248,11 @@ impl Material {
             Volume::Proportional { poisson, .. } => Compressibility { last: 1.0 - 2.0 * poisson, terms: Vec::new() },
             Volume::Bulk(_, _, compressibility) => compressibility.clone(),
         })
+    }
+
+    /// Whether C(t) is in proportion to the creep of one rheology.
+    pub(crate) fn is_one_body_in_proportion(&self) -> bool {
+        matches!(&self.bodies[..], [Body { volume: Volume::Proportional { .. }, .. }])
     }
 
     /// The longest time \[s\] at which all rheologies are known, +∞ for formulas.
@@ -305,7 +310,7 @@ impl Material {
         self.bodies.iter().fold(None, |first, body| first.or(body.rheology.failure()))
     }
 
-    /// Accepts rheologies whose times are not NaN.
+    /// Accepts rheologies whose times are not NaN, and whose series is their creep.
     pub(crate) fn validate(&self) -> Result<()> {
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
             let refused = |field, value, allowed| Err(Error::OutOfRange { field, value, allowed });
@@ -316,6 +321,7 @@ impl Material {
             if let Some(value) = measured.into_iter().find(|time| time.is_nan()) {
                 return refused("Rheology::measured", value, "two times");
             }
+            series_is_creep(rheology)?;
         }
         Ok(())
     }
@@ -342,6 +348,26 @@ impl Material {
             }
         })
     }
+}
+
+/// A contact takes steps by the series, and its elastic response by J(t): they must be the same function but for such a part.
+const SAME_CREEP: f64 = 1e-3;
+
+/// Rejects a rheology with a series of another function than its creep, at t = 0 and about each retardation time.
+fn series_is_creep(rheology: &Arc<dyn Rheology>) -> Result<()> {
+    let Some(spectrum) = rheology.creep_spectrum() else { return Ok(()) };
+    let until = rheology.known_until();
+    let flow = Some(spectrum.glassy() / spectrum.fluidity()).filter(|time| time.is_finite() && *time > 0.0);
+    let scales = spectrum.terms().iter().map(|(_, time)| *time).chain(flow);
+    let times = scales.flat_map(|scale| [0.1, 1.0, 10.0].map(|part| part * scale)).filter(|&t| is_known(t, until));
+    for time in std::iter::once(0.0).chain(times) {
+        let [creep, series] = [rheology.creep_compliance(time), spectrum.compliance(time)];
+        // what is no compliance is refused where it is used
+        if (series - creep).abs() > SAME_CREEP * creep.abs() {
+            return Err(MaterialError::OtherSeries { time, creep, series }.into());
+        }
+    }
+    Ok(())
 }
 
 fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {

@@ -78,6 +78,7 @@ mod maxwell;
 mod mittag_leffler;
 mod power_law;
 mod series;
+mod shifted;
 mod slow_creep;
 mod spectrum;
 #[cfg(feature = "data")]
@@ -103,6 +104,7 @@ pub(crate) use material::{Compressibility, Volume};
 pub use maxwell::Maxwell;
 pub use power_law::PowerLaw;
 pub use series::CreepSeries;
+pub use shifted::ShiftedRheology;
 pub use slow_creep::SlowCreep;
 #[cfg(feature = "checkpoint")]
 pub(crate) use spectrum::SavedRelaxation;
@@ -112,7 +114,7 @@ pub use table::{Experiment, Isotherm, MasterCurve, Measurements, Units};
 pub use temperature_history::TemperatureHistory;
 pub use tension::Tension;
 pub(crate) use time_temperature::GAS_CONSTANT;
-pub use time_temperature::{ShiftedRheology, TimeTemperature};
+pub use time_temperature::TimeTemperature;
 pub use zener::Zener;
 
 use std::fmt::Debug;

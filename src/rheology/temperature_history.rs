@@ -14,8 +14,10 @@ use crate::rheology::TimeTemperature;
 /// variation*, 1960). A contact built with one ([`Builder::temperature`](crate::contact::Builder::temperature)) integrates its
 /// material over ξ; loads, motions, reports and power stay in t.
 ///
-/// Not modelled: thermal expansion, heating by dissipation, temperatures that differ from place to place, moduli that change
-/// with temperature by more than their times (vertical shifts), and bodies of which only one follows the law.
+/// Not modelled: thermal expansion, heating by dissipation, temperatures that differ from place to place, and bodies of which only
+/// one follows the law. Moduli that change with temperature by more than their times are refused: a law with
+/// [vertical factors](TimeTemperature::with_vertical_factors) says how they are at each temperature, not how the stress changes while the
+/// temperature does. At one temperature take [`TimeTemperature::at`].
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -97,7 +99,7 @@ impl TemperatureHistory {
     /// A temperature \[K\] that never changes.
     ///
     /// # Errors
-    /// As [`TimeTemperature::shift_factor`].
+    /// As [`TimeTemperature::shift_factor`]; if the law has vertical factors ([`MaterialError::VerticalFactors`]).
     pub fn constant(law: TimeTemperature, temperature: f64) -> Result<TemperatureHistory> {
         TemperatureHistory::table(law, &[(0.0, temperature)])
     }
@@ -106,19 +108,19 @@ impl TemperatureHistory {
     /// first and after the last. Two entries at the same time are a jump. A ramp is a table of two.
     ///
     /// # Errors
-    /// If there is no entry, a time is not finite or earlier than the one before, or for a temperature as
-    /// [`TimeTemperature::shift_factor`].
+    /// If there is no entry, a time is not finite or earlier than the one before, for a temperature as
+    /// [`TimeTemperature::shift_factor`], or if the law has vertical factors ([`MaterialError::VerticalFactors`]).
     pub fn table(law: TimeTemperature, table: &[(f64, f64)]) -> Result<TemperatureHistory> {
         let checked = TimeTable::new(["temperature table", "temperature table times"], table, 1)?;
         table.iter().try_for_each(|&(_, temperature)| law.shift_factor(temperature).map(drop))?;
-        Ok(TemperatureHistory::new(law, Temperatures::Table(checked)))
+        TemperatureHistory::new(law, Temperatures::Table(checked))
     }
 
     /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive
     /// steps end there. The returned temperatures are checked when they are used.
     ///
     /// # Errors
-    /// If a corner is not finite.
+    /// If a corner is not finite, or the law has vertical factors ([`MaterialError::VerticalFactors`]).
     pub fn function(
         law: TimeTemperature,
         temperature: impl Fn(f64) -> f64 + Send + Sync + 'static,
@@ -126,12 +128,15 @@ impl TemperatureHistory {
     ) -> Result<TemperatureHistory> {
         let mut sorted = Ascending::default();
         sorted.add("corner of the temperature", corners)?;
-        Ok(TemperatureHistory::new(law, Temperatures::Function { temperature: Arc::new(temperature), corners: sorted }))
+        TemperatureHistory::new(law, Temperatures::Function { temperature: Arc::new(temperature), corners: sorted })
     }
 
-    fn new(law: TimeTemperature, course: Temperatures) -> TemperatureHistory {
+    fn new(law: TimeTemperature, course: Temperatures) -> Result<TemperatureHistory> {
+        if law.has_vertical_factors() {
+            return Err(MaterialError::VerticalFactors { what: "a history of the temperature" }.into());
+        }
         let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(ROOM))));
-        TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS), pieces }
+        Ok(TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS), pieces })
     }
 
     /// With physical ageing: a glass that was quenched an age t_e ago has times that grow as (t_e/t_ref)^μ, so that dξ

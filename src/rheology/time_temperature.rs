@@ -1,13 +1,17 @@
+use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Result, UserError, in_order, least_length, positive, within};
-use crate::rheology::{CreepSpectrum, FitReport, Rheology};
+use crate::error::{Error, Result, in_order, least_length, positive, within};
+use crate::rheology::{Rheology, ShiftedRheology};
 
 /// The gas constant \[J/(mol K)\] (exact since 2019).
 pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 
+/// No reference temperature of a WLF law in kelvin is as low.
+const LEAST_REFERENCE: f64 = 100.0;
+
 /// The dependence of creep on temperature: at T all times are a_T times the times at the reference temperature
-/// (thermorheologically simple bodies).
+/// (thermorheologically simple bodies), and all moduli b_T times the moduli there, if the law has such vertical factors.
 ///
 /// ```
 /// use viscocontact::rheology::{Maxwell, Rheology, TimeTemperature};
@@ -22,12 +26,26 @@ pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 /// assert!(warm.creep_compliance(1.0) > 5.0 * warm.creep_compliance(0.0));
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct TimeTemperature {
     law: Law,
     reference: f64,
     /// Temperatures, each lower than the one before, below which Arrhenius laws with their energies continue.
     below: Vec<Below>,
+    vertical: Option<Vertical>,
+}
+
+// without vertical factors as it was printed before there were any: checkpoints compare it
+impl fmt::Debug for TimeTemperature {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let TimeTemperature { law, reference, below, vertical } = self;
+        let mut debug = f.debug_struct("TimeTemperature");
+        debug.field("law", law).field("reference", reference).field("below", below);
+        if let Some(vertical) = vertical {
+            debug.field("vertical", vertical);
+        }
+        debug.finish()
+    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +64,15 @@ enum Law {
     },
 }
 
+/// How moduli change with temperature, beside the times.
+#[derive(Debug, Clone, PartialEq)]
+enum Vertical {
+    /// b_T = T/T_ref.
+    Entropic,
+    /// Temperatures, ascending, and b_T.
+    Table { rows: Arc<[(f64, f64)]>, extrapolated: bool },
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Below {
     temperature: f64,
@@ -56,12 +83,14 @@ impl TimeTemperature {
     /// Williams, Landel and Ferry: log₁₀ a_T = −C₁ (T − T_ref)/(C₂ + T − T_ref), C₂ and temperatures in K.
     ///
     /// # Errors
-    /// If a constant or the reference temperature is not finite and positive.
+    /// If a constant is not finite and positive, or the reference temperature not finite and at least 100 K.
     pub fn wlf(c1: f64, c2: f64, reference: f64) -> Result<TimeTemperature> {
         positive("WLF constant C1", c1)?;
         positive("WLF constant C2", c2)?;
-        positive("reference temperature", reference)?;
-        Ok(TimeTemperature { law: Law::Wlf { c1, c2 }, reference, below: Vec::new() })
+        // degrees Celsius: their differences from temperatures in kelvin would pass for great ones
+        let allowed = "finite and at least 100 K: temperatures are in kelvin (20 °C is 293.15)";
+        within("reference temperature", reference, reference >= LEAST_REFERENCE, allowed)?;
+        Ok(TimeTemperature::by(Law::Wlf { c1, c2 }, reference))
     }
 
     /// Arrhenius: ln a_T = (E/R)(1/T − 1/T_ref), activation `energy` E in J/mol, temperatures in K.
@@ -71,7 +100,11 @@ impl TimeTemperature {
     pub fn arrhenius(energy: f64, reference: f64) -> Result<TimeTemperature> {
         positive("activation energy", energy)?;
         positive("reference temperature", reference)?;
-        Ok(TimeTemperature { law: Law::Arrhenius { energy }, reference, below: Vec::new() })
+        Ok(TimeTemperature::by(Law::Arrhenius { energy }, reference))
+    }
+
+    fn by(law: Law, reference: f64) -> TimeTemperature {
+        TimeTemperature { law, reference, below: Vec::new(), vertical: None }
     }
 
     /// A `table` of temperatures \[K\], ascending, and shift factors a_T, which are 1 at the `reference`. Between its rows ln a_T
@@ -92,27 +125,61 @@ impl TimeTemperature {
     /// a_T = 1 at the reference.
     pub fn table(table: &[(f64, f64)], reference: f64) -> Result<TimeTemperature> {
         least_length("rows of shift factors", table.len(), 2)?;
-        for &(temperature, factor) in table {
-            positive("temperature", temperature)?;
-            positive("shift factor", factor)?;
-        }
-        in_order("temperatures of shift factors", table.iter().map(|row| row.0), "ascend", |a, b| a < b)?;
-        let allowed = "a temperature of the table at which a_T = 1";
-        within("reference temperature", reference, table.contains(&(reference, 1.0)), allowed)?;
-        Ok(TimeTemperature {
-            law: Law::Table { rows: table.into(), extrapolated: false },
-            reference,
-            below: Vec::new(),
-        })
+        let rows = checked_rows(["temperatures of shift factors", "shift factor"], table, reference)?;
+        Ok(TimeTemperature::by(Law::Table { rows, extrapolated: false }, reference))
     }
 
-    /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows; other laws stay as they are.
+    /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows, and beyond a table of vertical
+    /// factors, by the power of T through its two last rows; other laws stay as they are.
     #[must_use]
     pub fn extrapolated(mut self) -> TimeTemperature {
         if let Law::Table { extrapolated, .. } = &mut self.law {
             *extrapolated = true;
         }
+        if let Some(Vertical::Table { extrapolated, .. }) = &mut self.vertical {
+            *extrapolated = true;
+        }
         self
+    }
+
+    /// The same with moduli that change with temperature, too: a `table` of temperatures \[K\], ascending, and vertical factors b_T,
+    /// which are 1 at the reference. At T all moduli are b_T times those at the reference, and all compliances 1/b_T times. Between its
+    /// rows ln b_T is linear in ln T; outside there is no factor, unless the law is [`extrapolated`](TimeTemperature::extrapolated).
+    /// The laws of a [`MasterCurve`](crate::rheology::MasterCurve) have the factors of the curve.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Elastic, Rheology, TimeTemperature};
+    ///
+    /// let law = TimeTemperature::wlf(8.61, 200.4, 293.15)?.with_vertical_factors(&[(293.15, 1.0), (353.15, 1.15)])?;
+    /// let warm = law.at(Elastic::new(1.0e6)?, 353.15)?;
+    /// assert!((warm.creep_compliance(0.0) * 1.15e6 - 1.0).abs() < 1e-12);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no row, the temperatures do not ascend, a value is not finite and positive, or no row says b_T = 1 at the
+    /// reference.
+    pub fn with_vertical_factors(self, table: &[(f64, f64)]) -> Result<TimeTemperature> {
+        let rows = checked_rows(["temperatures of vertical factors", "vertical factor"], table, self.reference)?;
+        Ok(TimeTemperature { vertical: Some(Vertical::Table { rows, extrapolated: false }), ..self })
+    }
+
+    /// The same with moduli in proportion to the temperature, b_T = T/T_ref, as of rubbers, whose elasticity is that of entropy.
+    #[must_use]
+    pub fn with_entropic_moduli(self) -> TimeTemperature {
+        TimeTemperature { vertical: Some(Vertical::Entropic), ..self }
+    }
+
+    /// The same with moduli that do not change with temperature: no other law has a
+    /// [history of the temperature](crate::rheology::TemperatureHistory).
+    #[must_use]
+    pub fn without_vertical_factors(self) -> TimeTemperature {
+        TimeTemperature { vertical: None, ..self }
+    }
+
+    /// Whether moduli change with temperature beside the times.
+    pub fn has_vertical_factors(&self) -> bool {
+        self.vertical.is_some()
     }
 
     /// The same above a `temperature` \[K\], and below it an Arrhenius law with an `energy` in J/mol, without a jump: as of
@@ -159,98 +226,96 @@ impl TimeTemperature {
         if let Law::Arrhenius { energy } = self.law { Some(energy) } else { None }
     }
 
+    /// b_T at `temperature` \[K\]: 1 of a law without vertical factors.
+    ///
+    /// # Errors
+    /// If the temperature is not finite and positive, or outside a table of vertical factors.
+    pub fn vertical_factor(&self, temperature: f64) -> Result<f64> {
+        positive("temperature", temperature)?;
+        match &self.vertical {
+            None => Ok(1.0),
+            Some(Vertical::Entropic) => Ok(temperature / self.reference),
+            Some(Vertical::Table { rows, extrapolated }) => {
+                let allowed = "in the table of vertical factors (TimeTemperature::extrapolated)";
+                within("temperature", temperature, *extrapolated || is_inside(rows, temperature), allowed)?;
+                Ok(interpolated(rows, temperature, f64::ln))
+            }
+        }
+    }
+
     /// a_T at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table, or a_T is outside
-    /// \[1e-60, 1e60\].
+    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table, less than half
+    /// or more than twice the temperature at which an Arrhenius law begins, or a_T is outside \[1e-30, 1e30\].
     pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
         positive("temperature", temperature)?;
+        let allowed = "in [1e-30, 1e30]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
+        let in_range = |factor: f64| within("shift factor", factor, (1e-30..=1e30).contains(&factor), allowed);
+        // one energy does not hold so far, and degrees Celsius are as far from kelvin
+        let arrhenius = |energy: f64, from: f64| {
+            let allowed = "from half to twice that of an Arrhenius law: temperatures are in kelvin (20 °C is 293.15)";
+            within("temperature", temperature, (0.5 * from..=2.0 * from).contains(&temperature), allowed)?;
+            Ok::<f64, Error>((energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / from)).exp())
+        };
         if let Some(below) = self.below.iter().rfind(|below| temperature < below.temperature) {
-            let slower = below.energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / below.temperature);
-            let factor = self.shift_factor(below.temperature)? * slower.exp();
-            return within("shift factor", factor, (1e-60..=1e60).contains(&factor), "in [1e-60, 1e60]");
+            return in_range(self.shift_factor(below.temperature)? * arrhenius(below.energy, below.temperature)?);
         }
         let difference = temperature - self.reference;
-        let factor = match &self.law {
+        in_range(match &self.law {
             &Law::Wlf { c1, c2 } => {
-                let allowed = "above T_ref - C2, where the WLF law ends";
+                let allowed = "above T_ref - C2, where the WLF law ends: temperatures are in kelvin (20 °C is 293.15)";
                 within("temperature", temperature, c2 + difference > 0.0, allowed)?;
                 10f64.powf(-c1 * difference / (c2 + difference))
             }
-            Law::Arrhenius { energy } => (energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference)).exp(),
+            Law::Arrhenius { energy } => arrhenius(*energy, self.reference)?,
             Law::Table { rows, extrapolated } => {
-                let (x, last) = (1.0 / temperature, rows.len() - 1);
-                let node = |k: usize| (1.0 / rows[k].0, rows[k].1.ln());
-                let inside = *extrapolated || (node(last).0..=node(0).0).contains(&x);
-                within(
-                    "temperature",
-                    temperature,
-                    inside,
-                    "in the table of shift factors (TimeTemperature::extrapolated)",
-                )?;
-                let k = rows.partition_point(|row| 1.0 / row.0 > x).clamp(1, last);
-                let [a, b] = [node(k - 1), node(k)];
-                (a.1 + (x - a.0) / (b.0 - a.0) * (b.1 - a.1)).exp()
+                let allowed = "in the table of shift factors (TimeTemperature::extrapolated)";
+                within("temperature", temperature, *extrapolated || is_inside(rows, temperature), allowed)?;
+                interpolated(rows, temperature, |temperature| -1.0 / temperature)
             }
-        };
-        let allowed = "in [1e-60, 1e60]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
-        within("shift factor", factor, (1e-60..=1e60).contains(&factor), allowed)
+        })
     }
 
-    /// A `rheology` known at the reference temperature, at another `temperature` \[K\]: J(t/a_T).
+    /// A `rheology` known at the reference temperature, at another `temperature` \[K\]: J(t/a_T)/b_T.
     ///
     /// # Errors
-    /// As [`TimeTemperature::shift_factor`].
+    /// As [`TimeTemperature::shift_factor`] and [`TimeTemperature::vertical_factor`].
     pub fn at<R: Rheology>(&self, rheology: R, temperature: f64) -> Result<ShiftedRheology<R>> {
-        Ok(ShiftedRheology { rheology, factor: self.shift_factor(temperature)?, temperature })
+        let (factor, vertical) = (self.shift_factor(temperature)?, self.vertical_factor(temperature)?);
+        Ok(ShiftedRheology { rheology, factor, vertical, temperature })
     }
 }
 
-/// A rheology at a temperature other than the one measured; made by [`TimeTemperature::at`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShiftedRheology<R> {
-    rheology: R,
-    factor: f64,
-    temperature: f64,
+/// Rows of temperatures \[K\] and factors, with a factor of 1 at the reference.
+fn checked_rows(
+    [temperatures, factor]: [&'static str; 2],
+    table: &[(f64, f64)],
+    reference: f64,
+) -> Result<Arc<[(f64, f64)]>> {
+    for &(temperature, value) in table {
+        positive("temperature", temperature)?;
+        positive(factor, value)?;
+    }
+    in_order(temperatures, table.iter().map(|row| row.0), "ascend", |a, b| a < b)?;
+    let allowed = "a temperature of the table at which the factor is 1";
+    within("reference temperature", reference, table.contains(&(reference, 1.0)), allowed)?;
+    Ok(table.into())
 }
 
-impl<R: Rheology> ShiftedRheology<R> {
-    /// Temperature \[K\].
-    pub fn temperature(&self) -> f64 {
-        self.temperature
-    }
-
-    /// The shift factor a_T.
-    pub fn shift_factor(&self) -> f64 {
-        self.factor
-    }
+fn is_inside(rows: &[(f64, f64)], temperature: f64) -> bool {
+    let ends = rows.first().zip(rows.last());
+    ends.is_some_and(|(first, last)| (first.0..=last.0).contains(&temperature))
 }
 
-impl<R: Rheology> Rheology for ShiftedRheology<R> {
-    fn creep_compliance(&self, t: f64) -> f64 {
-        self.rheology.creep_compliance(t / self.factor)
+/// The factor at a temperature, its logarithm being linear in an `abscissa` that ascends with the temperature: between two rows, or beyond all
+/// of them through the last two.
+fn interpolated(rows: &[(f64, f64)], temperature: f64, abscissa: impl Fn(f64) -> f64) -> f64 {
+    if rows.len() < 2 {
+        return rows.first().map_or(1.0, |row| row.1);
     }
-
-    fn failure(&self) -> Option<UserError> {
-        self.rheology.failure()
-    }
-
-    /// `None` also where a time leaves the range of a [`CreepSpectrum`].
-    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
-        self.rheology.creep_spectrum()?.slowed(self.factor).ok()
-    }
-
-    fn known_until(&self) -> f64 {
-        self.rheology.known_until() * self.factor
-    }
-
-    fn measured(&self) -> [f64; 2] {
-        self.rheology.measured().map(|time| time * self.factor)
-    }
-
-    /// The report of the rheology at its own temperature.
-    fn fit_report(&self) -> Option<&FitReport> {
-        self.rheology.fit_report()
-    }
+    let node = |k: usize| (abscissa(rows[k].0), rows[k].1.ln());
+    let k = rows.partition_point(|row| row.0 < temperature).clamp(1, rows.len() - 1);
+    let (x, [a, b]) = (abscissa(temperature), [node(k - 1), node(k)]);
+    (a.1 + (x - a.0) / (b.0 - a.0) * (b.1 - a.1)).exp()
 }

@@ -91,6 +91,9 @@ pub trait Driven: Contact + Debug {
     /// The approach at which the upright bodies touch \[m\], if they never have.
     fn untouched(&self) -> Option<f64>;
 
+    /// Fails if the material of bodies that touch is not known until the end of a run.
+    fn is_known_until(&self, end: f64) -> Result<()>;
+
     /// Takes the next step. Differences of steps start anew where it ends at a corner.
     fn advance(&mut self, control: &mut Self::Control, course: &Course<'_>) -> Result<StepReport>;
 

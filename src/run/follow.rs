@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::ascending::{Schedule, Times};
-use crate::contact::{StepReport, ViscoelasticContact};
+use crate::contact::{StepReport, ViscoelasticContact, Warnings};
 use crate::error::{LoadError, Result};
 use crate::load::LoadHistory;
 #[cfg(feature = "checkpoint")]
@@ -86,6 +86,8 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
+    /// Whether the material is known until the end.
+    known: bool,
     /// Times up to here were sampled at the ends of the steps before.
     pub(super) covered: f64,
     pub(super) fields: Option<RunFields<C>>,
@@ -145,6 +147,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             events: Vec::new(),
             cancelled: None,
             last: None,
+            known: false,
             covered: 0.0,
             fields: None,
             #[cfg(feature = "checkpoint")]
@@ -206,7 +209,8 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// at corners and jumps of the history.
     ///
     /// # Errors
-    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too
+    /// If the end is not finite or lies before the contact's time, or is a time at which the material is not known (from the
+    /// step on in which the bodies touch); if the fixed step is not finite and positive or too
     /// short to change the time, the tolerance is out of range or requires steps too short to change the time, the
     /// history returns an invalid load at any time that is evaluated
     /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run evaluates the whole history when it
@@ -231,6 +235,8 @@ impl<'a, C: RunContact> Run<'a, C> {
         let start = self.contact.time();
         let mut report = if self.events.is_empty() { self.take_step() } else { self.take_until_event() }?;
         if let Some(report) = &mut report {
+            // its end was checked
+            report.warnings -= Warnings::NEAR_END_OF_MATERIAL;
             if report.time >= self.until {
                 self.contact.untouched().into_iter().for_each(|touch| report.warn_of_no_contact(touch));
             }
@@ -243,13 +249,18 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     pub(super) fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
-        let Run { contact, history, until, progress, control, cancelled, .. } = self;
+        let Run { contact, history, until, progress, control, cancelled, known, .. } = self;
         let (now, until, history) = (contact.time(), *until, history_of(history));
         let attracts = contact.in_space().is_some_and(|contact| contact.scene.attraction.is_some());
         let load = history.checked_at(now, attracts)?;
         let jumps = contact.load(control) != Some(load);
         if !jumps && now >= until {
             return Ok(None);
+        }
+        // bodies that never touch have no loading time
+        if !*known && contact.untouched().is_none_or(|touch| load.presses(touch)) {
+            contact.is_known_until(until)?;
+            *known = true;
         }
         let corner = if jumps { None } else { history.next_breakpoint(now) }.unwrap_or(f64::INFINITY);
         if corner <= now || corner.is_nan() {

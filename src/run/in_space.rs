@@ -40,6 +40,13 @@ impl Driven for ViscoelasticContact {
         state.is_undisturbed().then(|| state.indenter.gap().datum)
     }
 
+    fn is_known_until(&self, end: f64) -> Result<()> {
+        let clock = &self.computation.state.clock;
+        // a temperature that the law does not cover ends the run when it is reached
+        let Ok(reduced) = self.scene.reduced_time(clock, end) else { return Ok(()) };
+        self.scene.limits.check_age(end, reduced - clock.undisturbed_until, true)
+    }
+
     fn advance(&mut self, control: &mut StepControl, course: &Course<'_>) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
         rows.unless_lost(|| {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use super::{SlidingReport, SteadySliding};
-use crate::error::{Error, Result};
+use crate::error::{Error, MaterialError, Result};
 use crate::load::Load;
 use crate::parallel::{cut, fork};
 use crate::rheology::TimeTemperature;
@@ -23,7 +23,8 @@ impl SlidingSweep {
         SlidingSweep { velocities: velocities.into_iter().collect(), loads: loads.into_iter().collect(), law: None }
     }
 
-    /// At each of these temperatures \[K\]: the material is that at the reference temperature of the law, and passes as many times faster as a_T.
+    /// At each of these temperatures \[K\]: the material is that at the reference temperature of the law, and passes as many times faster as a_T;
+    /// all its moduli are b_T times as great, if the law has [vertical factors](TimeTemperature::with_vertical_factors).
     pub fn at_temperatures(self, law: TimeTemperature, temperatures: impl IntoIterator<Item = f64>) -> SlidingSweep {
         SlidingSweep { law: Some((law, temperatures.into_iter().collect())), ..self }
     }
@@ -69,7 +70,8 @@ impl SteadySliding {
     /// ```
     ///
     /// # Errors
-    /// As [`SteadySliding::at`] and [`TimeTemperature::shift_factor`].
+    /// As [`SteadySliding::at`], [`TimeTemperature::shift_factor`] and [`TimeTemperature::vertical_factor`]; if the law has vertical factors
+    /// and the contact a second body, a base or a bulk, which does not follow it ([`MaterialError::VerticalFactors`]).
     pub fn sweep(&mut self, sweep: &SlidingSweep) -> Result<SlidingTable> {
         self.sweep_with(sweep, |_, _| ControlFlow::Continue(()))
     }
@@ -87,20 +89,34 @@ impl SteadySliding {
         sweep: &SlidingSweep,
         progress: impl FnMut(&SweptState, f64) -> ControlFlow<()> + Send,
     ) -> Result<SlidingTable> {
-        let shift = |law: &TimeTemperature, kelvin: f64| Ok((Some(kelvin), law.shift_factor(kelvin)?));
+        let shift = |law: &TimeTemperature, kelvin: f64| {
+            Ok((Some(kelvin), law.shift_factor(kelvin)?, law.vertical_factor(kelvin)?))
+        };
         let shifts: Vec<_> = match &sweep.law {
             Some((law, kelvins)) => kelvins.iter().map(|&kelvin| shift(law, kelvin)).collect::<Result<_>>()?,
-            None => vec![(None, 1.0)],
+            None => vec![(None, 1.0, 1.0)],
         };
+        let in_proportion = self.bodies.layer.is_none() && self.contact.material().is_one_body_in_proportion();
+        if !in_proportion && shifts.iter().any(|(_, _, vertical)| *vertical != 1.0) {
+            return Err(MaterialError::VerticalFactors { what: "a sweep over temperatures" }.into());
+        }
         let chains: Vec<_> =
             shifts.iter().flat_map(|&shift| sweep.loads.iter().map(move |&load| (shift, load))).collect();
         let count = (chains.len() * sweep.velocities.len()) as f64;
         let told = Mutex::new((progress, 0, false));
         let chain = |k: usize| {
-            let ((temperature, shift), load) = chains[k];
+            let ((temperature, shift, vertical), load) = chains[k];
             let (mut own, mut states) = (self.clone(), Vec::new());
             for &velocity in &sweep.velocities {
-                let report = SlidingReport { velocity, ..own.at(velocity.map(|v| v * shift), load)? };
+                // with moduli b times as great, the same shape takes pressures b times as great
+                let found = own.at(velocity.map(|v| v * shift), load.with_force_over(vertical))?;
+                let force = |force: f64| force * vertical;
+                let report = SlidingReport {
+                    velocity,
+                    force: force(found.force),
+                    lateral_force: found.lateral_force.map(force),
+                    ..found
+                };
                 let state = SweptState { temperature, load, report };
                 let (progress, done, ended) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
                 if *ended {
@@ -110,6 +126,7 @@ impl SteadySliding {
                 *done += 1;
                 *ended = progress(&state, f64::from(*done) / count).is_break();
             }
+            own.contact.scale_steady(load, vertical);
             Ok::<_, Error>((own.contact, states))
         };
         let mut found: Vec<_> = chains.iter().map(|_| None).collect();

@@ -41,7 +41,7 @@ pub(super) struct Scene {
     /// Solves the state of each step.
     elastic: Option<Arc<Mutex<ViscoelasticContact>>>,
     pub(super) temperature: Option<TemperatureHistory>,
-    limits: Limits,
+    pub(super) limits: Limits,
     pub(super) interpolant: Interpolant,
     /// Error by which groups of levels merge.
     merge_error: f64,
@@ -180,7 +180,7 @@ impl StatesContact {
     }
 
     /// The length of a step in reduced time, and the reduced time at its end.
-    fn reduced(&self, time: f64, dt: f64) -> Result<(f64, f64)> {
+    pub(super) fn reduced(&self, time: f64, dt: f64) -> Result<(f64, f64)> {
         let Some(temperature) = &self.scene.temperature else { return Ok((dt, time)) };
         let length = temperature.reduced_time(self.time, time)?;
         Ok((length, self.reduced_time + length))

@@ -16,6 +16,7 @@ pub(super) struct Solved {
 pub(super) fn state_under(contact: &mut ViscoelasticContact, load: Load) -> Result<Solved> {
     let report = contact.step(0.0, load)?;
     let level = if let Load::Force { normal, .. } = load { normal } else { contact.force() };
+    let rounded = contact.computation.state.heights_are_lost(&contact.scene);
     let free = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None });
     let (stiffness, [compliance, tilt_rate @ ..]) = contact.stiffnesses(free)?;
     let state = ElasticState {
@@ -28,8 +29,9 @@ pub(super) fn state_under(contact: &mut ViscoelasticContact, load: Load) -> Resu
         area: contact.contact_area(),
         cells: contact.contact_cells(),
         patches: contact.patches()?.all.len(),
-        // warnings of its own modulus and solver do not apply to the contacts that are made of it
-        warnings: report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING,
+        // warnings of its own modulus and solver do not apply to the contacts that are made of it, those of its shape do
+        warnings: report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING
+            | Warnings::of(&[(Warnings::ROUNDING, rounded)]),
         figures: Figures { modulus: None, ..report.figures },
     };
     Ok(Solved { state, pressure: Pressed::new(contact.pressure()) })

@@ -81,6 +81,11 @@ impl Driven for StatesContact {
         (self.groups() == 0).then(|| self.states().approach(0.0))
     }
 
+    fn is_known_until(&self, end: f64) -> Result<()> {
+        let Ok((_, reduced)) = self.reduced(end, end - self.time) else { return Ok(()) };
+        self.scene.limits.check_age(end, reduced - self.undisturbed_until, true)
+    }
+
     fn advance(&mut self, control: &mut StatesControl, course: &Course<'_>) -> Result<StepReport> {
         if course.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Error::Cancelled { what: "a step" });

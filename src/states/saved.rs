@@ -73,7 +73,7 @@ impl StatesContact {
     /// contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let saved = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source })?;
+        let saved = self.read(path).map_err(|cause| Error::Checkpoint { path: path.to_owned(), cause })?;
         [self.time, self.reduced_time, self.undisturbed_until] = saved.times;
         self.levels = saved.levels.into_owned();
         self.saved_run = saved.run.map(|run| Arc::new(run) as _);

@@ -106,7 +106,7 @@ fn states_are_resumed_by_the_same_contact_only() {
     for (named, mut other) in others {
         let before = format!("{other:?}");
         match other.resume(&path) {
-            Err(Error::Checkpoint { source: CheckpointError::OtherScene { what, .. }, .. }) => assert_eq!(what, named),
+            Err(Error::Checkpoint { cause: CheckpointError::OtherScene { what, .. }, .. }) => assert_eq!(what, named),
             resumed => panic!("{named}: {resumed:?}"),
         }
         assert_eq!(format!("{other:?}"), before);

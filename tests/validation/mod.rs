@@ -4,6 +4,7 @@ mod adhesion_theories;
 mod analytic;
 mod energies;
 mod equations;
+mod few_cells;
 mod hertz;
 mod layers;
 mod mesh_error;

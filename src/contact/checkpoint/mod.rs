@@ -114,6 +114,6 @@ struct Agreement<'a> {
 
 impl Agreement<'_> {
     fn of<T>(&self, own: Result<T, CheckpointError>) -> Result<T> {
-        self.rows.agree(own.map_err(|source| Error::Checkpoint { path: self.path.to_owned(), source }))
+        self.rows.agree(own.map_err(|cause| Error::Checkpoint { path: self.path.to_owned(), cause }))
     }
 }

@@ -57,7 +57,7 @@ impl Mark {
             Mark::Series(_) if entry == 1 => format!("one that flows by {number:e} 1/(Pa s)"),
             Mark::Series(_) if entry.is_multiple_of(2) => format!("{number:e} 1/Pa in term {}", entry / 2),
             Mark::Series(_) => format!("one with a time of {number:e} s in term {}", entry / 2),
-            _ => format!("one of {number:e}"),
+            _ => format!("one whose fingerprint holds {number:e}"),
         }
     }
 }

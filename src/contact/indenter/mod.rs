@@ -152,7 +152,7 @@ impl Scene {
 
 impl Indenter {
     /// The index in the gap of the cell `k` of a region.
-    pub(super) fn index(&self, grid: &Grid, region: &Region, k: usize) -> usize {
+    pub(in crate::contact) fn index(&self, grid: &Grid, region: &Region, k: usize) -> usize {
         let [i, j] = region.cell(k);
         if self.is_local { k } else { i * grid.cells()[1] + j }
     }

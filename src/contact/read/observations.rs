@@ -44,8 +44,10 @@ impl ViscoelasticContact {
     /// all but one of 3300 scenes (docs/accuracy.md). The estimates do not hold for a shape that the cells do not
     /// resolve.
     ///
+    /// Of several bodies each error is that of the body for which it is greatest.
+    ///
     /// `None` without contact, in full contact of periodic bodies, which has no rim, and for contacts that the cells do
-    /// not resolve: less than about five cells across, or gaps between periodic ones.
+    /// not resolve: less than about five cells across, of one body, or of patches on average; or gaps between periodic ones.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -68,7 +70,11 @@ impl ViscoelasticContact {
     /// then follows from the cells in the zone of the attraction, and exceeds what the pressure at the rim tells by up to ten times.
     pub fn mesh_error(&self) -> Result<Option<MeshError>> {
         self.covers(coverage::MESH_ERROR)?;
-        Ok(self.pressed().mesh_error(self.contact_cells()))
+        let pressed = self.pressed();
+        Ok(match &self.computation.state.indenter.gap().owner {
+            Some(owner) => pressed.mesh_error_of_bodies(owner, self.bodies()),
+            None => pressed.mesh_error(self.contact_cells()),
+        })
     }
 
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area
@@ -280,6 +286,7 @@ impl ViscoelasticContact {
             pressure: self.pressure(),
             gap: &self.computation.state.indenter.gap().above,
             extent: self.extent_of_contact(),
+            body: None,
         }
     }
 }

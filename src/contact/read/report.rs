@@ -58,6 +58,10 @@ pub struct Figures {
     /// Greatest displacement in contact over the thickness of a layer, of every contact on a [`Layer`](crate::Layer)
     /// ([`Warnings::DEEP`]). On a half-space it is the part of the displacement that the layer takes.
     pub compression: Option<f64>,
+    /// Cells across the contact, if fewer than eight ([`Warnings::FEW_CELLS`]): 4/π times the mean length of its rows or columns,
+    /// whichever are shorter, which is the diameter of a disc and the average one of many patches of contact; at most the extent of
+    /// all contact. Of several bodies, that of the body with the fewest.
+    pub cells_across: Option<f64>,
     /// Cells in the shortest wave of the shapes, if fewer than four ([`Warnings::SHORT_WAVES`]).
     pub cells_in_wave: Option<f64>,
     /// Periods of a shape in the period of the bodies, if no whole number ([`Warnings::OTHER_PERIOD`]).
@@ -147,8 +151,17 @@ impl StepReport {
 
     /// What the number of a warning is, and the number.
     fn figure(&self, warning: Warnings) -> Option<(&'static str, f64)> {
-        let Figures { max_slope, compression, cells_in_wave, periods, cells_in_zone, beyond_edge, modulus, touch } =
-            self.figures;
+        let Figures {
+            max_slope,
+            compression,
+            cells_across,
+            cells_in_wave,
+            periods,
+            cells_in_zone,
+            beyond_edge,
+            modulus,
+            touch,
+        } = self.figures;
         let (name, figure) = match warning {
             Warnings::STEEP => ("greatest slope", max_slope),
             Warnings::DEEP => ("depth over thickness", compression),
@@ -158,7 +171,7 @@ impl StepReport {
             Warnings::BEYOND_EDGE => ("part of the force:", beyond_edge),
             Warnings::MODULUS => ("E* in Pa:", modulus),
             Warnings::LONG_STEP => ("relative error", self.time_error),
-            Warnings::FEW_CELLS => ("cells in contact:", Some(self.contact_cells as f64)),
+            Warnings::FEW_CELLS => ("cells across:", cells_across),
             Warnings::NO_CONTACT => ("they touch at an approach in m of", touch),
             _ => ("", None),
         };

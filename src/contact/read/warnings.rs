@@ -29,16 +29,18 @@ bitflags! {
         /// a step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge). Enlarge the grid. Only with
         /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
         const NEAR_EDGE = 1 << 0;
-        /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh;
+        /// The contact is fewer than 8 cells across ([`Figures::cells_across`](crate::contact::Figures::cells_across)): that of one body, or
+        /// the patches of it on average, as on rough surfaces. Refine the mesh;
         /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error) estimates the error from 5 on. A sphere's approach,
-        /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
+        /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8;
+        /// the approach and the area of rough surfaces by up to 10 % and 10 % with 4, by 1 % and 4 % with 8.
         const FEW_CELLS = 1 << 1;
         /// The loading time exceeds the measured range of the material: a table is extrapolated beyond its data
         /// ([`CreepSeries::extrapolated`](crate::rheology::CreepSeries::extrapolated)).
         const EXTRAPOLATED = 1 << 2;
         /// The step is shorter than the times for which the material is known: creep within it counts as elastic.
         const FASTER_THAN_MATERIAL = 1 << 3;
-        /// One more step of this length would exceed the range in which the material is known, and fail with
+        /// Of single steps: one more step of this length would exceed the range in which the material is known, and fail with
         /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial).
         const NEAR_END_OF_MATERIAL = 1 << 4;
         /// The time rule oscillates at steps of this length. The rectangle rule does where the bodies creep in a step by more than
@@ -54,7 +56,7 @@ bitflags! {
         const UNCERTAIN_MATERIAL = 1 << 7;
         /// The gap is a sum of numbers whose rounding exceeds [`Settings::tolerance`](crate::contact::Settings::tolerance)
         /// times the displacement due to the pressure, as where little pressure is left on bodies that were pressed much
-        /// harder before: the error of pressure and force exceeds the residual.
+        /// harder before, or where the heights of a shape are all far from 0: the error of pressure and force exceeds the residual.
         const ROUNDING = 1 << 8;
         /// The contact modulus at once, 1/C(0), is below 10 Pa or above 1e13 Pa, which no solid has: moduli are given in another
         /// unit than Pa, or compliances in another one than 1/Pa.
@@ -119,20 +121,26 @@ impl IntoIterator for &Warnings {
 /// What each warning says, and its cure.
 const MESSAGES: [(Warnings, &str); 20] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
-    (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh"),
+    (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, of a body or of patches on average: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data: measure it longer, or end earlier"),
     (Warnings::FASTER_THAN_MATERIAL, "the step counts as elastic, shorter than the material is known for: lengthen it"),
     (
         Warnings::NEAR_END_OF_MATERIAL,
-        "the next such step exceeds the times at which the material is known: measure longer",
+        "the next such step exceeds the times at which the material is known: take a shorter one, or measure longer",
     ),
     (Warnings::RINGS, "the time rule rings at steps of this length: take shorter ones, or another rule"),
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
-    (Warnings::ROUNDING, "the pressure is so small that the rounding of the gap makes it uncertain: do not use it"),
+    (
+        Warnings::ROUNDING,
+        "the rounding of the gap makes the pressure uncertain, so small is it, or so far are heights from 0: do not use it",
+    ),
     (Warnings::MODULUS, "no solid has such a modulus: moduli are in Pa, compliances in 1/Pa"),
-    (Warnings::STEEP, "the bodies are steeper than 0.5 in contact, too steep for small strains: lengths are in m"),
-    (Warnings::FLAT, "the bodies are flatter than real ones: heights and lengths are in m"),
+    (
+        Warnings::STEEP,
+        "the bodies are steeper than 0.5 in contact, too steep for small strains: check that lengths are in m",
+    ),
+    (Warnings::FLAT, "the bodies are flatter than real ones: check that heights and lengths are in m"),
     (Warnings::COARSE_ZONE, "the attraction acts over fewer than 4 cells: refine the mesh, or lengthen its range"),
     (Warnings::JUMP, "surfaces snapped together or apart in this step: take shorter steps to see when"),
     (Warnings::DEEP, "the layer is pressed in by over a fifth of its thickness: press less, or check the thickness"),

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::read::limits::{DEEP, LONG_STEP};
-use crate::contact::{Computation, Edge, Figures, Scene, Step, TimeRule, Warnings};
+use crate::contact::{Computation, Edge, Figures, Scene, State, Step, TimeRule, ViscoelasticContact, Warnings};
 use crate::extent::Extent;
+use crate::observe::resolution::{LEAST_ACROSS, Outline, Resolution};
 use crate::solver::RigidMotion;
 
 impl Computation {
@@ -46,11 +47,41 @@ impl Computation {
     }
 }
 
+/// Bodies whose cells are counted together.
+const TOGETHER: usize = 8;
+
+impl ViscoelasticContact {
+    /// Cells across the contact of the body with the fewest, if they are few; `reach` holds all pressed cells. A call of all ranks.
+    pub(crate) fn few_cells(&self, reach: Extent) -> Option<f64> {
+        let (Scene { grid, kernel, bodies, .. }, state) = (&*self.scene, &self.computation.state);
+        let State { region, indenter, current, .. } = state;
+        let (rows, cells, periodic) = (region.rows(), grid.cells(), kernel.periodic_axes());
+        let outline = Outline { rows: &rows, pressure: &current.solution.pressure, ends: region.ends(periodic) };
+        let across = if *bodies == 1 {
+            outline.resolution().across(reach, cells, periodic)
+        } else {
+            let body = |k: usize| indenter.gap().owner(indenter.index(grid, region, k));
+            let found = (0..*bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
+            let across = |(resolution, extent): (Resolution, Option<Extent>)| {
+                extent.map(|extent| resolution.across(region.shown_extent(extent), cells, periodic))
+            };
+            found.filter_map(across).fold(f64::INFINITY, f64::min)
+        };
+        Some(across).filter(|across| *across < LEAST_ACROSS)
+    }
+}
+
+impl State {
+    /// Whether the heights of the shapes are so far from 0 that their rounding counts, over the depth of the contact.
+    pub(crate) fn heights_are_lost(&self, scene: &Scene) -> bool {
+        let datum = self.indenter.gap().datum;
+        let depth = self.current.motions.iter().map(|motion| motion.approach - datum).fold(0.0, f64::max);
+        self.current.contact_cells > 0 && f64::EPSILON * datum.abs() > scene.settings.tolerance * depth
+    }
+}
+
 /// Contact this near to an edge is near it \[cells\].
 const EDGE_MARGIN: usize = 2;
-/// Fewer cells resolve no contact: across, and in all.
-const MIN_CELLS_ACROSS: usize = 8;
-const MIN_CELLS: usize = 50;
 /// Fewer cells resolve the zone of an attraction badly.
 pub(super) const COARSE_ZONE: f64 = 4.0;
 
@@ -65,22 +96,11 @@ pub(super) fn collect_warnings(
     let Computation { state, trial, .. } = computation;
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
-    let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
-    let (mut near, mut few) = (false, false);
-    if let Some(Extent { low, high }) = reach {
-        let all_in_touch = contact_cells == scene.grid.len();
-        let mut line = false;
-        for axis in 0..2 {
-            // across a line, or around a period, contact has no end that a mesh could miss
-            if axes[axis] == 1 && periodic[axis] {
-                line = true;
-                continue;
-            }
-            few |= high[axis] + 1 - low[axis] < MIN_CELLS_ACROSS && !(periodic[axis] && all_in_touch);
-            near |= !periodic[axis] && (low[axis] <= EDGE_MARGIN || high[axis] + EDGE_MARGIN + 1 >= axes[axis]);
-        }
-        few |= !line && contact_cells < MIN_CELLS && !(periodic == [true; 2] && all_in_touch);
-    }
+    let solution = &state.current.solution;
+    let near = reach.is_some_and(|Extent { low, high }| {
+        let at_end = |axis: usize| low[axis] <= EDGE_MARGIN || high[axis] + EDGE_MARGIN + 1 >= axes[axis];
+        (0..2).any(|axis| !periodic[axis] && at_end(axis))
+    });
     let of_material =
         if state.is_undisturbed() { Warnings::empty() } else { scene.limits.warnings(state.clock.age(), dt) };
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
@@ -90,10 +110,10 @@ pub(super) fn collect_warnings(
         (Warnings::COARSE_ZONE, figures.cells_in_zone.is_some()),
         (Warnings::BEYOND_EDGE, figures.beyond_edge.is_some()),
         (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
-        (Warnings::FEW_CELLS, few),
+        (Warnings::FEW_CELLS, figures.cells_across.is_some()),
         (Warnings::RINGS, oscillates),
         (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
-        (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance),
+        (Warnings::ROUNDING, solution.relative_rounding > scene.settings.tolerance || state.heights_are_lost(scene)),
         (Warnings::MODULUS, figures.modulus.is_some()),
         (Warnings::STEEP, figures.max_slope.is_some()),
         (Warnings::DEEP, figures.compression > Some(DEEP)),

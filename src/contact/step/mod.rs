@@ -227,6 +227,7 @@ impl ViscoelasticContact {
         let figures = Figures {
             max_slope: indenter.steepest(&scene.grid, region, pressure),
             compression: scene.compression(indenter, region, pressure, motion),
+            cells_across: reach.and_then(|reach| self.few_cells(reach)),
             cells_in_wave: self.missed.cells,
             periods: self.missed.periods,
             cells_in_zone: (scene.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),

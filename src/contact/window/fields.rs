@@ -69,17 +69,27 @@ impl Region {
             let last = row.iter().rposition(|&value| value > 0.0)?;
             Some(Extent { low: [i, first], high: [i, last] })
         });
-        let own = Extent::hull(rows).map(|Extent { low, high }| {
-            let [low, high] = [low, high].map(|cell| [0, 1].map(|axis| cell[axis] + self.first[axis]));
-            Extent { low, high }
-        });
-        let Extent { mut low, high } = self.hull_of_all_ranks(own)?;
-        for axis in 0..2 {
-            if self.folded[axis] {
-                low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
-            }
+        let own = Extent::hull(rows).map(|own| self.on_whole(own));
+        self.hull_of_all_ranks(own).map(|found| self.with_images(found))
+    }
+
+    /// A rectangle of its cells, as cells of the whole grid.
+    fn on_whole(&self, Extent { low, high }: Extent) -> Extent {
+        let [low, high] = [low, high].map(|cell| [0, 1].map(|axis| cell[axis] + self.first[axis]));
+        Extent { low, high }
+    }
+
+    /// The smallest rectangle of the whole grid that holds a rectangle and its mirror images.
+    fn with_images(&self, Extent { mut low, high }: Extent) -> Extent {
+        for axis in (0..2).filter(|&axis| self.folded[axis]) {
+            low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
         }
-        Some(Extent { low, high })
+        Extent { low, high }
+    }
+
+    /// The smallest rectangle of the whole grid that holds a rectangle of its cells and their mirror images, in one process.
+    pub(crate) fn shown_extent(&self, own: Extent) -> Extent {
+        self.with_images(self.on_whole(own))
     }
 
     /// The hull of what all ranks have found.

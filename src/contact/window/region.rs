@@ -6,6 +6,7 @@ use crate::Grid;
 use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
+use crate::observe::resolution::Ends;
 use crate::parallel::Rows;
 use crate::solver::{Freedom, Modes};
 
@@ -199,6 +200,18 @@ impl Region {
         let n2 = self.whole.cells()[1];
         let outside = whole.iter().enumerate().filter(|(k, _)| self.find([k / n2, k % n2]).is_none());
         outside.map(|(_, &value)| value).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How contact goes on beyond it, on bodies with these periodic axes.
+    pub(crate) fn ends(&self, periodic: [bool; 2]) -> [Ends; 2] {
+        let all = self.shared.as_ref().map_or(self.cells(), Rows::cells);
+        [0, 1].map(|axis| {
+            let folded = self.folded[axis];
+            let first = if folded { self.whole.cells()[axis] / 2 } else { 0 };
+            let covers = first + all[axis] == self.whole.cells()[axis];
+            let goes_on = periodic[axis] && covers;
+            Ends { open: [!folded && !goes_on, !goes_on], joined: goes_on && !folded }
+        })
     }
 
     /// The first and the last of its cells, as cells of the whole grid.

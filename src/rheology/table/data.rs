@@ -59,6 +59,11 @@ pub(crate) struct Layout {
 }
 
 impl Experiment {
+    /// The factor of its values that belongs to a factor of moduli, and the reverse: compliances change as the reciprocal.
+    pub(crate) fn of_modulus(self, factor: f64) -> f64 {
+        if self == Experiment::Creep { 1.0 / factor } else { factor }
+    }
+
     pub(crate) fn layout(self) -> Layout {
         let (table, columns): (_, &[_]) = match self {
             Experiment::Creep => ("creep table", &[("creep compliance", MaterialFunction::Creep)]),

@@ -3,7 +3,7 @@ use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::{Shift, shift_between};
-use crate::rheology::{CreepSeries, MaterialFunction, Tension, TimeTemperature};
+use crate::rheology::{CreepSeries, MaterialFunction, ShiftedRheology, Tension, TimeTemperature};
 
 /// A reference this near \[K\] to the temperature of an isotherm is that temperature.
 const NEAR: f64 = 0.5;
@@ -106,8 +106,10 @@ impl MasterCurve {
     /// not hold at the temperature of one.
     pub fn with_law(law: &TimeTemperature, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
-        let shift =
-            |isotherm: &Isotherm| Ok(Shift { log: law.shift_factor(isotherm.temperature)?.ln(), ..Shift::default() });
+        let shift = |isotherm: &Isotherm| {
+            let vertical = isotherm.experiment.of_modulus(law.vertical_factor(isotherm.temperature)?).ln();
+            Ok(Shift { log: law.shift_factor(isotherm.temperature)?.ln(), vertical, ..Shift::default() })
+        };
         let shifts = isotherms.iter().map(shift).collect::<Result<_>>()?;
         Ok(MasterCurve { reference: law.reference(), isotherms, shifts })
     }
@@ -148,7 +150,36 @@ impl MasterCurve {
         self.isotherms.iter().zip(&self.shifts).map(move |(isotherm, shift)| (isotherm.temperature, value(shift)))
     }
 
-    /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁.
+    /// The law of the shift factors themselves, a [table](TimeTemperature::table), with the vertical factors of the curve.
+    ///
+    /// # Errors
+    /// If there is no temperature besides the reference.
+    pub fn shift_table(&self) -> Result<TimeTemperature> {
+        self.with_own_vertical(TimeTemperature::table(&self.with_reference(self.shift_factors()), self.reference)?)
+    }
+
+    /// Rows of factors with one at the reference, where a known law may have no isotherm.
+    fn with_reference(&self, mut rows: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+        let k = rows.partition_point(|(temperature, _)| *temperature < self.reference);
+        if rows.get(k).is_none_or(|(temperature, _)| *temperature != self.reference) {
+            rows.insert(k, (self.reference, 1.0));
+        }
+        rows
+    }
+
+    /// A law of the shift factors with the vertical factors of the curve, of moduli.
+    fn with_own_vertical(&self, law: TimeTemperature) -> Result<TimeTemperature> {
+        if self.shifts.iter().all(|shift| shift.vertical == 0.0) {
+            return Ok(law);
+        }
+        let experiment = self.isotherms[0].experiment;
+        let of_modulus = |(temperature, factor)| (temperature, experiment.of_modulus(factor));
+        let rows = self.vertical_factors().into_iter().map(of_modulus).collect();
+        law.with_vertical_factors(&self.with_reference(rows))
+    }
+
+    /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁. It has the vertical factors of the
+    /// curve, which end with its isotherms ([`TimeTemperature::extrapolated`]).
     ///
     /// # Errors
     /// If there are fewer than two temperatures besides the reference, or the factors do not follow such a law.
@@ -164,10 +195,11 @@ impl MasterCurve {
         let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
         let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2));
         let c1 = 1.0 / slope;
-        TimeTemperature::wlf(c1, (y - slope * x) * c1, self.reference)
+        self.with_own_vertical(TimeTemperature::wlf(c1, (y - slope * x) * c1, self.reference)?)
     }
 
-    /// The Arrhenius law through the shift factors: least squares in ln a_T over 1/T.
+    /// The Arrhenius law through the shift factors: least squares in ln a_T over 1/T. It has the vertical factors of the curve, as
+    /// [`MasterCurve::wlf`].
     ///
     /// # Errors
     /// If there is no temperature besides the reference, or the factors rise with temperature.
@@ -178,7 +210,7 @@ impl MasterCurve {
             .collect();
         least_length("temperatures besides the reference", points.len(), 1)?;
         let slope = points.iter().map(|(x, y)| x * y).sum::<f64>() / points.iter().map(|(x, _)| x * x).sum::<f64>();
-        TimeTemperature::arrhenius(slope * crate::rheology::GAS_CONSTANT, self.reference)
+        self.with_own_vertical(TimeTemperature::arrhenius(slope * crate::rheology::GAS_CONSTANT, self.reference)?)
     }
 
     /// Temperature and ln a_T of every isotherm but that at the reference.
@@ -221,6 +253,42 @@ impl MasterCurve {
     /// If the curve cannot be fitted.
     pub fn fit_tension(&self) -> Result<Tension<CreepSeries>> {
         self.fitted(Deformation::Tension).map(Tension)
+    }
+
+    /// The body at another `temperature` \[K\] between those of the isotherms: [`MasterCurve::fit`], shifted by
+    /// [`MasterCurve::shift_table`], in time and in its moduli.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology};
+    ///
+    /// // a rubber whose moduli are in proportion to the temperature
+    /// let storage = |factor: f64, shift: f64| {
+    ///     let at = |w: f64| (w, factor * (1.0e6 + 3.0e6 * (w * shift).powf(0.4) / (1.0 + (w * shift).powf(0.4))));
+    ///     Measurements::storage(&[0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0].map(at))
+    /// };
+    /// let isotherms = vec![
+    ///     Isotherm::new(290.0, storage(1.0, 1.0)?)?,
+    ///     Isotherm::new(320.0, storage(320.0 / 290.0, 0.1)?)?,
+    /// ];
+    /// let master = MasterCurve::with_vertical_shifts(290.0, isotherms)?;
+    /// let warm = master.fit_at(320.0)?;
+    /// assert!((warm.vertical_factor() * 290.0 / 320.0 - 1.0).abs() < 0.02);
+    /// assert!(warm.creep_compliance(1.0) > master.fit()?.creep_compliance(1.0)); // it creeps faster
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the curve cannot be fitted, or the temperature is beyond the isotherms.
+    pub fn fit_at(&self, temperature: f64) -> Result<ShiftedRheology<CreepSeries>> {
+        self.shift_table()?.at(self.fit()?, temperature)
+    }
+
+    /// [`MasterCurve::fit_at`] of isotherms in tension.
+    ///
+    /// # Errors
+    /// As [`MasterCurve::fit_at`].
+    pub fn fit_tension_at(&self, temperature: f64) -> Result<Tension<ShiftedRheology<CreepSeries>>> {
+        self.shift_table()?.at(self.fit_tension()?.0, temperature).map(Tension)
     }
 
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {

@@ -185,6 +185,13 @@ impl Levels {
         if level.is_nan() {
             return Err(Error::Step(StepError::Overflow { time, what: "the level" }));
         }
+        if let Demand::Force(force) = demand
+            && force > 0.0
+            && level < f64::MIN_POSITIVE
+        {
+            let allowed = "0, or so great that the force times the compliance is a number";
+            return Err(Error::OutOfRange { field: "normal force", value: force, allowed });
+        }
         if level > states.last_level() {
             let (needed, last) = match demand {
                 Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),

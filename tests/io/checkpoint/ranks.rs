@@ -66,7 +66,7 @@ fn files_that_are_not_whole_are_refused_by_all_ranks_alike() {
             let cause = |bytes: &[u8]| {
                 fs::write(&other, bytes).unwrap();
                 match refused(size, &other) {
-                    Error::Checkpoint { source, .. } => source,
+                    Error::Checkpoint { cause, .. } => cause,
                     other => panic!("unexpected {other:?}"),
                 }
             };
@@ -88,7 +88,7 @@ fn files_that_are_not_whole_are_refused_by_all_ranks_alike() {
             fs::write(&other, &forged).unwrap();
             let error = refused(size, &other);
             let message = match &error {
-                Error::Checkpoint { source, .. } => source.to_string(),
+                Error::Checkpoint { cause, .. } => cause.to_string(),
                 Error::Ranks(RanksError::Failed { message, .. }) => message.clone(),
                 other => panic!("unexpected {other:?}"),
             };
@@ -104,7 +104,7 @@ fn checkpoints_that_ranks_cannot_resume_are_refused_by_name() {
     let folder = Temporary::folder("ranks-other");
     let path = folder.join("run.checkpoint");
     let what = |error: Error| match error {
-        Error::Checkpoint { source: CheckpointError::OtherScene { what, .. }, .. } => what,
+        Error::Checkpoint { cause: CheckpointError::OtherScene { what, .. }, .. } => what,
         other => panic!("unexpected {other:?}"),
     };
     // another scene, from files of ranks
