@@ -49,6 +49,7 @@ pub use text::TextError;
 pub use unsteady::Unsteady;
 pub use user::UserError;
 pub(crate) use user::{Failure, unless_failed};
+pub(crate) use violation::KIND_OF_LOAD;
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};
@@ -233,9 +234,14 @@ pub enum Error {
     #[error(transparent)]
     Step(#[from] StepError),
 
-    /// A [`Snapshot`](crate::contact::Snapshot) was taken of another contact, not of this one or a clone of it.
-    #[error("the snapshot was taken of another contact: only snapshots of the contact or of a clone can be restored")]
-    OtherContact,
+    /// A [`Snapshot`](crate::contact::Snapshot), or a history of the stress, is of another contact.
+    #[error("{what} is of another contact: {remedy}")]
+    OtherContact {
+        /// What was made of another contact.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
 
     /// A [`Plan`](crate::plan::Plan) found no domain that holds the contact: none is large enough.
     #[error(
@@ -258,6 +264,14 @@ pub enum Error {
         /// The call.
         what: &'static str,
     },
+}
+
+impl Error {
+    /// A snapshot that is not of the contact to be restored.
+    pub(crate) const OF_OTHER_CONTACT: Error = Error::OtherContact {
+        what: "the snapshot",
+        remedy: "only snapshots of the contact or of a clone can be restored",
+    };
 }
 
 /// The result of every fallible call of the crate.

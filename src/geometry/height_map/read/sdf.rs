@@ -17,6 +17,9 @@ const BINARY_HEADER: usize = 8 + 10 + 2 * 12 + 2 * 2 + 4 * 8 + 3;
 /// Bytes that some instruments write after the header: the numbers 5 and 1.
 const EXTRA: [u8; 8] = [5, 0, 0, 0, 1, 0, 0, 0];
 
+/// The types of numbers.
+const TYPES: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];
+
 impl HeightMap {
     /// Reads a surface data file (SDF) of ISO 25178-71 or its predecessor EUR 15178: text (`aISO-1.0`, `aBCR-1.0`) or
     /// binary (`bISO-1.0`, `bBCR-1.0`), in m.
@@ -67,6 +70,8 @@ fn from_text(text: &str) -> Result<HeightMap> {
         return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
     };
     let header = Header::of_lines(FORMAT, head);
+    // texts have numbers of each type
+    header.get("DataType").map_or(Ok(""), |_| header.one_of("DataType", &TYPES, "a type from 0 to 7"))?;
     let (cells, spacing, scale) = described(&header)?;
     let count = count(cells, spacing)?;
     let area = rest.split('*').next().unwrap_or_default();
