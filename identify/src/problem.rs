@@ -298,6 +298,13 @@ impl Problem {
         contact.enumerate().map(of).collect()
     }
 
+    /// The data of a curve without offset, drift, tilt and drag.
+    pub(crate) fn bare(&self, curve: usize, values: &[f64]) -> Vec<f64> {
+        let data = &self.parts[curve].curve.force;
+        let rest = self.measured(curve, values, data.iter().map(|_| 0.0));
+        data.iter().zip(rest).map(|(data, rest)| data - rest).collect()
+    }
+
     /// The modelled force of one curve.
     pub(crate) fn force(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
         let contact = self.each(curve, values, prony, |contact| contact.force().value())?;
