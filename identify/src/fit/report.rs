@@ -11,7 +11,7 @@ use crate::experiment::Curve;
 use crate::fit::{Estimate, Fit};
 use crate::model::Model;
 use crate::segments::BLOCK;
-use crate::statistics::{mean, square};
+use crate::statistics::{line, mean};
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -143,8 +143,13 @@ impl Fit {
         let bare = Curve { force: self.problem.bare(curve, &self.values), ..of.clone() };
         let before = self.samples(curve).iter().position(|sample| sample.contact_depth > 0.0).unwrap_or(0);
         let means: Vec<f64> = bare.force[..before].chunks_exact(BLOCK).map(mean).collect();
-        let base = if means.is_empty() { 0.0 } else { mean(&means) };
-        bare.pull_below(base, (square(&means) / means.len().max(1) as f64 - base * base).max(0.0).sqrt())
+        if means.is_empty() {
+            return bare.pull_below(0.0, 0.0);
+        }
+        // about a line: the pull itself may have bent what the fit took for drift or tilt
+        let order: Vec<f64> = (0..means.len()).map(|k| k as f64).collect();
+        let [.., square] = line(&order, &means, true);
+        bare.pull_below(mean(&means), (square / means.len() as f64).sqrt())
     }
 
     /// What a step on the elastic states of the tip to the greatest contact of a curve warns of.
