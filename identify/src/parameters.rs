@@ -81,6 +81,11 @@ impl Property {
     pub(crate) fn name(self) -> &'static str {
         ["stiffness", "contact point", "offset", "drift", "tilt", "drag"][self as usize]
     }
+
+    /// What refusals call the list of values of a parameter.
+    pub(crate) fn field(name: &str) -> &'static str {
+        Self::ALL.into_iter().map(Self::name).find(|own| *own == name).unwrap_or("parameters of the material")
+    }
 }
 
 /// Which quantity a parameter is.
@@ -131,7 +136,7 @@ impl Parameter {
     /// The parameters of a model, of which some are set.
     pub(crate) fn of_material(model: Model, chosen: &Chosen) -> Result<Vec<Parameter>> {
         let parameter = |name: String| {
-            let set = chosen.of(&name).map(|set| set.each("parameters of the material", 1)).transpose()?;
+            let set = chosen.of(&name).map(|set| set.each(Property::field(&name), 1)).transpose()?;
             let nuisance = set.and_then(|mut set| set.next()).unwrap_or(Nuisance::Fitted);
             let scale = Model::scale(&name);
             Parameter::new(name, Kind::Material, scale, 1.0, nuisance)

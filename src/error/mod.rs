@@ -103,11 +103,11 @@ pub enum Error {
         allowed: &'static str,
     },
 
-    /// More memory is needed than is available, or than can be addressed. Take fewer cells, or compute fewer of them by
+    /// More memory is needed than is available, or than can be addressed. Take fewer cells; a contact computes fewer of them by
     /// [`Settings::symmetry`](crate::contact::Settings::symmetry) and
     /// [`Settings::window`](crate::contact::Settings::window). [`Builder::memory`](crate::contact::Builder::memory)
     /// reports the need of a contact before it is built.
-    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells, or compute fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
+    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells; a contact computes fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
     OutOfMemory {
         /// What needs it.
         what: &'static str,
@@ -130,7 +130,7 @@ pub enum Error {
     },
 
     /// The values of a table are not in the required order.
-    #[error("{field}[{index}] = {value} may not follow {previous}: the values must {rule}")]
+    #[error("{field}[{index}] = {value:?} may not follow {previous:?}: the values must {rule}")]
     OutOfOrder {
         /// Which table.
         field: &'static str,

@@ -174,7 +174,7 @@ impl TimeTemperature {
         let difference = temperature - self.reference;
         let factor = match &self.law {
             &Law::Wlf { c1, c2 } => {
-                let allowed = "above T_ref - C2, where the WLF law ends";
+                let allowed = "above T_ref - C2, where the WLF law ends: temperatures are in kelvin (20 °C is 293.15)";
                 within("temperature", temperature, c2 + difference > 0.0, allowed)?;
                 10f64.powf(-c1 * difference / (c2 + difference))
             }

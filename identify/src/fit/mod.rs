@@ -88,7 +88,7 @@ impl Fit {
         let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
         let jacobian = &problem.jacobian(coordinates)?;
         let values = problem.values(coordinates);
-        let prony = problem.prony(&values)?;
+        let prony = problem.finite_prony(&values)?;
         let (count, points) = (coordinates.len(), problem.len());
         if points <= count {
             return Err(Error::TooFewPoints { points, parameters: count });
@@ -237,7 +237,7 @@ impl Fit {
     /// their shortest sampling interval to the length of the longest curve, warn that the material is extrapolated.
     ///
     /// # Errors
-    /// If the modulus at t = 0 is not finite.
+    /// If a modulus of the series is beyond 1e100 Pa, as of a law that is steep at t = 0.
     pub fn material(&self) -> Result<Material> {
         self.prony.material(0.5, self.problem.window)
     }

@@ -176,7 +176,7 @@ mod tests {
         for (key, from) in [("Xscale", "1e-6"), ("Yscale", "2.5E-06"), ("Zscale", "1e-9")] {
             for scale in ["0", "-1e-6", "nan", "inf"] {
                 let error = read(from, scale);
-                assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
+                assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
             }
             let entry =
                 MapError::Entry { format: FORMAT, key, text: "small".into(), allowed: "a number with a decimal point" };
@@ -224,7 +224,7 @@ mod tests {
         for (at, key) in [(46, "Xscale"), (54, "Yscale"), (62, "Zscale")] {
             for scale in [0.0_f64, -1.0, f64::NAN, f64::INFINITY] {
                 let error = read(at, &scale.to_le_bytes());
-                assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
+                assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
             }
         }
         for (at, name) in [(78, "Compression"), (79, "DataType"), (80, "CheckType")] {
