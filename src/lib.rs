@@ -90,13 +90,16 @@
 //! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, <!-- figures memory of a line -->370<!-- end --> in a line contact; each further time adds 8 per
 //! computed cell. [`contact::Builder::memory`] returns the bytes beforehand.
 //!
-//! A step allocates nothing, except the first two of a run or under a tilting load, and steps along a path, with attraction, where a window grows, or
-//! temperature alters the rate of creep by many decades.
+//! A step allocates nothing, except the first two of a run or under a tilting load, the first over the bodies or of several bodies, and steps of direct
+//! sums ([`contact::TimeRule::Rectangle`], [`contact::TimeRule::Backward`]), which keep a field of each step, along a path, with attraction, where a window
+//! grows, or temperature alters the rate of creep by many decades.
 //!
 //! # Co-simulation and long runs
 //!
-//! A failed step changes nothing. Callers that iterate restore a [`contact::Snapshot`]. A state saved to
-//! a file continues bit by bit. Results do not depend on the number of threads or [ranks](parallel).
+//! A failed step leaves the contact as it was, except that [`ViscoelasticContact::within_step`] has lost the start of the step before it. Iterative
+//! callers return to a [`contact::Snapshot`]. A state saved to a file continues with the same bits. Results have the same bits for any number of
+//! threads, and for any number of [ranks](parallel), which compute the whole grid as a contact without ranks does when [`contact::Settings::window`]
+//! is false.
 //!
 //! # Features
 //!

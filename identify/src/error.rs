@@ -17,6 +17,35 @@ pub enum Error {
         allowed: &'static str,
     },
 
+    /// A parameter is outside its allowed range.
+    #[error("{name} = {value:?} is not allowed: it must be {allowed}")]
+    ParameterOutOfRange {
+        /// Name of the parameter.
+        name: String,
+        /// The value given.
+        value: f64,
+        /// The allowed range.
+        allowed: &'static str,
+    },
+
+    /// A parameter that needs one value has none, or several.
+    #[error("the parameter '{name}' is given {values} values: give it exactly one")]
+    NotOneValue {
+        /// Name of the parameter.
+        name: String,
+        /// The number of its values.
+        values: usize,
+    },
+
+    /// There is no curve of this index.
+    #[error("there is no curve {curve}: the fit is of {curves}, and the first is curve 0")]
+    NoCurve {
+        /// The index given.
+        curve: usize,
+        /// The number of curves.
+        curves: usize,
+    },
+
     /// Two columns of a curve differ in length.
     #[error("{field}: {len} values given, {expected} needed")]
     WrongLength {
@@ -79,10 +108,14 @@ pub enum Error {
         depth: f64,
     },
 
+    /// The correlation of the noise is to be fitted where there are no data.
+    #[error("bounds need the correlation of the noise: take Noise::AutoregressiveWith")]
+    UnknownCorrelation,
+
     /// No values of the parameters give the measured forces even roughly.
-    #[error("the fit failed after {iterations} iterations: {reason}")]
+    #[error("{}{reason}", if *.iterations > 0 { format!("the fit failed after {iterations} iterations: ") } else { String::new() })]
     NotConverged {
-        /// Iterations done.
+        /// Iterations done; 0 if the problem was not solvable to begin with.
         iterations: usize,
         /// What failed, and what to change.
         reason: &'static str,
@@ -212,6 +245,16 @@ pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'s
 /// Accepts finite values above zero.
 pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, value > 0.0, "finite and > 0")
+}
+
+/// Accepts a count for which `inside` holds.
+pub(crate) fn count_within(field: &'static str, value: usize, inside: bool, allowed: &'static str) -> Result<()> {
+    if inside { Ok(()) } else { Err(viscocontact::Error::CountOutOfRange { field, value, allowed }.into()) }
+}
+
+/// The error of a parameter that is none of some `names`.
+pub(crate) fn unknown(name: &str, names: &[String]) -> Error {
+    Error::UnknownParameter { name: name.into(), names: names.join(", ") }
 }
 
 /// Accepts columns of equal length.

@@ -37,8 +37,8 @@ impl Experiment {
     /// If the approach is not finite, or above the first touch of a cell.
     pub fn with_surface(mut self, approach: f64) -> Result<Experiment> {
         let first = self.tip.approach(0.0);
-        self.surface =
-            within("approach at first touch", approach, approach <= first, "at most that of the first cell")?;
+        let allowed = "finite, and at most the approach at which the first cell touches (ElasticStates::approach(0.0))";
+        self.surface = within("approach at first touch", approach, approach <= first, allowed)?;
         Ok(self)
     }
 

@@ -3,7 +3,7 @@
 use viscocontact::numeric::{LeastSquares, least_squares};
 
 use crate::bounds::{Bounds, inverse_gram};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, unknown};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::model::Model;
@@ -141,12 +141,12 @@ impl Identification {
     /// fixed, or the search for it has a start.
     ///
     /// # Errors
-    /// If a parameter is missing or not allowed, or the tip goes beyond its last elastic state.
+    /// If a parameter has an unknown name, no value or several, or a value that is not allowed, or the tip goes beyond its last elastic state.
     pub fn respond(&self, experiment: &Experiment, values: &[(&str, f64)]) -> Result<Vec<Sample>> {
         // computed forces have no noise
         let problem = self.clone().noise(Noise::White).planned(std::slice::from_ref(experiment))?;
         let values = self.given(&problem, values)?;
-        let prony = problem.prony(&values)?;
+        let prony = problem.finite_prony(&values)?;
         problem.samples(0, &values, &prony)
     }
 
@@ -172,11 +172,11 @@ impl Identification {
     pub fn bounds(&self, experiments: &[Experiment], values: &[(&str, f64)], sigma: f64) -> Result<Bounds> {
         positive("standard deviation of the noise", sigma)?;
         if self.fits_correlation() {
-            let reason = "bounds need the correlation of the noise: take Noise::AutoregressiveWith";
-            return Err(Error::NotConverged { iterations: 0, reason });
+            return Err(Error::UnknownCorrelation);
         }
         let problem = self.planned(experiments)?;
         let values = self.given(&problem, values)?;
+        problem.finite_prony(&values)?;
         let coordinates = problem.coordinates(&values);
         let inverse = inverse_gram(&problem.jacobian(&coordinates)?, 0.0)?;
         let sigma = if let Noise::Covariance(_) = self.noise { 1.0 } else { sigma };
@@ -232,18 +232,16 @@ impl Identification {
 
     /// Values of all parameters from the material's by name.
     fn given(&self, problem: &Problem, named: &[(&str, f64)]) -> Result<Vec<f64>> {
-        let unknown = |name: String| Error::UnknownParameter { name, names: problem.model.parameters().join(", ") };
         if let Some((name, _)) = named.iter().find(|(name, _)| problem.parameters.iter().all(|p| p.name != *name)) {
-            return Err(unknown((*name).to_string()));
+            return Err(unknown(name, &problem.parameters.iter().map(|own| own.name.clone()).collect::<Vec<_>>()));
         }
         let value = |parameter: &Parameter| {
-            let named = named.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
-            match (named.or(parameter.given), parameter.kind) {
-                (Some(value), _) => Ok(value),
-                (None, Kind::Material | Kind::Measurement(Property::Stiffness, _)) => {
-                    Err(unknown(format!("{} without a value", parameter.name)))
-                }
-                (None, _) => Ok(0.0),
+            let own = || named.iter().filter(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
+            let is_needed = matches!(parameter.kind, Kind::Material | Kind::Measurement(Property::Stiffness, _));
+            match (own().count(), own().next().or(parameter.given)) {
+                (0 | 1, Some(value)) => parameter.scale.check(&parameter.name, value).map(|()| value),
+                (0, None) if !is_needed => Ok(0.0),
+                (values, _) => Err(Error::NotOneValue { name: parameter.name.clone(), values }),
             }
         };
         problem.parameters.iter().map(value).collect()

@@ -1,6 +1,6 @@
 //! Relaxation models of the contact modulus.
 
-use crate::error::{Result, positive, within};
+use crate::error::{Error, Result, within};
 
 /// How the contact modulus relaxes. Times are in seconds and moduli in pascals; a modulus here is the modulus of the
 /// contact, E* = 2G/(1 − ν) for a rigid tip.
@@ -95,12 +95,14 @@ pub enum Scale {
 
 impl Scale {
     /// Accepts values that have a coordinate on this scale.
-    pub(crate) fn check(self, field: &'static str, value: f64) -> Result<f64> {
-        match self {
-            Scale::Logarithm => positive(field, value),
-            Scale::Logit => within(field, value, value > 0.0 && value < 1.0, "> 0 and < 1"),
-            Scale::Linear => within(field, value, true, "finite"),
-        }
+    pub(crate) fn check(self, name: &str, value: f64) -> Result<()> {
+        let (inside, allowed) = match self {
+            Scale::Logarithm => (value > 0.0, "finite and > 0"),
+            Scale::Logit => (value > 0.0 && value < 1.0, "> 0 and < 1"),
+            Scale::Linear => (true, "finite"),
+        };
+        let refused = || Error::ParameterOutOfRange { name: name.into(), value, allowed };
+        if value.is_finite() && inside { Ok(()) } else { Err(refused()) }
     }
 
     pub(crate) fn forward(self, value: f64) -> f64 {

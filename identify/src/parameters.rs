@@ -1,6 +1,6 @@
 //! The parameters of a fit: of the material, and of the measurement.
 
-use crate::error::{Error, Result, same_length, within};
+use crate::error::{Result, same_length, unknown, within};
 use crate::experiment::Curve;
 use crate::model::{Model, Scale};
 use crate::statistics::range;
@@ -58,9 +58,6 @@ impl PerCurve {
     }
 }
 
-/// What refusals call a parameter of the material.
-const OF_MATERIAL: &str = "parameters of the material";
-
 /// A property of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Property {
@@ -83,6 +80,11 @@ impl Property {
 
     pub(crate) fn name(self) -> &'static str {
         ["stiffness", "contact point", "offset", "drift", "tilt", "drag"][self as usize]
+    }
+
+    /// What refusals call the list of values of a parameter.
+    pub(crate) fn field(name: &str) -> &'static str {
+        Self::ALL.into_iter().map(Self::name).find(|own| *own == name).unwrap_or("parameters of the material")
     }
 }
 
@@ -127,15 +129,14 @@ impl Parameter {
             Nuisance::Fitted => (true, None),
             Nuisance::FittedFrom(value) => (true, Some(value)),
         };
-        let field = if let Kind::Measurement(property, _) = kind { property.name() } else { OF_MATERIAL };
-        given.map(|value| scale.check(field, value)).transpose()?;
+        given.map(|value| scale.check(&name, value)).transpose()?;
         Ok(Parameter { name, kind, scale, unit, is_free, given })
     }
 
     /// The parameters of a model, of which some are set.
     pub(crate) fn of_material(model: Model, chosen: &Chosen) -> Result<Vec<Parameter>> {
         let parameter = |name: String| {
-            let set = chosen.of(&name).map(|set| set.each(OF_MATERIAL, 1)).transpose()?;
+            let set = chosen.of(&name).map(|set| set.each(Property::field(&name), 1)).transpose()?;
             let nuisance = set.and_then(|mut set| set.next()).unwrap_or(Nuisance::Fitted);
             let scale = Model::scale(&name);
             Parameter::new(name, Kind::Material, scale, 1.0, nuisance)
@@ -167,7 +168,7 @@ impl Chosen {
         let names = model.parameters();
         let is_known = |name: &String| names.contains(name) || Property::ALL.iter().any(|other| other.name() == name);
         if let Some((name, _)) = self.0.iter().find(|(name, _)| !is_known(name)) {
-            return Err(Error::UnknownParameter { name: name.clone(), names: names.join(", ") });
+            return Err(unknown(name, &names));
         }
         let mut all = Parameter::of_material(model, self)?;
         for property in Property::ALL {

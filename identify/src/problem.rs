@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use faer::Mat;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, within};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
 use crate::model::{Model, Scale};
@@ -230,6 +230,14 @@ impl Problem {
         Mat::from_fn(count, count, |i, j| (ends[j][1][i] - ends[j][0][i]) / (2.0 * WIDTH))
     }
 
+    /// The exponentials of the material of given values, which are no steps of a search: a law that is not finite is refused.
+    pub(crate) fn finite_prony(&self, values: &[f64]) -> Result<Prony> {
+        let prony = self.prony(values)?;
+        let endless = prony.moduli.iter().copied().find(|modulus| !modulus.is_finite());
+        within("modulus of the law", endless.unwrap_or_default(), true, "finite at all times from t = 0 on")?;
+        Ok(prony)
+    }
+
     /// The exponentials of the material of given values.
     pub(crate) fn prony(&self, values: &[f64]) -> Result<Prony> {
         self.model.prony(&values[..self.model.parameters().len()], self.window)
@@ -296,6 +304,13 @@ impl Problem {
             each.fold(force, |sum, part| sum + part)
         };
         contact.enumerate().map(of).collect()
+    }
+
+    /// The data of a curve without offset, drift, tilt and drag.
+    pub(crate) fn bare(&self, curve: usize, values: &[f64]) -> Vec<f64> {
+        let data = &self.parts[curve].curve.force;
+        let rest = self.measured(curve, values, data.iter().map(|_| 0.0));
+        data.iter().zip(rest).map(|(data, rest)| data - rest).collect()
     }
 
     /// The modelled force of one curve.

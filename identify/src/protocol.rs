@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use viscocontact::load::{Load, LoadHistory};
 
-use crate::error::{Error, Result, positive, same_length, within};
+use crate::error::{Error, Result, count_within, positive, same_length, within};
 
 /// The drive over time: a depth, or the position of a base that carries the tip on a spring.
 ///
@@ -23,19 +23,13 @@ impl Protocol {
     /// If the lengths differ, there are fewer than two times, a value is not finite, or times do not ascend.
     pub fn new(times: Vec<f64>, drive: Vec<f64>) -> Result<Protocol> {
         same_length("drive", drive.len(), times.len())?;
-        if times.len() < 2 {
-            return Err(Error::TooFewPoints { points: times.len(), parameters: 1 });
+        count_within("times of the protocol", times.len(), times.len() > 1, "2 or more")?;
+        for (field, values) in [("drive", &drive), ("time", &times)] {
+            values.iter().try_for_each(|&value| within(field, value, true, "finite").map(drop))?;
         }
-        for &value in &drive {
-            within("drive", value, true, "finite")?;
+        for (index, pair) in times.windows(2).enumerate().filter(|(_, pair)| pair[1] <= pair[0]) {
+            return Err(Error::TimesNotAscending { index: index + 1, value: pair[1], previous: pair[0] });
         }
-        for (index, pair) in times.windows(2).enumerate() {
-            within("time", pair[1], true, "finite")?;
-            if pair[1] <= pair[0] || pair[0].is_nan() {
-                return Err(Error::TimesNotAscending { index: index + 1, value: pair[1], previous: pair[0] });
-            }
-        }
-        within("time", times[0], true, "finite")?;
         Ok(Protocol { times, drive })
     }
 
@@ -108,6 +102,7 @@ impl Protocol {
     /// # Errors
     /// If there are no depths, one is not finite, rise or interval is not finite and positive, or the dwell negative.
     pub fn staircase(depths: &[f64], rise: f64, dwell: f64, interval: f64) -> Result<Protocol> {
+        count_within("depths of the staircase", depths.len(), !depths.is_empty(), "1 or more")?;
         let start = Protocol::builder(0.0, interval);
         depths.iter().fold(start, |stairs, &depth| stairs.line(depth, rise).hold(dwell)).build()
     }
@@ -143,11 +138,12 @@ impl Protocol {
     /// cut.
     ///
     /// # Errors
-    /// If there are no samples.
+    /// If there are no samples, or more than 1e8.
     pub fn resampled(&self, samples: usize) -> Result<Protocol> {
+        count_within("samples", samples, (1..=MOST_SAMPLES as usize).contains(&samples), "from 1 to 1e8")?;
         let [first, last] = [self.times[0], self.times[self.times.len() - 1]];
         let time = |k: usize| if k == samples { last } else { first + (last - first) * k as f64 / samples as f64 };
-        let times: Vec<f64> = if samples > 0 { (0..=samples).map(time).collect() } else { Vec::new() };
+        let times: Vec<f64> = (0..=samples).map(time).collect();
         let drive = times.iter().map(|&time| self.drive_at(time)).collect();
         Protocol::new(times, drive)
     }
@@ -191,7 +187,7 @@ const MOST_SAMPLES: f64 = 1e8;
 
 impl ProtocolBuilder {
     /// `count` equal intervals over a `duration`, with the drive as a function of the share of it, unless a value was refused.
-    fn extend(mut self, checked: Result<f64>, count: f64, duration: f64, drive: impl Fn(f64) -> f64) -> Self {
+    fn extend(mut self, checked: Result<impl Sized>, count: f64, duration: f64, drive: impl Fn(f64) -> f64) -> Self {
         let allowed = "at most 1e8: check the unit of time";
         let checked = checked.and_then(|_| within("samples of a piece", count, count <= MOST_SAMPLES, allowed));
         self.error = self.error.or(checked.err());
@@ -240,8 +236,8 @@ impl ProtocolBuilder {
         let (middle, count) = (self.end()[1], periods as f64 * samples as f64);
         let checked = positive("amplitude", amplitude)
             .and_then(|_| positive("frequency", frequency))
-            .and_then(|_| within("periods", periods as f64, periods > 0, "> 0"))
-            .and_then(|_| within("samples of a period", samples as f64, samples >= 4, ">= 4"));
+            .and_then(|_| count_within("periods", periods, periods > 0, "1 or more"))
+            .and_then(|()| count_within("samples of a period", samples, samples >= 4, "4 or more"));
         let sine = |share: f64| if share == 1.0 { 0.0 } else { (TAU * periods as f64 * share).sin() };
         let duration = periods as f64 / frequency;
         self.extend(checked, count, duration, |share| middle + amplitude * sine(share))

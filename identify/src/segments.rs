@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use viscocontact::numeric::least;
 
-use crate::error::{Result, within};
+use crate::error::{Result, count_within};
 use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
 use crate::statistics::{line, mean, range, scatter};
@@ -16,7 +16,7 @@ const SAME_DRIVE: f64 = 1e-3;
 /// Contact points that are tried first.
 const POINTS: usize = 60;
 /// Samples of a mean.
-const BLOCK: usize = 5;
+pub(crate) const BLOCK: usize = 5;
 /// Standard deviations by which the mean of a block is below the base line of a curve with pull-off.
 const PULL: f64 = 5.0;
 
@@ -71,14 +71,19 @@ impl Curve {
     }
 
     /// The force below the base line \[N\], where the tip is drawn back to the sample by more than noise explains: no fit of this crate describes
-    /// it, and [`Curve::until_release`] leaves it out.
+    /// it, and [`Curve::until_release`] leaves it out. A drag, a drift or a tilt is taken for a pull, too; [`FitWarning::PullOff`](crate::FitWarning::PullOff) is
+    /// told without those that the fit has found.
     pub fn pull_off(&self) -> Option<f64> {
-        let base = self.base_line();
+        self.pull_below(self.base_line(), 0.0)
+    }
+
+    /// The greatest force below a base line after the top, if it is more than noise explains, whose means of blocks scatter by at least `wander`.
+    pub(crate) fn pull_below(&self, base: f64, wander: f64) -> Option<f64> {
         let after = &self.force[self.top(TOP).1..];
         let pull = after.windows(BLOCK).map(|block| base - mean(block)).fold(0.0, f64::max);
+        let scatter = (scatter(&self.force) / (BLOCK as f64).sqrt()).max(wander);
         // less than a hundredth of the force is a base line that is not straight
-        let least = (PULL * scatter(&self.force) / (BLOCK as f64).sqrt()).max(0.01 * (range(&self.force)[1] - base));
-        (pull > least).then_some(pull)
+        (pull > (PULL * scatter).max(0.01 * (range(&self.force)[1] - base))).then_some(pull)
     }
 
     /// Mean force of the first twentieth of the samples up to the top.
@@ -87,8 +92,7 @@ impl Curve {
     }
 
     fn samples(&self, samples: Range<usize>) -> Result<Curve> {
-        let count = samples.len() as f64;
-        within("samples of the segment", count, count >= 2.0, "at least 2")?;
+        count_within("samples of the segment", samples.len(), samples.len() > 1, "2 or more")?;
         let Protocol { times, drive } = &self.experiment.protocol;
         let protocol = Protocol::new(times[samples.clone()].to_vec(), drive[samples.clone()].to_vec())?;
         let experiment = Experiment { protocol, ..self.experiment.clone() };

@@ -5,12 +5,12 @@ use std::f64::consts::PI;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 use viscocontact::numeric::non_negative_least_squares;
-use viscocontact::rheology::{Elastic, GeneralizedMaxwell, Material};
+use viscocontact::rheology::{CreepSpectrum, Material, RelaxationSpectrum, Rheology};
 use viscocontact::states::ElasticStates;
 
 use crate::error::{Result, same_length, within};
 use crate::fractional::spectrum;
-use crate::model::{Model, Scale};
+use crate::model::Model;
 
 /// Spacing of the logarithms of the rates: sums of such exponentials are within 1e-6 of smooth relaxation.
 const SPACING: f64 = 0.55;
@@ -65,23 +65,42 @@ impl Prony {
         Prony { moduli, rates: self.rates.clone() }
     }
 
-    /// The material of this contact modulus and Poisson's ratio, against a rigid tip.
-    pub(crate) fn material(&self, poisson: f64) -> Result<Material> {
+    /// The material of this contact modulus and Poisson's ratio, against a rigid tip, measured between two times.
+    pub(crate) fn material(&self, poisson: f64, measured: [f64; 2]) -> Result<Material> {
         // E* = 2G/(1 − ν)
         let (shear, positive) = (0.5 * (1.0 - poisson), self.positive());
         let pairs = positive.moduli.iter().zip(&positive.rates).filter(|(modulus, _)| **modulus > 0.0);
         let (equilibria, relaxing): (Vec<_>, Vec<_>) = pairs.partition(|(_, rate)| **rate == 0.0);
         let equilibrium = shear * equilibria.iter().map(|(modulus, _)| *modulus).sum::<f64>();
         let terms: Vec<(f64, f64)> = relaxing.iter().map(|(e, rate)| (shear * *e, 1.0 / *rate)).collect();
-        Ok(match terms.is_empty() {
-            true => Material::constant_poisson(Elastic::new(equilibrium)?, poisson)?,
-            false => Material::constant_poisson(GeneralizedMaxwell::new(equilibrium, &terms)?, poisson)?,
-        })
+        let spectrum = RelaxationSpectrum::new(equilibrium, 0.0, &terms)?.creep();
+        Ok(Material::constant_poisson(Measured { spectrum, times: measured }, poisson)?)
     }
 
     /// The material on elastic states: with the Poisson's ratio that they state, else incompressible.
     pub(crate) fn material_on(&self, states: &ElasticStates) -> Result<Material> {
-        self.material(states.poisson_ratio().unwrap_or(0.5))
+        self.material(states.poisson_ratio().unwrap_or(0.5), [0.0, f64::INFINITY])
+    }
+}
+
+/// The creep that data show between two times.
+#[derive(Debug)]
+struct Measured {
+    spectrum: CreepSpectrum,
+    times: [f64; 2],
+}
+
+impl Rheology for Measured {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        self.spectrum.compliance(t)
+    }
+
+    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+        Some(self.spectrum.clone())
+    }
+
+    fn measured(&self) -> [f64; 2] {
+        self.times
     }
 }
 
@@ -106,8 +125,7 @@ impl Model {
         let names = self.parameters();
         same_length("parameters", parameters.len(), names.len())?;
         for (name, &value) in names.iter().zip(parameters) {
-            let scale = Model::scale(name);
-            scale.check(if scale == Scale::Logit { "exponent" } else { "modulus or time" }, value)?;
+            Model::scale(name).check(name, value)?;
         }
         if self.has_equilibrium() {
             within("Einf", parameters[1], parameters[1] <= parameters[0], "at most E0")?;

@@ -20,7 +20,7 @@ const MAX_ROUNDS: usize = 40;
 const AGREED: f64 = 1e-7;
 /// Least modulus of a term, relative to the sum, so that its force is known.
 const LEAST: f64 = 1e-12;
-/// A decade is determined if its modulus is known to this fraction of the modulus at the shortest times.
+/// A decade is determined if its modulus is known to this fraction of the modulus at the shortest sampling interval, which the data show whatever the model.
 const DETERMINED: f64 = 0.1;
 
 /// A spectrum of relaxation times found without a model: moduli of zero or more at fixed times.
@@ -57,9 +57,9 @@ pub struct Decade {
     pub times: [f64; 2],
     /// Modulus that relaxes in this decade \[Pa\].
     pub modulus: f64,
-    /// Its standard deviation, if the moduli of all decades and at long times are unknown \[Pa\]; at most the modulus at the shortest times.
+    /// Its standard deviation, if the moduli of all decades and at long times are unknown \[Pa\]; at most the modulus at the shortest sampling interval.
     pub deviation: f64,
-    /// Whether the deviation is below a tenth of the modulus at the shortest times.
+    /// Whether the deviation is below a tenth of the modulus at the shortest sampling interval.
     pub is_determined: bool,
 }
 
@@ -75,12 +75,7 @@ impl Fit {
     pub fn free_spectrum(&self) -> Result<FreeSpectrum> {
         let (problem, rates) = (&self.problem, rates(self.problem.window));
         let mut prony = nearest(&self.prony(), &rates);
-        // the data without offset, drift, tilt and drag
-        let bare = problem.parts.iter().enumerate().map(|(curve, part)| {
-            let rest = problem.measured(curve, &self.values, part.curve.force.iter().map(|_| 0.0));
-            part.curve.force.iter().zip(rest).map(|(data, rest)| data - rest).collect()
-        });
-        let data = problem.white(bare);
+        let data = problem.white((0..problem.parts.len()).map(|curve| problem.bare(curve, &self.values)));
         let data = Col::from_fn(data.len(), |k| data[k]);
         let mut last = Col::full(data.nrows(), f64::INFINITY);
         for round in 1..=MAX_ROUNDS {
@@ -125,14 +120,14 @@ impl Fit {
             0 => f64::from(u8::from(decade == 0)),
             _ => f64::from(u8::from(term.div_ceil(3) == decade)) / 3.0,
         };
-        let (total, prony) = (self.modulus(0.0), self.prony());
+        let (total, prony) = (self.modulus(shortest), self.prony());
         let mut path = prony.clone();
         path.moduli.resize(prony.moduli.len() + rates.len(), LEAST * total);
         path.rates.extend(&rates);
         let basis = basis(&self.problem, &self.values, &path)?;
         let columns =
             basis.subcols(prony.moduli.len(), rates.len()) * Mat::from_fn(rates.len(), count + 1, share) / self.sigma();
-        // nobody expects more in a decade than the modulus at the shortest times: a weak prior, without which decades that the data do
+        // nobody expects more in a decade than the modulus at the shortest sampling interval: a weak prior, without which decades that the data do
         // not see have no deviation
         let scaled = total * total * columns.transpose() * &columns + Mat::<f64>::identity(count + 1, count + 1);
         let reason = "the forces of the decades are not finite: check the times and the noise";

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use viscocontact::states::ElasticStates;
 
-use crate::error::{Result, positive};
+use crate::error::{Result, within};
 
 /// Contact radii over the radius of a sphere: the first, below which all are powers of the radius to 1e-6, and the ratio of neighbours.
 const RADII: [f64; 2] = [1e-3, 1.05];
@@ -34,7 +34,7 @@ pub fn paraboloid(radius: f64) -> Result<Arc<ElasticStates>> {
 /// # Errors
 /// As [`ElasticStates::sphere`].
 pub fn sphere(radius: f64) -> Result<Arc<ElasticStates>> {
-    positive("sphere radius", radius)?;
+    within("sphere radius", radius, (1e-100..=1e100).contains(&radius), "in [1e-100, 1e100] m")?;
     let count = ((GREATEST / RADII[0]).ln() / RADII[1].ln()).ceil() as i32;
     let row = |k: i32| {
         let x = (RADII[0] * RADII[1].powi(k)).min(GREATEST);

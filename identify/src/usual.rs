@@ -195,5 +195,5 @@ fn depths(curve: &Curve, contact_point: f64) -> Vec<f64> {
 }
 
 fn enough(points: usize) -> Result<()> {
-    if points >= LEAST_POINTS { Ok(()) } else { Err(Error::TooFewPoints { points, parameters: 3 }) }
+    if points >= LEAST_POINTS { Ok(()) } else { Err(Error::ShortCurve { points, least: LEAST_POINTS }) }
 }

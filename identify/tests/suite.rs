@@ -11,6 +11,7 @@ mod noise;
 mod protocols;
 mod random;
 mod recovery;
+mod release;
 mod results;
 mod scenes;
 mod spectra;

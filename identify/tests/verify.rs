@@ -25,7 +25,7 @@ fn the_stepper_gives_the_forces_of_a_fit_and_shows_a_wrong_tip() -> Result<()> {
         println!("{:.2e} {:.2e}", same.difference, other.difference);
         assert!(same.difference < 2e-3 && other.difference > 0.02, "{:e} {:e}", same.difference, other.difference);
         assert_eq!(same.force.len(), fit.samples(0).len());
-        assert!(matches!(fit.verify(1, &scene(1.4)), Err(Error::OutOfRange { field: "index of the curve", .. })));
+        assert!(matches!(fit.verify(1, &scene(1.4)), Err(Error::NoCurve { curve: 1, curves: 1 })));
     }
     Ok(())
 }

@@ -119,6 +119,10 @@ impl fmt::Display for Convergence {
                 f,
                 "the residual stagnates at {lowest:.1e}, the level of rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
+            // of a body alone, not of a step
+            (Trend::Stalled, false) if self.samples.is_empty() => f.write_str(
+                "the body hardly determines the pressure under a rigid motion: check its influence coefficients",
+            ),
             (Trend::Stalled, true) if self.stagnated => {
                 write!(f, "the residual stagnates at {lowest:.1e}, far above rounding: take smaller steps")
             }

@@ -100,6 +100,8 @@ not_covered! {
         SteadyMotion: "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
     DRIFT: "a body that flows, under an approach or at rest,", SteadyMotion: "give a force and a velocity";
     BASE_OF_NO_LAYER: "a base below another body than a layer", SteadyMotion: LAYER;
+    CHANGING_RATIO: "a layer or base whose Poisson's ratio changes, or of two bodies,",
+        SteadyMotion: "make it by Material::incompressible or Material::constant_poisson";
     OTHER_BASE: "a base of another ratio than the layer's", SteadyMotion: LAYER;
     THIN_LAYER: "a layer so thin on a base of its own", SteadyMotion: "take fewer cells, or a periodic body";
     SPRING: "a body on a spring", SteadyMotion: "give the force or the approach";

@@ -76,12 +76,12 @@ pub enum KernelError {
     /// The stress below the surface can be computed for half-spaces, half-spaces periodic along both axes, and line contacts.
     /// It cannot be computed for a body given by the influence on its surface, nor for a body periodic along one axis with
     /// more than one cell along it.
-    #[error(
-        "the stress below the surface is not known of this body ({body}): it must be a half-space, one periodic along both axes, or a line contact of half-spaces"
-    )]
+    #[error("the stress below the surface is not known of this body ({body}): it must be {allowed}")]
     NoStress {
         /// The kernel, as its `Display` prints it.
         body: String,
+        /// The bodies of which it is known.
+        allowed: &'static str,
     },
 }
 

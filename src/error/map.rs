@@ -7,7 +7,7 @@ use crate::rounded::rounded;
 pub enum MapError {
     /// A height is infinite, or beyond ±1e300 m.
     #[error(
-        "height {entry} of the map is {value}: heights must be finite and within ±1e300 m, or NaN where nothing was measured"
+        "height {entry} of the map is {value:?}: heights must be finite and within ±1e300 m, or NaN where nothing was measured"
     )]
     NotFinite {
         /// Index of the height.

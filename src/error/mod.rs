@@ -49,6 +49,7 @@ pub use text::TextError;
 pub use unsteady::Unsteady;
 pub use user::UserError;
 pub(crate) use user::{Failure, unless_failed};
+pub(crate) use violation::KIND_OF_LOAD;
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};
@@ -102,11 +103,11 @@ pub enum Error {
         allowed: &'static str,
     },
 
-    /// More memory is needed than is available, or than can be addressed. Take fewer cells, or compute fewer of them by
+    /// More memory is needed than is available, or than can be addressed. Take fewer cells; a contact computes fewer of them by
     /// [`Settings::symmetry`](crate::contact::Settings::symmetry) and
     /// [`Settings::window`](crate::contact::Settings::window). [`Builder::memory`](crate::contact::Builder::memory)
     /// reports the need of a contact before it is built.
-    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells, or compute fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
+    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells; a contact computes fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
     OutOfMemory {
         /// What needs it.
         what: &'static str,
@@ -129,7 +130,7 @@ pub enum Error {
     },
 
     /// The values of a table are not in the required order.
-    #[error("{field}[{index}] = {value} may not follow {previous}: the values must {rule}")]
+    #[error("{field}[{index}] = {value:?} may not follow {previous:?}: the values must {rule}")]
     OutOfOrder {
         /// Which table.
         field: &'static str,
@@ -233,9 +234,14 @@ pub enum Error {
     #[error(transparent)]
     Step(#[from] StepError),
 
-    /// A [`Snapshot`](crate::contact::Snapshot) was taken of another contact, not of this one or a clone of it.
-    #[error("the snapshot was taken of another contact: only snapshots of the contact or of a clone can be restored")]
-    OtherContact,
+    /// A [`Snapshot`](crate::contact::Snapshot), or a history of the stress, is of another contact.
+    #[error("{what} is of another contact: {remedy}")]
+    OtherContact {
+        /// What was made of another contact.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
 
     /// A [`Plan`](crate::plan::Plan) found no domain that holds the contact: none is large enough.
     #[error(
@@ -258,6 +264,14 @@ pub enum Error {
         /// The call.
         what: &'static str,
     },
+}
+
+impl Error {
+    /// A snapshot that is not of the contact to be restored.
+    pub(crate) const OF_OTHER_CONTACT: Error = Error::OtherContact {
+        what: "the snapshot",
+        remedy: "only snapshots of the contact or of a clone can be restored",
+    };
 }
 
 /// The result of every fallible call of the crate.

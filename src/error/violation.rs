@@ -1,3 +1,6 @@
+/// The quantity that is no number.
+pub(crate) const KIND_OF_LOAD: &str = "kind of load";
+
 /// A law of a trait that an implementation violates, with the value found and the value required.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -26,7 +29,7 @@ impl std::fmt::Debug for Violation {
 impl std::fmt::Display for Violation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Violation { law, quantity, at, found, expected } = self;
-        if expected.is_nan() {
+        if *quantity == KIND_OF_LOAD {
             return write!(f, "{law}: {quantity} {at} is another one");
         }
         let bound = if found == expected { "more than " } else { "" };
@@ -45,6 +48,8 @@ pub enum Location {
     Time(f64),
     /// A gap \[m\].
     Gap(f64),
+    /// In the arguments of the check.
+    Arguments,
     /// A cell.
     Cell {
         /// Its indices \[i, j\].
@@ -58,6 +63,7 @@ impl std::fmt::Display for Location {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Location::Time(time) => write!(f, "at t = {time:?} s"),
+            Location::Arguments => f.write_str("of the check"),
             Location::Gap(gap) => write!(f, "at a gap of {gap:?} m"),
             Location::Cell { cell, position } => write!(f, "on cell {cell:?} at {position:?} m"),
         }
@@ -79,12 +85,22 @@ impl Violation {
     /// Accepts `least` or more finite times, ascending from a time after `bound`.
     pub(crate) fn check_ascending(times: &[f64], least: usize, bound: f64) -> Verdict {
         let law = "(arguments) times are ascending";
-        Violation::check(law, "number of times", 0.0, [times.len() as f64, least as f64], times.len() >= least)?;
+        Violation::check_argument(law, "number of times", [times.len() as f64, least as f64], times.len() >= least)?;
         let mut previous = bound;
         for &time in times {
             Violation::check(law, "time", time, [time, previous], time > previous && time.is_finite())?;
             previous = time;
         }
         Ok(())
+    }
+
+    /// The verdict on an argument of a check.
+    pub(crate) fn check_argument(
+        law: &'static str,
+        quantity: &'static str,
+        [found, expected]: [f64; 2],
+        holds: bool,
+    ) -> Verdict {
+        if holds { Ok(()) } else { Err(Violation { law, quantity, at: Location::Arguments, found, expected }) }
     }
 }

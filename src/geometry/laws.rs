@@ -204,8 +204,10 @@ pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 /// rounding. Not part of [`all`]: a geometry that interpolates may shift its field more accurately than its points.
 ///
 /// # Errors
-/// The first violation.
+/// The first violation; or if the tolerance is negative or not finite.
 pub fn shift_matches_points(geometry: &dyn Geometry, grid: &Grid, by: [f64; 2], tolerance: f64) -> Verdict {
+    let law = "(arguments) the tolerance is finite and not negative";
+    Violation::check_argument(law, "tolerance", [tolerance, 0.0], tolerance.is_finite() && tolerance >= 0.0)?;
     let gap = shifted(geometry, grid, by, 0.0);
     let within = (ROUNDING + tolerance) * greatest(&gap);
     check("the shifted field is the gap at the shifted points", grid, &gap, |_, [x1, x2], found| {

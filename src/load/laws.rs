@@ -20,6 +20,7 @@
 //! println!("{violation}");
 //! ```
 
+use crate::error::KIND_OF_LOAD;
 pub use crate::error::{Location, Verdict, Violation};
 use crate::load::{Load, LoadHistory, VALUES};
 
@@ -79,7 +80,7 @@ fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; VALUES] {
 }
 
 fn check_kind(law: &'static str, t: f64, found: &Load, expected: &Load) -> Verdict {
-    Violation::check(law, "kind of load", t, [f64::NAN; 2], found.is_like(expected))
+    Violation::check(law, KIND_OF_LOAD, t, [f64::NAN; 2], found.is_like(expected))
 }
 
 /// Accepts a load that differs from the expected one by no more than `within` in each value.

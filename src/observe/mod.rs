@@ -22,7 +22,6 @@ pub(crate) mod profile;
 pub(crate) mod resolution;
 #[cfg(feature = "stress")]
 mod stress;
-mod stress;
 
 pub use asymmetry::Asymmetry;
 pub use distribution::Distribution;

@@ -74,10 +74,13 @@ impl FrameSeries {
             let reason = format!("the field {} is requested twice", fields[k].name());
             return refused(io::ErrorKind::InvalidInput, reason);
         }
+        if folder.is_file() {
+            return refused(io::ErrorKind::AlreadyExists, "it is a file, and frames need a folder".into());
+        }
         fs::create_dir_all(folder).map_err(unusable)?;
         let (mut written, mut entries) = (0, String::new());
         if earlier == Earlier::Continue {
-            (written, entries) = kept(folder, format, contact).map_err(unusable)?;
+            (written, entries) = kept(folder, format, contact)?;
         }
         let kept: Vec<String> = (0..written).map(|number| format.frame(number)).collect();
         for entry in fs::read_dir(folder).map_err(unusable)? {
@@ -142,18 +145,22 @@ impl FrameSeries {
 }
 
 /// The number of the frames of an earlier series up to the state of a contact, and their entries in the collection.
-fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> io::Result<(usize, String)> {
+fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> Result<(usize, String)> {
     let (mut kept, mut entries) = (Kept::default(), Vec::new());
     loop {
-        let frame = match fs::File::open(folder.join(format.frame(entries.len()))) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => break,
-            opened => opened?,
+        let path = folder.join(format.frame(entries.len()));
+        let no_frame = |error: io::Error| {
+            let reason = format!("it is no frame to continue from ({error}): Earlier::Replace removes it");
+            failed(&path, io::Error::new(error.kind(), reason))
         };
-        let state = match format {
+        let state = match (fs::File::open(&path), format) {
+            (Err(error), _) if error.kind() == io::ErrorKind::NotFound => break,
+            (Err(error), _) => Err(error),
             #[cfg(feature = "npy")]
-            Format::Npz => npz::state_of(frame)?,
-            Format::Vtk => vtk::state_of(frame)?,
+            (Ok(frame), Format::Npz) => npz::state_of(frame),
+            (Ok(frame), Format::Vtk) => vtk::state_of(frame),
         };
+        let state = state.map_err(no_frame)?;
         entries.push(entry(state[0], &format.frame(entries.len())));
         if !kept.includes(entries.len() as u64, state, contact) {
             break;

@@ -24,7 +24,9 @@
 //! ```
 //!
 //! The result does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
-//! added in the same order on every rank. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
+//! added in the same order on every rank. Ranks compute the whole grid, as far as symmetry does not leave less: they pass over
+//! [`Settings::window`](crate::contact::Settings::window). A contact without ranks has the same bits if that setting is false;
+//! with its default, true, its results differ from theirs by the tolerance of the solver. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
 //! fields of the [local rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
 //! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
 //! nothing to do.
@@ -50,16 +52,13 @@
 //!
 //! Surfaces that attract each other are refused, too.
 //!
-//! Files and checkpoints are written by rank 0, files with the same bytes as in one process; the other ranks send it their rows a
+//! Files and checkpoints are written by rank 0, files with the same bytes for any number of ranks; the other ranks send it their rows a
 //! piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
 //!
 //! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
 //! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
 //! the kernel are computed by rows and kept by columns. [`Builder::memory`](crate::contact::Builder::memory) returns the bytes
 //! of a rank. Clones and snapshots are of the same ranks.
-//!
-//! [`Settings::window`](crate::contact::Settings::window) is passed over: the whole grid is computed, as far as symmetry
-//! does not leave less.
 
 mod exchange;
 mod file;

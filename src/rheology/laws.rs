@@ -61,8 +61,14 @@ fn known<'a>(rheology: &dyn Rheology, times: &'a [f64]) -> impl Iterator<Item = 
     times.iter().copied().filter(move |t| *t <= until)
 }
 
+const IS_FINITE: &str = "creep is finite and not negative";
+
 /// The verdict of a law of J at one time.
 fn check(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) -> Verdict {
+    if !found.is_finite() || !expected.is_finite() {
+        let of_time = if found.is_finite() { expected } else { found };
+        return Violation::check(IS_FINITE, "creep compliance", t, [of_time, 0.0], false);
+    }
     Violation::check(law, "creep compliance", t, [found, expected], holds)
 }
 
@@ -78,17 +84,18 @@ fn check_same(law: &'static str, t: f64, found: f64, expected: f64) -> Verdict {
 pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     for t in std::iter::once(0.0).chain(known(rheology, times)) {
         let found = rheology.creep_compliance(t);
-        check("creep is finite and not negative", t, found, 0.0, found.is_finite() && found >= 0.0)?;
+        check(IS_FINITE, t, found, 0.0, found >= 0.0)?;
         check("creep is positive after t = 0", t, found, 0.0, found > 0.0 || t == 0.0)?;
     }
     Ok(())
 }
 
-/// J never decreases, at ascending `times`.
+/// J never decreases, at ascending `times` > 0.
 ///
 /// # Errors
-/// The first violation.
+/// The first violation; or if there are no times, or they are not positive and ascending.
 pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    Violation::check_ascending(times, 1, 0.0)?;
     let mut previous = rheology.creep_compliance(0.0);
     for t in known(rheology, times) {
         let found = rheology.creep_compliance(t);
@@ -99,11 +106,12 @@ pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
 }
 
 /// The creep rate never increases (J is concave), as for every body of springs and dashpots, at ascending
-/// `times`.
+/// `times` > 0.
 ///
 /// # Errors
-/// The first violation.
+/// As [`non_decreasing`].
 pub fn concave(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    Violation::check_ascending(times, 1, 0.0)?;
     let (mut before, mut value) = (0.0, rheology.creep_compliance(0.0));
     let mut slowest = (f64::INFINITY, 0.0);
     for t in known(rheology, times) {

@@ -27,7 +27,7 @@
 //!
 //! | constructor | takes |
 //! |---|---|
-//! | `new` | the elements: moduli, and the viscosity \[Pa·s\] of each dashpot; the numbers of the formula above |
+//! | `new` | of single elements: moduli, and the viscosity \[Pa·s\] of each dashpot; of models of several terms: pairs (strength, time); the numbers of the formula above |
 //! | `with_time`, `with_times` | the same, with a time in place of each viscosity |
 //! | `relaxing` | glassy modulus, rubbery modulus, relaxation time |
 //! | [`GeneralizedMaxwell::prony`] | glassy modulus, share of it and relaxation time of each term ([`PronyTerm`]) |

@@ -50,8 +50,9 @@ impl ViscoelasticContact {
     /// is a link, the file that it leads to is replaced.
     ///
     /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them: rank 0 writes the file, and the others
-    /// send it their rows, some at a time. Any number of ranks can resume from it, one process too, and any number of ranks from
-    /// the file of one process.
+    /// send it their rows, some at a time. Any number of ranks can resume from it, and one process too. Ranks can resume from the
+    /// file of one process that computed the whole grid, as with [`Settings::window`](crate::contact::Settings::window) set to
+    /// false.
     ///
     /// # Errors
     /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).

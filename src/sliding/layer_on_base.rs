@@ -18,7 +18,7 @@ use super::coefficients::{Row, Rules};
 use super::creep::Creep;
 use super::operator::Coefficients;
 use crate::Layer;
-use crate::error::{KernelError, Result, within};
+use crate::error::{Result, coverage, within};
 use crate::kernel::InfluenceKernel;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::Material;
@@ -56,16 +56,15 @@ impl Layer {
 /// Poisson's ratio of a material, and its contact compliance after a long time.
 fn at_rest(material: &Material) -> Result<(f64, f64)> {
     let ratios: Vec<_> = material.poisson_ratios().collect();
-    let [Some(nu)] = ratios[..] else {
-        return Err(KernelError::LayerMaterial {
-            layer: f64::NAN,
-            what: "one body of constant ratio is needed".into(),
-        }
-        .into());
-    };
+    let [Some(nu)] = ratios[..] else { return Err(coverage::CHANGING_RATIO.error()) };
     let creep = material.spectrum_for("a layer on a base")?;
     let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
-    within("fluidity of a layer or its base", creep.fluidity(), creep.fluidity() == 0.0, "0")?;
+    within(
+        "fluidity of a layer or its base",
+        creep.fluidity(),
+        creep.fluidity() == 0.0,
+        "0: give it an equilibrium modulus",
+    )?;
     Ok((nu, relaxed))
 }
 

@@ -12,6 +12,11 @@ use crate::states::curve::{ElasticState, ElasticStates};
 /// Greatest number of a closed form. Products and quotients of such numbers do not overflow.
 const GREATEST: f64 = 1e100;
 
+/// Accepts sizes of which levels are numbers.
+fn size(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, (1.0 / GREATEST..=GREATEST).contains(&value), "in [1e-100, 1e100]")
+}
+
 /// A power of a size: coefficient and exponent.
 type Power = (f64, f64);
 
@@ -38,17 +43,17 @@ impl ElasticStates {
     /// ```
     ///
     /// # Errors
-    /// If the radius is not finite and positive, or so far from 1 m that levels are no numbers.
+    /// If the radius is not in \[1e-100, 1e100\] m.
     pub fn sphere(radius: f64) -> Result<Arc<ElasticStates>> {
-        ElasticStates::power(0.5 / positive("sphere radius", radius)?, 2.0)
+        ElasticStates::power(0.5 / size("sphere radius", radius)?, 2.0)
     }
 
     /// A cone of slope `tan_beta` (Love 1939): δ = (π/2) a tan β, l = δ a.
     ///
     /// # Errors
-    /// As [`ElasticStates::sphere`].
+    /// If the slope is not in \[1e-100, 1e100\].
     pub fn cone(tan_beta: f64) -> Result<Arc<ElasticStates>> {
-        ElasticStates::power(positive("cone slope tan β", tan_beta)?, 1.0)
+        ElasticStates::power(size("cone slope tan β", tan_beta)?, 1.0)
     }
 
     /// A flat circular punch of `radius` a \[m\]: l = 2 a δ.
@@ -56,7 +61,7 @@ impl ElasticStates {
     /// # Errors
     /// As [`ElasticStates::sphere`].
     pub fn punch(radius: f64) -> Result<Arc<ElasticStates>> {
-        positive("punch radius", radius)?;
+        size("punch radius", radius)?;
         ElasticStates::of_powers([(2.0 * radius, 1.0), (1.0, 1.0), (2.0 * radius, 0.0), (PI * radius * radius, 0.0)])
     }
 
@@ -64,7 +69,7 @@ impl ElasticStates {
     /// κ = √π Γ(n/2 + 1)/Γ((n + 1)/2), l = 2n/(n + 1) δ a.
     ///
     /// # Errors
-    /// As [`ElasticStates::sphere`]; if the exponent is outside \[0.1, 100\].
+    /// If the coefficient is not finite and positive, or levels are no numbers; if the exponent is outside \[0.1, 100\].
     pub fn power(coefficient: f64, exponent: f64) -> Result<Arc<ElasticStates>> {
         positive("coefficient of the shape c r^n", coefficient)?;
         let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;

@@ -276,7 +276,7 @@ impl StatesContact {
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
     pub fn restore(&mut self, snapshot: &StatesContact) -> Result<()> {
         if !snapshot.is_of(self) {
-            return Err(Error::OtherContact);
+            return Err(Error::OF_OTHER_CONTACT);
         }
         self.copy_from(snapshot);
         Ok(())

@@ -122,7 +122,7 @@ impl ElasticStates {
         let depths = || self.states.iter().map(|state| self.depth_of(state));
         for (state, depth) in self.states.iter().zip(depths()) {
             positive("level of an elastic state", state.level)?;
-            positive("depth of an elastic state", depth)?;
+            positive("approach of an elastic state from first touch", depth)?;
             positive("area of an elastic state", state.area)?;
             for stiffness in [state.stiffness, state.load_stiffness].into_iter().filter(|s| *s != f64::INFINITY) {
                 positive("stiffness of an elastic state", stiffness)?; // but infinite in full contact
@@ -130,7 +130,7 @@ impl ElasticStates {
         }
         let levels = self.states.iter().map(|state| state.level);
         in_order("levels of elastic states", levels, "ascend", |before, next| next > before)?;
-        in_order("depths of elastic states", depths(), "ascend", |before, next| next > before)?;
+        in_order("approaches of elastic states", depths(), "ascend", |before, next| next > before)?;
         let fits = |pressed: &Pressed| {
             let cells = self.grid.as_ref().map_or(0, Grid::len);
             pressed.cells.len() == pressed.pressures.len() && pressed.cells.iter().all(|&cell| (cell as usize) < cells)

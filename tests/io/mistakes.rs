@@ -120,8 +120,8 @@ const MISTAKES: &[Mistake] = &[
     "cells along x1 = 0 is not allowed: it must be 1 or more"),
 ("a grid of more cells than memory",
     || builder_on(Grid::square(1_000_000, 4.0e-3)?, elastic()).build().map(drop),
-    "gap and pressure of a contact needs 16000000000000 bytes (16000.0 GB), more than is available: take fewer cells, or \
-     compute fewer of them with Settings::symmetry and Settings::window"),
+    "gap and pressure of a contact needs 16000000000000 bytes (16000.0 GB), more than is available: take fewer cells; \
+     a contact computes fewer of them with Settings::symmetry and Settings::window"),
 ("a length of zero",
     || Grid::new([64, 64], [4.0e-3, 0.0]).map(drop),
     "length along x2 = 0.0 is not allowed: it must be finite and > 0"),

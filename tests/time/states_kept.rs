@@ -49,7 +49,7 @@ fn contacts_on_states_come_back_to_the_last_bit() {
     contact.snapshot_into(&mut start);
     assert_eq!(format!("{start:?}"), end);
     let mut other = StatesContact::new(&states, &material()).unwrap();
-    assert!(matches!(other.restore(&start), Err(Error::OtherContact)));
+    assert!(matches!(other.restore(&start), Err(Error::OtherContact { what: "the snapshot", .. })));
     // a contact within a step is one of its clones
     let (history, mut apart) = (Ramp::new(Load::force(0.0), Load::force(1.0e-3), 1.0).unwrap(), other.clone());
     let mut run = apart.follow(&history, Stepping::adaptive(1e-2), 1.0);

@@ -2,7 +2,7 @@
 
 use viscocontact::numeric::root;
 
-use crate::error::{Error, Result, within};
+use crate::error::{Result, unknown, within};
 use crate::fit::Fit;
 use crate::parameters::Parameter;
 use crate::statistics::student;
@@ -23,11 +23,11 @@ impl Fit {
     /// If the parameter was not fitted, or `confidence` is outside (0, 1).
     pub fn profile_interval(&self, name: &str, confidence: f64) -> Result<[f64; 2]> {
         within("confidence", confidence, confidence > 0.0 && confidence < 1.0, "> 0 and < 1")?;
-        let names = || self.estimates.iter().map(|e| e.name.clone()).collect::<Vec<_>>().join(", ");
-        let unknown = || Error::UnknownParameter { name: name.to_string(), names: names() };
+        let names = || self.estimates.iter().map(|e| e.name.clone()).collect::<Vec<_>>();
         let mut problem = self.problem.clone();
         let threshold = (self.sigma * student(confidence, self.freedom.max(1.0))).powi(2);
-        let index = problem.parameters.iter().position(|of| of.is_free && of.name == name).ok_or_else(unknown)?;
+        let index = problem.parameters.iter().position(|of| of.is_free && of.name == name);
+        let index = index.ok_or_else(|| unknown(name, &names()))?;
         let Parameter { scale, unit, .. } = problem.parameters[index];
         // at a limit, a factor of e
         let deviation = self.estimate(name).map_or(unit, |own| own.deviation.min(unit));

@@ -67,6 +67,8 @@ pub struct Fit {
     /// Covariance of the estimates, and of the coordinates.
     spread: Bounds,
     of_coordinates: Mat<f64>,
+    /// Which coordinates are at a limit.
+    limits: Vec<bool>,
     samples: Vec<Vec<Sample>>,
     forces: Vec<Vec<f64>>,
     /// Measured less modelled force, by curve.
@@ -86,7 +88,7 @@ impl Fit {
         let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
         let jacobian = &problem.jacobian(coordinates)?;
         let values = problem.values(coordinates);
-        let prony = problem.prony(&values)?;
+        let prony = problem.finite_prony(&values)?;
         let (count, points) = (coordinates.len(), problem.len());
         if points <= count {
             return Err(Error::TooFewPoints { points, parameters: count });
@@ -156,6 +158,7 @@ impl Fit {
             estimates,
             spread,
             of_coordinates,
+            limits,
             samples,
             forces,
             residuals,
@@ -192,43 +195,51 @@ impl Fit {
         self.spread.correlation(one, other)
     }
 
-    /// The contact modulus E*(t) at a time after a sudden step \[Pa\].
+    /// The contact modulus E*(t) at a time after a sudden step \[Pa\], by the law of the model: NaN where the time is negative or not finite. What the
+    /// data show lies between their shortest sampling interval and the length of the longest curve; at other times the law is extrapolated.
     pub fn modulus(&self, t: f64) -> f64 {
-        self.prony.modulus(t)
+        self.modulus_of(&self.values, t)
     }
 
-    /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\].
+    /// The law of the model for some values of all parameters.
+    fn modulus_of(&self, values: &[f64], t: f64) -> f64 {
+        let model = self.model();
+        model.modulus(&values[..model.parameters().len()], t).unwrap_or(f64::NAN)
+    }
+
+    /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\]. The deviation is infinite at times at which the modulus
+    /// depends on a parameter that has run to its limit.
     pub fn modulus_band(&self, t: f64) -> [f64; 2] {
         let coordinates = self.problem.coordinates(&self.values);
-        let log_modulus = |column: usize, width: f64| {
-            let moved = self.problem.prony(&self.problem.moved(&coordinates, column, width));
-            moved.map_or(f64::NAN, |moved| moved.modulus(t).ln())
-        };
+        let moved = |column, width| self.modulus_of(&self.problem.moved(&coordinates, column, width), t).ln();
         // derivatives of ln E by the coordinates, which may all be moved either way
         let slopes = Col::from_fn(coordinates.len(), |column| {
-            let slope = (log_modulus(column, WIDTH) - log_modulus(column, -WIDTH)) / (2.0 * WIDTH);
+            let slope = (moved(column, WIDTH) - moved(column, -WIDTH)) / (2.0 * WIDTH);
             if slope.is_finite() { slope } else { 0.0 }
         });
+        let is_known = (0..slopes.nrows()).all(|k| !self.limits[k] || slopes[k].abs() < LITTLE);
         let variance = slopes.transpose() * &self.of_coordinates * &slopes;
-        [self.modulus(t), variance.max(0.0).sqrt()]
+        [self.modulus(t), if is_known { variance.max(0.0).sqrt() } else { f64::INFINITY }]
     }
 
     /// The shear modulus G(t) = E*(t) (1 − ν)/2 for a known constant Poisson's ratio \[Pa\]. One contact cannot tell ν.
     ///
     /// # Errors
-    /// If the ratio is outside (−1, 0.5].
+    /// If the ratio is outside (−1, 0.5], or the time is negative or not finite.
     pub fn shear_modulus(&self, t: f64, poisson: f64) -> Result<f64> {
         within("Poisson's ratio", poisson, poisson > -1.0 && poisson <= 0.5, "> -1 and at most 0.5")?;
+        within("time", t, t >= 0.0, "finite and >= 0")?;
         Ok(0.5 * self.modulus(t) * (1.0 - poisson))
     }
 
     /// The material, against a rigid tip, for contacts of the main crate: incompressible, with the identified contact modulus. Its contact
-    /// with a rigid body is the contact of every material of this modulus.
+    /// with a rigid body is the contact of every material of this modulus. Its series is that of the fit: steps beyond the times of the data, from
+    /// their shortest sampling interval to the length of the longest curve, warn that the material is extrapolated.
     ///
     /// # Errors
-    /// If the modulus at t = 0 is not finite.
+    /// If a modulus of the series is beyond 1e100 Pa, as of a law that is steep at t = 0.
     pub fn material(&self) -> Result<Material> {
-        self.prony.material(0.5)
+        self.prony.material(0.5, self.problem.window)
     }
 
     /// Force and depth of the fit at each sample of a curve; empty if there is no such curve, as its forces and residuals are.
@@ -253,8 +264,8 @@ impl Fit {
 
     /// The experiment of a curve of this index.
     pub(crate) fn experiment(&self, curve: usize) -> Result<&Experiment> {
-        within("index of the curve", curve as f64, curve < self.curves.len(), "below the number of curves")?;
-        Ok(self.curves[curve].experiment())
+        let none = Error::NoCurve { curve, curves: self.curves.len() };
+        self.curves.get(curve).map(Curve::experiment).ok_or(none)
     }
 
     /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.

@@ -7,8 +7,11 @@ use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
 use crate::error::{Error, Result};
+use crate::experiment::Curve;
 use crate::fit::{Estimate, Fit};
 use crate::model::Model;
+use crate::segments::BLOCK;
+use crate::statistics::{line, mean};
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,7 +29,7 @@ pub enum FitWarning {
         /// Standard deviation of the residuals over the greatest force.
         over_force: f64,
     },
-    /// A curve has a pull-off: the model has none, and [`Curve::until_release`](crate::Curve::until_release) leaves it out.
+    /// A curve has a pull-off, less offset, drift, tilt and drag of the fit: the model has none, and [`Curve::until_release`](crate::Curve::until_release) leaves it out.
     #[error("curve {curve}: a pull-off of {force:.2e} N, which the model has not: use Curve::until_release")]
     PullOff {
         /// Index of the curve.
@@ -110,7 +113,7 @@ impl Fit {
             if self.identification.fits_correlation() && is_bound {
                 warnings.push(FitWarning::Correlation { curve });
             }
-            warnings.extend(of.pull_off().map(|force| FitWarning::PullOff { curve, force }));
+            warnings.extend(self.pull_off(of, curve).map(|force| FitWarning::PullOff { curve, force }));
             warnings.extend(self.contact_warnings(curve));
         }
         let ([shortest, longest], of_material) = (self.problem.window, self.model().parameters());
@@ -133,6 +136,20 @@ impl Fit {
             }
         }
         warnings
+    }
+
+    /// The pull-off of a curve, less offset, drift, tilt and drag of the fit, below the base line before the contact, which scatters as the noise does.
+    fn pull_off(&self, of: &Curve, curve: usize) -> Option<f64> {
+        let bare = Curve { force: self.problem.bare(curve, &self.values), ..of.clone() };
+        let before = self.samples(curve).iter().position(|sample| sample.contact_depth > 0.0).unwrap_or(0);
+        let means: Vec<f64> = bare.force[..before].chunks_exact(BLOCK).map(mean).collect();
+        if means.is_empty() {
+            return bare.pull_below(0.0, 0.0);
+        }
+        // about a line: the pull itself may have bent what the fit took for drift or tilt
+        let order: Vec<f64> = (0..means.len()).map(|k| k as f64).collect();
+        let [.., square] = line(&order, &means, true);
+        bare.pull_below(mean(&means), (square / means.len() as f64).sqrt())
     }
 
     /// What a step on the elastic states of the tip to the greatest contact of a curve warns of.

@@ -9,6 +9,7 @@ use crate::experiment::Curve;
 use crate::fit::Fit;
 use crate::identification::Identification;
 use crate::model::Model;
+use crate::parameters::Property;
 use crate::problem::Problem;
 use crate::start::starts;
 use crate::statistics::{is_flat, scatter};
@@ -82,7 +83,7 @@ impl Identification {
     /// # Errors
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
-        let lists = self.chosen.0.iter().map(|(_, of)| of.each("list of a parameter", curves.len()).map(drop));
+        let lists = self.chosen.0.iter().map(|(name, of)| of.each(Property::field(name), curves.len()).map(drop));
         let suited: Result<()> = self.noise.suits(curves.len()).and_then(|()| lists.collect());
         let fit = |(index, curve): (usize, &Curve)| {
             let fit = suited.clone().and_then(|()| self.of_curve(index).fit(std::slice::from_ref(curve)));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::{Indenter, State, Step, StepReport, ViscoelasticContact};
-use crate::error::{Result, coverage, exact_length};
+use crate::error::{Result, count_within, coverage};
 use crate::geometry::Gap;
 use crate::load::Load;
 use crate::motion::Travel;
@@ -41,7 +41,8 @@ impl ViscoelasticContact {
     /// grid is fixed to the indenter. The contact and its indenter are then unchanged.
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
         self.covers(coverage::STEP_ALONG_PATH)?;
-        exact_length("geometries of the rigid bodies", 1, self.bodies())?;
+        let only = "1: several are moved by ViscoelasticContact::set_geometries before a step";
+        count_within("rigid bodies of a step along a path", self.bodies(), self.bodies() == 1, only)?;
         let loads = [load];
         let requested = self.request_next(dt, &loads)?;
         let [from, position] = [travel.position(self.time())?, travel.position(self.time() + dt)?];

@@ -2,7 +2,7 @@
 
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::{State, StepReport, Warnings};
-use crate::error::{Error, Result, count_within, coverage};
+use crate::error::{Result, count_within, coverage, within};
 use crate::hereditary::BranchEnergies;
 use crate::load::{Load, Tilt};
 
@@ -105,11 +105,10 @@ impl EnergyBalance {
         contact.covers(coverage::ENERGIES)?;
         let cells = contact.grid().len();
         count_within("rigid bodies of an energy balance", contact.bodies(), contact.bodies() == 1, "1")?;
-        if contact.time() != 0.0 || contact.displacement().iter().any(|&u| u != 0.0) {
-            let (field, value, allowed) =
-                ("time at which an energy balance begins", contact.time(), "0, before any step");
-            return Err(Error::OutOfRange { field, value, allowed });
-        }
+        let before = "0: begin before the first step";
+        within("time at which an energy balance begins", contact.time(), contact.time() == 0.0, before)?;
+        let moved = crate::sum::greatest(contact.displacement());
+        within("displacement where an energy balance begins", moved, moved == 0.0, before)?;
         let creep = contact.material().spectrum_for("an energy balance")?;
         Ok(EnergyBalance {
             branches: BranchEnergies::new(&creep, cells),

@@ -1,6 +1,6 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
-use crate::contact::{Solver, State, ViscoelasticContact};
+use crate::contact::{State, ViscoelasticContact};
 use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
 use crate::linalg::solve_normal_equations;
 use crate::observe::area::Pressed;
@@ -128,8 +128,7 @@ impl ViscoelasticContact {
                 .unless_lost(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
                 .map_err(|(iterations, residual)| {
                     let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
-                    let is_active_set = self.settings().solver == Solver::ActiveSet;
-                    let convergence = Convergence::new(Vec::new(), tolerance, is_active_set, false).into();
+                    let convergence = Convergence::new(Vec::new(), tolerance, false, true).into();
                     Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
                 })?;
             let area = region.cell_area();

@@ -133,7 +133,9 @@ impl StressHistory {
 
     fn check_grid(&self, contact: &ViscoelasticContact) -> Result<()> {
         contact.covers(coverage::STRESS)?;
-        if *contact.grid() == self.grid { Ok(()) } else { Err(Error::OtherContact) }
+        let remedy = "it follows contacts on the grid that it was made for: make one of this contact";
+        let other = Error::OtherContact { what: "the history of the stress", remedy };
+        if *contact.grid() == self.grid { Ok(()) } else { Err(other) }
     }
 }
 

@@ -7,6 +7,9 @@ use crate::error::{Error, Result, within};
 use crate::extent::Extent;
 use crate::load::{Load, Tilt, load_point};
 
+/// What is left of the last step where its start is lost.
+const START_LOST: &str = "the end of that step, whose start is lost once another step was tried, even if that one failed, and where the indenter moved: look inside a step before the next, or restore a snapshot and step again";
+
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
 /// space. About 48 bytes per computed cell and what the history takes ([`Memory`](crate::contact::Memory)); where a window is
 /// computed, 16 and the history again.
@@ -71,7 +74,7 @@ impl ViscoelasticContact {
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         if !Arc::ptr_eq(&snapshot.scene, &self.scene) {
-            return Err(Error::OtherContact);
+            return Err(Error::OF_OTHER_CONTACT);
         }
         self.go_to(&snapshot.state);
         self.saved_run = None;
@@ -139,7 +142,10 @@ impl ViscoelasticContact {
         let before = before.filter(|_| state.history.start_is_kept() && time < start);
         let from = before.map_or(start, |before| before.clock.time);
         // the start may come out a little off where it is found from the end
-        let inside = time >= from - 1e-12 * state.clock.last_length && time <= state.clock.time;
+        let slack = 1e-12 * state.clock.last_length;
+        let is_lost = time >= state.start.clock.time - slack && time < start - slack;
+        within("time within the last step", time, !is_lost || before.is_some(), START_LOST)?;
+        let inside = time >= from - slack && time <= state.clock.time;
         within("time within the last step", time, inside, "between its start and its end")?;
         let mut contact = self.clone();
         contact.saved_run = None;

@@ -192,9 +192,15 @@ impl ViscoelasticContact {
     pub(crate) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        let again = self.passes().filter(|report| report.suspected).map(|_| step.clone());
+        let is_suspected = self.passes().is_some_and(|report| report.suspected);
+        let again = is_suspected.then(|| (step.clone(), self.computation.state.clone()));
         let reach = self.adopt(attempt, step, error.sizes)?;
-        again.iter().try_for_each(|step| self.look_for_jump(step))?;
+        if let Some((step, before)) = again
+            && let Err(error) = self.look_for_jump(&step)
+        {
+            self.go_to(&before);
+            return Err(error);
+        }
         let report = self.report(estimated.then_some(error.relative), reach);
         report.emit();
         Ok(report)

@@ -128,10 +128,10 @@ impl SubsurfaceStress {
 
     /// The half-space whose stress is known, with a constant Poisson's ratio or one that `changes`.
     pub(crate) fn body_of(kernel: &InfluenceKernel, changes: bool) -> Result<HalfSpace> {
-        let refused = |more: &str| KernelError::NoStress { body: format!("{kernel}{more}") }.into();
+        let refused = |allowed| KernelError::NoStress { body: kernel.to_string(), allowed }.into();
         match kernel.half_space_below() {
-            None => Err(refused("")),
-            Some(HalfSpace::Periodic) if changes => Err(refused(", whose Poisson's ratio changes")),
+            None => Err(refused("a half-space, one periodic along both axes, or a line contact of half-spaces")),
+            Some(HalfSpace::Periodic) if changes => Err(refused("of a constant Poisson's ratio where it is periodic")),
             Some(body) => Ok(body),
         }
     }

@@ -1,4 +1,4 @@
-use crate::error::{Error, Place, Result, TableError, in_order, least_length};
+use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
 use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, Row};
 use crate::rheology::table::isotherm::Isotherm;
@@ -210,7 +210,10 @@ impl MasterCurve {
             .collect();
         least_length("temperatures besides the reference", points.len(), 1)?;
         let slope = points.iter().map(|(x, y)| x * y).sum::<f64>() / points.iter().map(|(x, _)| x * x).sum::<f64>();
-        self.with_own_vertical(TimeTemperature::arrhenius(slope * crate::rheology::GAS_CONSTANT, self.reference)?)
+        let energy = slope * crate::rheology::GAS_CONSTANT;
+        let allowed = "> 0: shift factors must fall as the temperature rises; check the temperatures of the isotherms";
+        within("activation energy of the shift factors", energy, energy > 0.0, allowed)?;
+        self.with_own_vertical(TimeTemperature::arrhenius(energy, self.reference)?)
     }
 
     /// Temperature and ln a_T of every isotherm but that at the reference.

@@ -18,7 +18,7 @@ const LEFT: f64 = 0.16;
 const COARSE: f64 = 1e-2;
 
 impl ViscoelasticContact {
-    /// Looks whether surfaces snapped within the step that was accepted last. The state is as it was; after an error it is the one before the step.
+    /// Looks whether surfaces snapped within the step that was accepted last. The state is as it was.
     ///
     /// # Errors
     /// If the step is cancelled, or the law of attraction fails. A part that is not found is a jump.
@@ -43,12 +43,10 @@ impl ViscoelasticContact {
         if let Some(own) = self.computation.trial.passes.as_mut() {
             (own.report, own.end, own.looks) = (PassReport { jumped, ..whole }, Some(end), true);
         }
-        if let Err(error @ (Error::Cancelled { .. } | Error::User(_))) = jumps {
-            self.computation.state.roll_back();
-            self.view.refresh(&self.computation.state);
-            return Err(error);
+        match jumps {
+            Err(error @ (Error::Cancelled { .. } | Error::User(_))) => Err(error),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.

@@ -102,10 +102,10 @@ impl RoughSpec {
     pub(super) fn validate_on(&self, grid: &Grid) -> Result<()> {
         within("Hurst exponent", self.hurst, self.hurst > 0.0 && self.hurst <= 1.0, "in (0, 1]")?;
         positive("shortest wavelength", self.shortest)?;
-        let in_order = self.roll_off >= self.shortest;
-        within("roll-off wavelength", self.roll_off, in_order, "finite and >= the shortest wavelength")?;
-        let in_order = self.longest >= self.roll_off;
-        within("longest wavelength", self.longest, in_order, "finite and >= the roll-off wavelength")?;
+        let in_order = self.longest >= self.shortest;
+        within("longest wavelength", self.longest, in_order, "finite and >= the shortest wavelength")?;
+        let in_order = self.roll_off >= self.shortest && self.roll_off <= self.longest;
+        within("roll-off wavelength", self.roll_off, in_order, "between the shortest and the longest wavelength")?;
         let ratio = self.anisotropy.ratio;
         within("ratio of the anisotropy", ratio, ratio >= 1.0, "finite and >= 1")?;
         finite("direction of the anisotropy", self.anisotropy.direction)?;

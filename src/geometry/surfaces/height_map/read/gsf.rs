@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(read(&FULL.replace("XRes = 3", "XRes = three"), &six), entry.into());
         for length in ["0", "-6e-3", "inf", "nan"] {
             let error = read(&FULL.replace("6e-3", length), &six);
-            assert!(matches!(error, Error::OutOfRange { field: "XReal", .. }), "{error}");
+            assert!(matches!(error, Error::Map(MapError::Entry { key: "XReal", .. })), "{error}");
         }
         let zero = read(&FULL.replace("XRes = 3", "XRes = 0"), &six);
         assert!(matches!(zero, Error::CountOutOfRange { value: 0, .. }), "{zero}");

@@ -1,6 +1,6 @@
 //! Headers of entries that are found by their keys.
 
-use crate::error::{MapError, Result, finite, positive};
+use crate::error::{MapError, Result};
 use crate::input::number;
 
 /// Returns the value of an entry by its key.
@@ -65,10 +65,12 @@ impl<'a> Header<'a> {
 
     pub(super) fn finite(&self, key: &'static str) -> Result<f64> {
         let text = self.require(key)?;
-        finite(key, number(text, false).ok_or_else(|| self.error(key, text, "a number with a decimal point"))?)
+        let found = number(text, false).ok_or_else(|| self.error(key, text, "a number with a decimal point"))?;
+        if found.is_finite() { Ok(found) } else { Err(self.error(key, text, "finite").into()) }
     }
 
     pub(super) fn positive(&self, key: &'static str) -> Result<f64> {
-        positive(key, self.finite(key)?)
+        let found = self.finite(key)?;
+        if found > 0.0 { Ok(found) } else { Err(self.error(key, self.require(key)?, "> 0").into()) }
     }
 }

@@ -17,6 +17,9 @@ const BINARY_HEADER: usize = 8 + 10 + 2 * 12 + 2 * 2 + 4 * 8 + 3;
 /// Bytes that some instruments write after the header: the numbers 5 and 1.
 const EXTRA: [u8; 8] = [5, 0, 0, 0, 1, 0, 0, 0];
 
+/// The types of numbers.
+const TYPES: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];
+
 impl HeightMap {
     /// Reads a surface data file (SDF) of ISO 25178-71 or its predecessor EUR 15178: text (`aISO-1.0`, `aBCR-1.0`) or
     /// binary (`bISO-1.0`, `bBCR-1.0`), in m.
@@ -67,6 +70,8 @@ fn from_text(text: &str) -> Result<HeightMap> {
         return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
     };
     let header = Header::of_lines(FORMAT, head);
+    // texts have numbers of each type
+    header.get("DataType").map_or(Ok(""), |_| header.one_of("DataType", &TYPES, "a type from 0 to 7"))?;
     let (cells, spacing, scale) = described(&header)?;
     let count = count(cells, spacing)?;
     let area = rest.split('*').next().unwrap_or_default();
@@ -171,7 +176,7 @@ mod tests {
         for (key, from) in [("Xscale", "1e-6"), ("Yscale", "2.5E-06"), ("Zscale", "1e-9")] {
             for scale in ["0", "-1e-6", "nan", "inf"] {
                 let error = read(from, scale);
-                assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
+                assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
             }
             let entry =
                 MapError::Entry { format: FORMAT, key, text: "small".into(), allowed: "a number with a decimal point" };
@@ -219,7 +224,7 @@ mod tests {
         for (at, key) in [(46, "Xscale"), (54, "Yscale"), (62, "Zscale")] {
             for scale in [0.0_f64, -1.0, f64::NAN, f64::INFINITY] {
                 let error = read(at, &scale.to_le_bytes());
-                assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
+                assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
             }
         }
         for (at, name) in [(78, "Compression"), (79, "DataType"), (80, "CheckType")] {

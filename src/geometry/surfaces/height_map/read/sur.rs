@@ -129,7 +129,7 @@ mod tests {
         assert!(matches!(read(108, &[255; 4]), Error::Map(MapError::Entry { key: "points per line", .. })));
         assert!(matches!(read(334, &[255; 2]), Error::Map(MapError::Entry { key: "length of comment", .. })));
         assert!(matches!(read(212, b"a.u.  "), Error::Map(MapError::Unit { .. })));
-        assert!(matches!(read(128, &[0; 4]), Error::OutOfRange { field: "z spacing", .. }));
+        assert!(matches!(read(128, &[0; 4]), Error::Map(MapError::Entry { key: "z spacing", .. })));
         for (at, name) in [(12, "byte order"), (14, "number of objects"), (18, "type of object"), (290, "inversion")] {
             assert!(matches!(read(at, &[9]), Error::Map(MapError::Entry { key, .. }) if key == name), "{name}");
         }

@@ -78,9 +78,12 @@ impl HeightMap {
                 heights.push(height(&row, column)?);
             }
         }
+        if heights.is_empty() {
+            return Err(MapError::Missing { format: "text", key: "line of heights" }.into());
+        }
         let (columns, mut heights) = without_index(columns, heights)?;
         mask(&mut heights, missing)?;
-        let cells = [columns, heights.len().checked_div(columns).unwrap_or(0)];
+        let cells = [columns, heights.len() / columns];
         let spacing = Grid::new(cells, lengths)?.spacing();
         HeightMap::from_rows(cells, spacing, &heights, First::Top, |height| unit.to_metres(height))
     }

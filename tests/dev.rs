@@ -1,0 +1,3 @@
+use viscocontact_scenes as common;
+#[path = "io/clauses/mod.rs"]
+mod clauses;

@@ -1,0 +1,318 @@
+//! Contacts, kernels, runs and steady motions.
+
+use std::sync::atomic::AtomicBool;
+
+use viscocontact::ErrorKind::{Cancelled, Convergence, File, Memory, Unsupported, Value};
+use viscocontact::contact::{EnergyBalance, StressHistory};
+use viscocontact::parallel::Threads;
+use viscocontact::prelude::*;
+
+use super::Table;
+use crate::common::{Temporary, builder_of, builder_on, elastic, maxwell, sphere, sphere_on, zener};
+
+fn grid() -> Grid {
+    Grid::square(16, 4.0e-3).unwrap()
+}
+
+fn contact(settings: Settings) -> ViscoelasticContact {
+    sphere_on(grid(), maxwell(), settings)
+}
+
+fn two() -> ViscoelasticContact {
+    let ball = |at: f64| Shifted::new(sphere(), [at, 0.0]).unwrap();
+    builder_of(&ball(-1.0e-3), grid(), elastic()).another_body(&ball(1.0e-3)).build().unwrap()
+}
+
+fn shared<T: Send>(job: impl Fn(ViscoelasticContact) -> T + Sync) -> T {
+    Threads::run(1, |ranks| job(builder_on(grid(), maxwell()).ranks(ranks).build().unwrap())).unwrap().pop().unwrap()
+}
+
+pub fn rows(t: &mut Table) {
+    let plain = Settings::default();
+    let over = plain.with_frame(Frame::Indenter);
+    let pressed = || {
+        let mut contact = contact(plain);
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        contact
+    };
+    for (gap, says) in [
+        (f64::NAN, "the initial gap at cell [8, 0], x…by HeightMap::masked"),
+        (f64::NEG_INFINITY, "the initial gap at cell [8, 0], x…by HeightMap::masked"),
+        (f64::INFINITY, "body 0 is the lowest body with a…e with Grid::lengths"),
+    ] {
+        let shape = FnGeometry::new(move |x1, _| if x1 > 0.0 || gap == f64::INFINITY { gap } else { 0.0 });
+        t.row("set_geometry", pressed().set_geometry(&shape), Value, says);
+    }
+    t.row("set_geometry", two().set_geometry(&sphere()), Value, "geometries of the rigid bodies: 1 given, 2 needed");
+    for len in [0, 255, 257] {
+        t.row("traction_into", pressed().traction_into(&mut vec![0.0; len]), Value, "traction: … given, 256 needed");
+    }
+    let by_function = builder_on(grid(), Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt()))));
+    let by_function = by_function.settings(plain.with_time_rule(TimeRule::Backward)).build().unwrap();
+    t.row(
+        "EnergyBalance::new",
+        EnergyBalance::new(&pressed()),
+        Value,
+        "displacement where an energy…efore the first step",
+    );
+    t.row("EnergyBalance::new", EnergyBalance::new(&two()), Value, "rigid bodies of an energy balance = 2 → 1");
+    t.row(
+        "EnergyBalance::new",
+        shared(|contact| EnergyBalance::new(&contact)),
+        Unsupported,
+        "an energy balance is not covered…ntact in one process",
+    );
+    t.row(
+        "EnergyBalance::new",
+        EnergyBalance::new(&contact(over)),
+        Unsupported,
+        "an energy balance is not covered…Settings::with_frame",
+    );
+    t.row(
+        "EnergyBalance::new",
+        EnergyBalance::new(&by_function),
+        Value,
+        "an energy balance needs an exponential…or Material::fitted",
+    );
+    t.row(
+        "mesh_error",
+        shared(|contact| contact.mesh_error()),
+        Unsupported,
+        "the error due to the mesh is not…ntact in one process",
+    );
+    let law = viscocontact::adhesion::ExponentialAttraction::new(0.05, 1.0e-4).unwrap();
+    let attracted = builder_on(grid(), maxwell()).attraction(law).build().unwrap();
+    t.row("mesh_error", attracted.mesh_error(), Unsupported, "the error due to the mesh is not…er mesh, and compare");
+    for bins in [0, 1_000_001] {
+        t.row("pressure_distribution", pressed().pressure_distribution(bins), Value, "bins = … → in [1, 1000000]");
+    }
+    // a smooth influence of scattered cells hardly determines the pressure under a rigid punch; here it gives one that is known
+    let smooth = InfluenceKernel::from_coefficients(&grid(), |i, j| (-((i * i + j * j) as f64) / 6.0).exp()).unwrap();
+    let is_cell = |k: usize| (k * 7 + (k / 16) * 5 + k * k) % 5 < 4;
+    let given: Vec<f64> = (0..256).map(|k| if is_cell(k) { 1.0 + ((k * k) % 7) as f64 } else { 0.0 }).collect();
+    let mut displacement = vec![0.0; 256];
+    smooth.convolve(&given, &mut displacement, &mut smooth.workspace().unwrap()).unwrap();
+    let depth = displacement.iter().copied().fold(0.0, f64::max);
+    let gap = displacement.iter().zip(&given).map(|(u, p)| if *p > 0.0 { depth - u } else { f64::NAN });
+    let cells = HeightMap::new([16; 2], [4.0e-3; 2], gap.map(|gap| -gap).collect()).unwrap().masked();
+    let punch = builder_of(&cells, grid(), Material::incompressible(Elastic::new(0.25).unwrap())).kernel(smooth);
+    let mut punch = punch.settings(plain.with_tolerance(0.1).with_edge(Edge::Allow)).build().unwrap();
+    punch.step(0.0, Load::approach(depth)).unwrap();
+    t.row(
+        "stiffness_over_modulus",
+        punch.stiffness_over_modulus(),
+        Convergence,
+        "at t = 0 s (step of 0 s):…fluence coefficients",
+    );
+    let layer = InfluenceKernel::layer(&grid(), Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap()).unwrap();
+    let on_layer = builder_on(grid(), maxwell()).kernel(layer).build().unwrap();
+    t.row(
+        "StressHistory::new",
+        StressHistory::new(&pressed()),
+        Value,
+        "pressure where the history of the…efore the first load",
+    );
+    t.row(
+        "StressHistory::new",
+        StressHistory::new(&contact(over)),
+        Unsupported,
+        "a history of the stress is not…Settings::with_frame",
+    );
+    t.row(
+        "StressHistory::new",
+        StressHistory::new(&on_layer),
+        Unsupported,
+        "the stress below the surface is…ntact of half-spaces",
+    );
+    t.row(
+        "StressHistory::of_counter_body",
+        StressHistory::of_counter_body(&contact(plain)),
+        Value,
+        "a contact needs counter_body:…er_body before build",
+    );
+    let (flag, free) = (AtomicBool::new(true), AtomicBool::new(false));
+    t.row(
+        "step_unless",
+        pressed().step_unless(&flag, 0.1, Load::force(0.2)),
+        Cancelled,
+        "a step was cancelled by its caller",
+    );
+    t.row(
+        "step_unless",
+        pressed().step_unless(&free, -0.1, Load::force(0.2)),
+        Value,
+        "time step = -0.1 → finite and >= 0",
+    );
+    t.row(
+        "step_unless",
+        pressed().step_unless(&free, 0.1, Load::force(10.0)),
+        Value,
+        "at t = 0.1 s the contact touches… the body ends there",
+    );
+    t.row(
+        "step_unless",
+        pressed().step_unless(&free, 0.1, [Load::force(0.1); 2]),
+        Value,
+        "loads of the rigid bodies: 2 given, 1 needed",
+    );
+
+    let coefficients = |of: fn(isize, isize) -> f64| InfluenceKernel::from_coefficients(&grid(), of);
+    t.row(
+        "from_coefficients",
+        coefficients(|i, _| if i == 2 { f64::NAN } else { 1.0 }),
+        Value,
+        "the influence coefficient [2, 0]…m in absolute value",
+    );
+    t.row(
+        "from_coefficients",
+        coefficients(|i, j| if i == 0 && j == 0 { 2.0e100 } else { 0.0 }),
+        Value,
+        "the influence coefficient [0, 0]…m in absolute value",
+    );
+    t.row(
+        "from_coefficients",
+        coefficients(|i, j| (1.0 + 0.1 * (i as f64).signum()) / (1.0 + (i * i + j * j) as f64)),
+        Value,
+        "the influence coefficient [-1, 0]…of its mirror images",
+    );
+    t.row(
+        "from_coefficients",
+        coefficients(|i, j| if i == 0 && j == 0 { -1.0 } else { 0.0 }),
+        Value,
+        "the influence coefficients are…re than distant ones",
+    );
+    let huge = Grid::square(1 << 20, 1.0).unwrap();
+    t.row(
+        "from_coefficients",
+        InfluenceKernel::from_coefficients(&huge, |_, _| 1.0),
+        Memory,
+        "a kernel of coefficients needs…and Settings::window",
+    );
+    t.row(
+        "workspace",
+        InfluenceKernel::half_space(&huge).unwrap().workspace(),
+        Memory,
+        "the workspace of a kernel needs… and Settings::window",
+    );
+    for (thickness, nu, says) in [
+        (0.0, 0.3, "thickness of a layer = 0.0 → finite, > 0 and at most 1e300 m"),
+        (f64::NAN, 0.3, "thickness of a layer = NaN → finite, > 0 and at most 1e300 m"),
+        (2.0e300, 0.3, "thickness of a layer = 2e300 → finite, > 0 and at most 1e300 m"),
+        (1.0, -1.0, "Poisson's ratio of a layer = -1.0 → in (-1, 0.5]"),
+        (1.0, 0.51, "Poisson's ratio of a layer = 0.51 → in (-1, 0.5]"),
+    ] {
+        t.row("Layer::frictionless_on_rigid", Layer::frictionless_on_rigid(thickness, nu), Value, says);
+    }
+
+    let path = Temporary::file("clauses");
+    let resume = |path: &std::path::Path| contact(plain).resume(path);
+    t.row("resume", resume(&path.join("none")), File, "no run can be resumed from …: it cannot be read: …");
+    std::fs::write(&path, "no checkpoint").unwrap();
+    t.row("resume", resume(&path), File, "no run can be resumed from …: not a… magic number is missing");
+    pressed().save(&path).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    for (change, says) in [
+        (8, "no run can be resumed from… update viscocontact"),
+        (bytes.len() - 3, "no run can be resumed from…s …, but should be …"),
+    ] {
+        let mut changed = bytes.clone();
+        changed[change] ^= 99;
+        std::fs::write(&path, changed).unwrap();
+        t.row("resume", resume(&path), File, says);
+    }
+    std::fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
+    t.row("resume", resume(&path), File, "no run can be resumed from…truncated or damaged");
+    std::fs::write(&path, &bytes).unwrap();
+    t.row(
+        "resume",
+        sphere_on(grid(), zener(), plain).resume(&path),
+        File,
+        "no run can be resumed from…tact as it was saved",
+    );
+    t.row(
+        "resume",
+        shared(|mut contact| contact.resume(&path)),
+        File,
+        "no run can be resumed from…tact as it was saved",
+    );
+
+    // a ball that rolls without ever touching, and one whose motion is not steady within its track
+    let steady = |load: Load, cells: usize| {
+        let mut contact = sphere_on(Grid::new([64, 32], [8.0e-3, 4.0e-3]).unwrap(), zener(), over);
+        let motion = SteadyMotion::new(Axis::X1, 0.05, load).with_max_distance(Some(cells as f64 * 0.125e-3));
+        let mut run = contact.toward_steady(motion).unwrap();
+        loop {
+            match run.next_step() {
+                Ok(Some(_)) => {}
+                Ok(None) => break Ok(()),
+                Err(error) => break Err(error),
+            }
+        }
+    };
+    t.row(
+        "SteadyRun::next_step",
+        steady(Load::force(0.0), 100),
+        Value,
+        "at t = 0.0025 s the load brings…r a greater approach",
+    );
+    t.row(
+        "SteadyRun::next_step",
+        steady(Load::force(0.1), 8),
+        Convergence,
+        "no steady state within 1e-3 after…has no steady state",
+    );
+    t.row(
+        "SteadyRun::next_step",
+        steady(Load::force(10.0), 8),
+        Value,
+        "at t = 0.0025 s the contact… the body ends there",
+    );
+
+    let steel = || Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
+    let bulk = Material::elastic_bulk(Zener::with_time(1.0e6, 0.5e6, 0.1).unwrap(), 1.0e9).unwrap();
+    let of_bulk = Layer::bonded_to_material(1.0e-3, &bulk, &steel());
+    t.row("Layer::bonded_to_material", of_bulk, Unsupported, "a layer or base whose…Material::constant_poisson");
+    let soft = || Material::incompressible(Elastic::new(1.0).unwrap());
+    let by_function = || Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));
+    for (thickness, layer, base, says) in [
+        (0.0, zener(), steel(), "thickness of a layer = 0.0 → finite, > 0 and at most 1e300 m"),
+        (1.0e-3, maxwell(), steel(), "fluidity of a layer or its base = 2.5e-7 → 0:… an equilibrium modulus"),
+        (1.0e-3, zener(), maxwell(), "fluidity of a layer or its base = 2.5e-7 → 0:… an equilibrium modulus"),
+        (1.0e-3, by_function(), steel(), "a layer on a base needs an exponential…or Material::fitted"),
+        (1.0e-3, soft(), steel(), "shear modulus of a layer over that of its… → in [1e-6, 1e6]"),
+    ] {
+        t.row("Layer::bonded_to_material", Layer::bonded_to_material(thickness, &layer, &base), Value, says);
+    }
+    let on = |kernel: InfluenceKernel, base: Material| {
+        builder_on(kernel.grid().clone(), zener()).kernel(kernel).build_sliding_on(base).map(drop)
+    };
+    let stiff = || Material::constant_poisson(Elastic::new(1.0e9).unwrap(), 0.3).unwrap();
+    let made = |thickness: f64| Layer::bonded_to_material(thickness, &zener(), &stiff()).unwrap();
+    let loaded = |thickness: f64| InfluenceKernel::layer(&grid(), made(thickness)).unwrap();
+    t.row(
+        "build_sliding_on",
+        on(InfluenceKernel::half_space(&grid()).unwrap(), stiff()),
+        Unsupported,
+        "a base below another body than a layer is not…l",
+    );
+    let softer = Material::constant_poisson(Elastic::new(1.0e8).unwrap(), 0.3).unwrap();
+    t.row("build_sliding_on", on(loaded(1.0e-3), softer), Unsupported, "a base of another ratio than the layer's is…l");
+    t.row(
+        "build_sliding_on",
+        on(loaded(1.0e-3), maxwell()),
+        Value,
+        "fluidity of a layer or its base = 2.5e-7 → 0:… an equilibrium modulus",
+    );
+    t.row(
+        "build_sliding_on",
+        on(loaded(0.05e-3), stiff()),
+        Unsupported,
+        "a layer so thin on a base of its…or a periodic body",
+    );
+    t.row(
+        "build_sliding_on",
+        on(loaded(1.0e-3), by_function()),
+        Value,
+        "a layer on a base needs an exponential…or Material::fitted",
+    );
+}
