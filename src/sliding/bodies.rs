@@ -123,8 +123,8 @@ impl Bodies {
             let rows = real_rows(aside, n, part);
             rows.chunks_exact(n).map(|row| distances.clone().map(|m| row[m % n]).collect()).collect()
         };
-        // the symmetric part of −∂u/∂x
-        let lost = |i: usize, k: usize| Complex64::from(waves[k] * part(i, k).im);
+        // the symmetric part of −∂u/∂x: the shortest wave moves both ways, and loses by either
+        let lost = |i: usize, k: usize| Complex64::from(waves[k] * table[i][k].im / n as f64);
         Coefficients { response: along(&part, 1..2 * n), loss: along(&lost, 0..n) }
     }
 
