@@ -1,6 +1,7 @@
 //! What a motion passes over: influences of cells and waves, and how they creep.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use num_complex::Complex64;
@@ -94,7 +95,7 @@ impl Bodies {
             let reach = ENDLESS * grid.lengths()[axis];
             reaches.push((self.creep.fluidity() * reach / speed, reach));
         }
-        let mut coefficients = Coefficients::zero(rows.len(), 2 * n - 1);
+        let mut coefficients = Coefficients::zero(rows.len(), n);
         rows.iter().enumerate().for_each(|(j, row)| coefficients.add(j, row, &reaches, &rules));
         if let Some(layer) = &self.layer {
             layer.add_along((axis, speed), &mut coefficients, &rules);
@@ -118,11 +119,13 @@ impl Bodies {
         };
         // the shortest wave is its own mirror image
         let part = |i: usize, k: usize| if 2 * k == n { table[i][k].re.into() } else { table[i][k] } / n as f64;
-        let along = |part: &dyn Fn(usize, usize) -> Complex64| {
+        let along = |part: &dyn Fn(usize, usize) -> Complex64, distances: Range<usize>| {
             let rows = real_rows(aside, n, part);
-            rows.chunks_exact(n).map(|row| (1..2 * n).map(|m| row[m % n]).collect()).collect()
+            rows.chunks_exact(n).map(|row| distances.clone().map(|m| row[m % n]).collect()).collect()
         };
-        Coefficients { response: along(&part), loss: along(&|i, k| -Complex64::I * waves[k] * part(i, k)) }
+        // the symmetric part of −∂u/∂x: the shortest wave moves both ways, and loses by either
+        let lost = |i: usize, k: usize| Complex64::from(waves[k] * table[i][k].im / n as f64);
+        Coefficients { response: along(&part, 1..2 * n), loss: along(&lost, 0..n) }
     }
 
     /// What the approach of a body that flows exceeds the one after a way of the length of the grid by, under a force:

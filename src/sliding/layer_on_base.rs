@@ -9,6 +9,7 @@
 //! q = 0, vanishes as e^(−2qh), and is integrated on panels that double from zero on.
 
 use std::f64::consts::FRAC_1_PI;
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -167,23 +168,21 @@ impl LayerOnBase {
             let to_rows = to_cells(&aside, m, side);
             rest = rest.map(|part| &part * to_rows.transpose());
         }
-        let sum = |wave: fn(f64) -> f64, of_q: fn(f64) -> f64, part: &Mat<f64>| {
-            let to_cells = Mat::from_fn(2 * n - 1, along.len(), |i, k| {
-                let ((q, weight), x) = (along[k], (i as f64 - (n - 1) as f64) * d);
+        let sum = |cells: Range<isize>, wave: fn(f64) -> f64, of_q: fn(f64) -> f64, part: &Mat<f64>| {
+            let to_cells = Mat::from_fn(cells.len(), along.len(), |i, k| {
+                let ((q, weight), x) = (along[k], (i as isize + cells.start) as f64 * d);
                 FRAC_1_PI * weight * d * of_cell(q, d) * of_q(q) * wave(q * x)
             });
             &to_cells * part
         };
-        let [re, im] = &rest;
-        let response = sum(f64::cos, |_| 1.0, re) - sum(f64::sin, |_| 1.0, im);
-        let loss = sum(f64::cos, |q| q, im) + sum(f64::sin, |q| q, re);
+        let (end, [re, im]) = (n as isize, &rest);
+        let response = sum(1 - end..end, f64::cos, |_| 1.0, re) - sum(1 - end..end, f64::sin, |_| 1.0, im);
+        let loss = sum(0..end, f64::cos, |q| q, im);
         let at_datum = self.at_datum(axis);
         for j in 0..out.response.len() {
             let at_datum = if lines && j == 0 { at_datum } else { 0.0 };
-            for i in 0..2 * n - 1 {
-                out.response[j][i] += response[(i, j)] - at_datum;
-                out.loss[j][i] += loss[(i, j)];
-            }
+            out.response[j].iter_mut().enumerate().for_each(|(i, own)| *own += response[(i, j)] - at_datum);
+            out.loss[j].iter_mut().enumerate().for_each(|(i, own)| *own += loss[(i, j)]);
         }
     }
 

@@ -28,22 +28,23 @@ pub(super) struct MovingBodies {
     pub(super) transforms: usize,
 }
 
-/// Influence coefficients of bodies along a motion, at the distances −(n − 1) to n − 1 in each row aside of the motion.
+/// Influence coefficients of bodies along a motion, in each row aside of it.
 #[derive(Debug, Clone)]
 pub(super) struct Coefficients {
-    /// u under a unit pressure on a cell.
+    /// u under a unit pressure on a cell, at the distances −(n − 1) to n − 1.
     pub(super) response: Vec<Vec<f64>>,
-    /// −∂u/∂x, of which the symmetric part resists.
+    /// The symmetric part of −∂u/∂x, which resists, at the distances 0 to n − 1. The other part is larger by many orders of
+    /// magnitude where the motion is slow.
     pub(super) loss: Vec<Vec<f64>>,
 }
 
 impl Coefficients {
-    pub(super) fn zero(rows: usize, count: usize) -> Coefficients {
-        let zero = vec![vec![0.0; count]; rows];
-        Coefficients { response: zero.clone(), loss: zero }
+    pub(super) fn zero(rows: usize, cells: usize) -> Coefficients {
+        let of = |count: usize| vec![vec![0.0; count]; rows];
+        Coefficients { response: of(2 * cells - 1), loss: of(cells) }
     }
 
-    /// Adds the influence of a row, of compliances with their reaches l \[m\]: C K where l is 0, else C f with ∂f/∂x = (f − K)/l.
+    /// Adds the influence of a row, of compliances with their reaches l \[m\]: C K where l is 0, else C f, which resists by C S.
     pub(super) fn add(&mut self, j: usize, row: &Row, creep: &[(f64, f64)], rules: &Rules) {
         let (at_once, moving): (Vec<_>, Vec<_>) = creep.iter().partition(|(_, reach)| *reach == 0.0);
         let at_once: f64 = at_once.iter().map(|(compliance, _)| compliance).sum();
@@ -52,10 +53,13 @@ impl Coefficients {
         let terms = row.terms(&reaches, rules);
         for (i, elastic) in row.elastic().enumerate() {
             self.response[j][i] += at_once * elastic;
-            for ((compliance, _), (f, reach)) in moving.iter().zip(terms.iter().zip(&reaches)) {
+            for ((compliance, _), f) in moving.iter().zip(&terms) {
                 self.response[j][i] += compliance * f[i];
-                self.loss[j][i] += compliance * ((elastic - f[i]) / reach);
             }
+        }
+        for ((compliance, _), (f, reach)) in moving.iter().zip(terms.iter().zip(&reaches)) {
+            let losses = row.losses(*reach, f, rules);
+            self.loss[j].iter_mut().zip(losses).for_each(|(own, loss)| *own += compliance * loss);
         }
     }
 
@@ -104,11 +108,12 @@ impl MovingBodies {
         (axis, backward): (usize, bool),
         of: &Coefficients,
     ) -> MovingBodies {
-        let table = |rows: &[Vec<f64>], at: [isize; 2]| {
+        let response = |at: [isize; 2]| {
             // towards lower indices the row is mirrored
             let along = if backward { -at[axis] } else { at[axis] };
-            rows[at[1 - axis].unsigned_abs()][(cells[axis] as isize - 1 + along) as usize]
+            of.response[at[1 - axis].unsigned_abs()][(cells[axis] as isize - 1 + along) as usize]
         };
+        let loss = |at: [isize; 2]| of.loss[at[1 - axis].unsigned_abs()][at[axis].unsigned_abs()];
         let periods = [0, 1].map(|axis| match cells[axis] {
             n if periodic[axis] || n == 1 => n,
             n => fast_length(2 * n - 1),
@@ -118,11 +123,11 @@ impl MovingBodies {
             (k, n) if k < n as isize => Some(k),
             (k, n) => Some(k - periods[axis] as isize).filter(|k| k.unsigned_abs() < n),
         };
-        let padded = |rows: &[Vec<f64>]| {
-            let at = |[i, j]: [usize; 2]| Some(table(rows, [distance(0, i)?, distance(1, j)?]));
+        let padded = |table: &dyn Fn([isize; 2]) -> f64| {
+            let at = |[i, j]: [usize; 2]| Some(table([distance(0, i)?, distance(1, j)?]));
             Multiplier::of_values(cells, periods, &|place| at(place).unwrap_or(0.0))
         };
-        let (response, lost) = (padded(&of.response), padded(&of.loss).factors);
+        let (padded_response, lost) = (padded(&response), padded(&loss).factors);
         let sign = if backward { -1.0 } else { 1.0 };
         let mut loss = [vec![0.0; lost.len()], vec![0.0; lost.len()]];
         loss[axis] = lost.iter().map(|factor| sign * factor.re).collect();
@@ -132,11 +137,11 @@ impl MovingBodies {
             [(k as isize, 1.0 - part), (k as isize - n as isize, part)].into_iter().filter(|(_, part)| *part > 0.0)
         };
         let mut inverse = Multiplier::of_values(cells, cells, &|[i, j]| {
-            let row = |k: isize| parts(1, j).map(|(l, part)| part * table(&of.response, [k, l])).sum::<f64>();
+            let row = |k: isize| parts(1, j).map(|(l, part)| part * response([k, l])).sum::<f64>();
             parts(0, i).map(|(k, part)| part * row(k)).sum()
         });
         inverse.factors.iter_mut().for_each(|factor| *factor = factor.inv());
-        MovingBodies { response, inverse, loss, transforms: 0 }
+        MovingBodies { response: padded_response, inverse, loss, transforms: 0 }
     }
 
     /// Bodies with this part of the skew-symmetric response; without any the pressure moves both ways at once.
