@@ -8,7 +8,7 @@ use crate::events;
 use crate::hereditary::{StepContext, TimeError};
 use crate::run::driven::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
-use crate::run::load_within::stays_away;
+use crate::run::load_within::approach;
 use crate::run::outlook::excess;
 use crate::run::step_control::{Proposal, StepControl};
 
@@ -35,7 +35,8 @@ pub(super) fn adaptive_step(
     let tolerance = control.solver_tolerance(scene);
     let touch =
         if state.is_undisturbed() { control.scale.first_touch(history, now, course.stop) } else { f64::INFINITY };
-    let (kink, stop) = (course.kink.min(touch), course.stop.min(touch));
+    let (kink, mut stop) = (course.kink.min(touch), course.stop.min(touch));
+    let is_apart = !state.attracts && state.current.contact_cells == 0;
     let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
     loop {
         let ViscoelasticContact { scene, computation, .. } = &*contact;
@@ -47,8 +48,14 @@ pub(super) fn adaptive_step(
         let mut step = contact.request(time, time - now, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         let dt = step.interval.dt;
+        let is_driven = [history.at(now), loads[0]].iter().all(|load| approach(load).is_some());
+        let parted = is_apart && is_driven;
+        // what happens at a top of the load within the step would not show at its end
+        if parted && let Some(top) = control.scale.first_top(history, now, time) {
+            stop = top;
+            continue;
+        }
         let straying = control.straying(scene, state, history, time)?;
-        let parted = !state.attracts && state.current.contact_cells == 0 && stays_away(history, now, time);
         if straying > control.tolerance && !parted {
             control.judge(proposal, dt, straying);
             continue;
@@ -76,6 +83,12 @@ pub(super) fn adaptive_step(
                 }
             };
         let computed = attempt.computation(&contact.computation);
+        let parts = is_driven && !computed.state.attracts && !is_apart && !computed.presses();
+        if parts && let Some(top) = control.scale.first_top(history, now, time) {
+            add_work(&mut wasted, computed);
+            (stop, control.rejected) = (top, control.rejected + 1);
+            continue;
+        }
         // a jump takes no time: shorter steps would show nothing but its moment
         let jumps = contact.scene.attraction.is_some()
             && time - now <= outlook.resolution
@@ -147,7 +160,7 @@ fn try_step(
     let mut error = error_in_time(scene, computed, step, outlook);
     computed.state.region.rows().intact()?;
     // the path of bodies that stay apart does not matter
-    if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
+    if !parted || computed.presses() {
         error.relative = error.relative.max(straying);
     }
     let excess = excess(scene, computed, step.interval.dt);

@@ -11,8 +11,8 @@ const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 
 impl StepControl {
     /// Greatest deviation of the load in a step to `time` from the polynomial through its last nodes and the load
-    /// at `time`, relative to the load or to a fraction of the greatest load of the run. Rejects invalid loads of the
-    /// history.
+    /// at `time`, relative to the load or to a fraction of the greatest load of the run: at uneven positions, and at its
+    /// tops. Rejects invalid loads of the history.
     pub(super) fn straying(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, time: f64) -> Result<f64> {
         let (clock, now, attracts) = (&state.clock, state.clock.time, self.scale.attracts);
         let end = history.checked_before(time, attracts)?;
@@ -22,9 +22,13 @@ impl StepControl {
         let nodes = &nodes[..=known];
         let start = nodes[known.min(1)].1;
         let scale = self.scale.of_load(&start, &end);
+        let tops = self.scale.tops_within(now, time);
         let mut most = 0.0_f64;
-        for share in SHARES {
-            let between = now + share * (time - now);
+        for (k, between) in SHARES.map(|share| now + share * (time - now)).into_iter().chain(tops).enumerate() {
+            // a step that is too long already need not be looked at where the load has its tops
+            if k >= SHARES.len() && most > self.tolerance {
+                break;
+            }
             let load = history.checked_at(between, attracts)?;
             let like = load.is_like(&start) && load.is_like(&end);
             let off = || Ok::<_, Error>(load.deviation(scene.reduced_time(clock, between)?, nodes, scale));
@@ -34,16 +38,13 @@ impl StepControl {
     }
 }
 
-/// Whether a body of given approach comes no nearer between `now` and `time` than at these two times.
-pub(super) fn stays_away(history: &dyn LoadHistory, now: f64, time: f64) -> bool {
-    let approach = |load: Load| match load {
+/// The prescribed approach of an upright body, or of the far end of its spring: of a body that is apart, where it is.
+pub(super) fn approach(load: &Load) -> Option<f64> {
+    match *load {
         Load::Approach { approach: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] }
-        | Load::Spring { drive: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)], .. } => at,
-        _ => f64::NAN,
-    };
-    let nearest = approach(history.at(now)).max(approach(history.before(time)));
-    // a load of another kind is nowhere
-    !nearest.is_nan() && SHARES.iter().all(|share| approach(history.at(now + share * (time - now))) <= nearest)
+        | Load::Spring { drive: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)], .. } => Some(at),
+        _ => None,
+    }
 }
 
 /// Whether the load is the same from `now` to `time`, and for as long after it.

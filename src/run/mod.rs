@@ -24,12 +24,14 @@ mod load_within;
 mod outlook;
 mod past_steps;
 pub(crate) mod progress;
+mod rises;
 mod run_scale;
 mod samples;
 #[cfg(feature = "checkpoint")]
 mod saving;
 mod steady;
 mod step_control;
+mod tops;
 
 pub use crate::ascending::Times;
 pub use driven::FieldReport;

@@ -6,6 +6,9 @@ use crate::error::{Error, Result, within};
 use crate::hereditary::Meeting;
 use crate::load::{Load, LoadHistory};
 use crate::quadrature::bisect;
+use crate::run::load_within::approach;
+use crate::run::rises::{Rise, rises};
+use crate::run::tops::{tops_of_run, tops_of_step};
 
 /// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
 const SMALL: f64 = 0.05;
@@ -28,8 +31,8 @@ const SECANT: f64 = 2.0 / 3.0;
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RunScale {
-    /// Whether the history of the run has been looked at.
-    pub(super) is_known: bool,
+    /// The time up to which the history of the run has been looked at; `None` before that.
+    known_until: Option<f64>,
     /// Approach at first touch.
     touch: f64,
     /// Whether bodies pull at each other, so that heights above first touch are loads, too.
@@ -44,6 +47,8 @@ pub(super) struct RunScale {
     width: f64,
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
+    /// Times of the tops of the load, between its corners, ascending.
+    tops: Vec<f64>,
     /// Rises of the history, ascending in time.
     rises: Vec<Rise>,
     /// Times at which a given approach or a spring follows a given force, ascending.
@@ -52,13 +57,13 @@ pub(super) struct RunScale {
 
 impl RunScale {
     /// The scale of a run from `state` along a history to the time `until`. Rejects invalid loads of the history.
-    /// Finds how the bodies respond where they meet, for adaptive steps of such a tolerance.
+    /// Finds how the bodies respond where they meet, to within such a tolerance of the steps.
     pub(super) fn new(
         scene: &Scene,
         state: &State,
         history: &dyn LoadHistory,
         until: f64,
-        tolerance: Option<f64>,
+        tolerance: f64,
     ) -> Result<RunScale> {
         let touch = state.indenter.first_touch()[0].approach;
         let now = state.clock.time;
@@ -68,12 +73,13 @@ impl RunScale {
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
-        let mut scale = RunScale { is_known: true, touch, attracts: state.attracts, ..RunScale::default() };
+        let mut scale = RunScale { known_until: Some(until), touch, attracts: state.attracts, ..RunScale::default() };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
-        let corners = history.breakpoints(now).take_while(|&next| next <= until);
-        let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
+        let corners: Vec<f64> = history.breakpoints(now).take_while(|&next| next <= until).take(BREAKPOINTS).collect();
+        scale.tops = tops_of_run(history, [now, until], &corners, scene.attraction.is_some())?;
+        let mut times: Vec<f64> = equal.chain(corners).chain(scale.tops.iter().copied()).collect();
         times.sort_by(f64::total_cmp);
         scale.rises = rises(scene, history, touch, &times)?;
         let mut times: Vec<f64> = times.into_iter().chain(decades).collect();
@@ -94,25 +100,38 @@ impl RunScale {
             let compliance = compliance_at(*time)? + SECANT * scale.give(load);
             scale.stress = scale.stress.max(scale.magnitude(load) / compliance);
         }
-        let large_enough = |size: f64| size == 0.0 || size >= LEAST || tolerance.is_none();
+        let large_enough = |size: f64| size == 0.0 || size >= LEAST;
         let allowed = "0, or 1e-290 at least, for adaptive steps: choose other units, or Stepping::fixed";
         within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
         within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
         if scale.force > 0.0 && compliance > 0.0 {
             scale.depth_over_compliance = resting_depth(scene, state, scale.force * compliance) / compliance;
         }
-        if let Some(tolerance) = tolerance {
-            let most = tolerance * scale.stress;
-            scale.rises.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
-        }
+        let most = tolerance * scale.stress;
+        scale.rises.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
         Ok(scale)
+    }
+
+    /// Whether the history has been looked at as far as a run goes.
+    pub(super) fn knows(&self, until: f64) -> bool {
+        self.known_until.is_some_and(|known| known >= until)
+    }
+
+    /// The scale of a run that goes on: what has acted so far counts.
+    pub(super) fn after(self, before: &RunScale) -> RunScale {
+        let [force, depth] = [self.force.max(before.force), self.depth.max(before.depth)];
+        let depth_over_compliance = self.depth_over_compliance.max(before.depth_over_compliance);
+        RunScale { force, depth, depth_over_compliance, stress: self.stress.max(before.stress), ..self }
     }
 
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         let sizes = [self.force, self.depth, self.stress, self.width, self.depth_over_compliance];
-        !self.touch.is_nan() && self.rises.iter().all(Rise::fits) && sizes.iter().all(|&size| size >= 0.0)
+        !self.touch.is_nan()
+            && self.tops.is_sorted()
+            && self.rises.iter().all(Rise::fits)
+            && sizes.iter().all(|&size| size >= 0.0)
     }
 
     /// Includes a load that acts.
@@ -226,6 +245,21 @@ impl RunScale {
         })
     }
 
+    /// The tops of the load between `now` and `time`.
+    pub(super) fn tops_within(&self, now: f64, time: f64) -> impl Iterator<Item = f64> {
+        let first = self.tops.partition_point(|&top| top <= now);
+        self.tops[first..].iter().copied().take_while(move |&top| top < time)
+    }
+
+    /// The first top of a prescribed approach, or of the far end of a spring, between `now` and `time` at which an upright body is below the
+    /// undeformed surface. Wherever the surface is by then, a body that is still above it there was so ever since `now`: surfaces that nothing
+    /// presses recover, and rise.
+    pub(super) fn first_top(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Option<f64> {
+        let is_below = |&top: &f64| approach(&history.at(top)).is_some_and(|approach| approach > self.touch);
+        let seen = tops_of_step(history, [now, time]).into_iter().find(is_below);
+        self.tops_within(now, time).find(is_below).into_iter().chain(seen).reduce(f64::min)
+    }
+
     /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies into contact.
     /// The displacement grows from this time on, as after a corner. Infinite if there is none.
     pub(super) fn first_touch(&self, history: &dyn LoadHistory, now: f64, stop: f64) -> f64 {
@@ -236,70 +270,10 @@ impl RunScale {
         if matches!(history.at(now), Load::Force { .. }) || !apart(now) || !stop.is_finite() {
             return f64::INFINITY;
         }
-        let part = |k: i32| now + (stop - now) * f64::from(k) / f64::from(EQUAL_PARTS);
-        let Some(k) = (1..=EQUAL_PARTS).find(|&k| !apart(part(k))) else { return f64::INFINITY };
-        bisect(part(k - 1), part(k), 64, apart)[1]
+        let parts = (1..=EQUAL_PARTS).map(|k| now + (stop - now) * f64::from(k) / f64::from(EQUAL_PARTS));
+        let mut times: Vec<f64> = parts.chain(self.tops_within(now, stop)).collect();
+        times.sort_by(f64::total_cmp);
+        let Some(k) = times.iter().position(|&time| !apart(time)) else { return f64::INFINITY };
+        bisect(if k == 0 { now } else { times[k - 1] }, times[k], 64, apart)[1]
     }
-}
-
-/// A rise of a prescribed approach, or of a driven spring, in which a body meets the surface.
-#[derive(Debug, Clone, Copy)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-struct Rise {
-    end: f64,
-    /// Depth below first touch at its end.
-    depth: f64,
-    /// Depth per second of reduced time; infinite for a jump.
-    rate: f64,
-    /// Whether the approach has receded before: the surface is still recovering.
-    again: bool,
-    /// The response of v to an error of u when they meet, if the approach is given.
-    stiffness: f64,
-    /// Compliance of the spring \[m/N\]; 0 for a given approach.
-    spring: f64,
-}
-
-/// Fixed-point iterations for the error of u that changes v by the most allowed: compliances grow less than linearly.
-const ITERATIONS: u32 = 16;
-
-impl Rise {
-    /// Whether a run can continue with these values; a damaged file may hold any.
-    #[cfg(feature = "checkpoint")]
-    fn fits(&self) -> bool {
-        self.depth >= 0.0 && self.rate > 0.0 && self.stiffness >= 0.0 && self.spring >= 0.0
-    }
-
-    /// A surface that is off by δ is met too early or too late by δ/rate, in which time bodies respond by 1/C(δ/rate). Finds this
-    /// response for the δ that changes v by `most`.
-    fn find_stiffness(&mut self, scene: &Scene, most: f64) {
-        let compliance = |off: f64| scene.material.contact_compliance(off / self.rate);
-        let off = (0..ITERATIONS).fold(self.depth, |off, _| most * compliance(off));
-        self.stiffness = 1.0 / compliance(off);
-    }
-}
-
-/// The rises of a history at these ascending times; first touch is at the approach `touch`.
-fn rises(scene: &Scene, history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Vec<Rise>> {
-    let (mut rises, mut again, mut last) = (Vec::new(), false, None);
-    for &time in times {
-        for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
-            let (approach, spring) = match load(history, time, scene.attraction.is_some())? {
-                Load::Approach { approach: depth, .. } => (depth, 0.0),
-                Load::Spring { stiffness, drive: depth, .. } => (depth, 1.0 / stiffness),
-                Load::Force { .. } => {
-                    // a force may have receded, too
-                    (again, last) = (true, None);
-                    continue;
-                }
-            };
-            if let Some((start, before)) = last.replace((time, approach)) {
-                again |= approach < before;
-                if approach > before.max(touch) {
-                    let rate = (approach - before) / scene.reduced_length([start, time], time - start)?;
-                    rises.push(Rise { end: time, depth: approach - touch, rate, again, stiffness: 0.0, spring });
-                }
-            }
-        }
-    }
-    Ok(rises)
 }

@@ -93,7 +93,7 @@ impl StepControl {
             && self.scale.fits()
     }
 
-    /// Looks at the whole history, once.
+    /// Looks at the whole history, once, for adaptive steps. Given steps look at no load but their own.
     pub(super) fn look_ahead(
         &mut self,
         scene: &Scene,
@@ -101,10 +101,13 @@ impl StepControl {
         history: &dyn LoadHistory,
         until: f64,
     ) -> Result<()> {
-        if !self.scale.is_known {
-            let tolerance = Some(self.tolerance).filter(|tolerance| *tolerance > 0.0);
-            self.scale = RunScale::new(scene, state, history, until, tolerance)?;
-            self.past = PastSteps::none(&scene.material)?;
+        if self.tolerance > 0.0 && !self.scale.knows(until) {
+            let is_new = !self.scale.knows(f64::NEG_INFINITY);
+            let scale = RunScale::new(scene, state, history, until, self.tolerance)?;
+            self.scale = scale.after(&self.scale);
+            if is_new {
+                self.past = PastSteps::none(&scene.material)?;
+            }
         }
         Ok(())
     }

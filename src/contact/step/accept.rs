@@ -15,6 +15,11 @@ impl Computation {
         (region.rows().count(pressure.iter().filter(|&&p| p > 0.0).count()), region.reach(pressure))
     }
 
+    /// Whether any cell is pressed in the trial, of all ranks.
+    pub(crate) fn presses(&self) -> bool {
+        self.state.region.is_positive_anywhere(&self.trial.solution.pressure)
+    }
+
     /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and `sizes` are the
     /// means of displacement and v in contact.
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {

@@ -1,0 +1,56 @@
+//! Times at which a load is greater than just before and just after.
+
+use crate::error::Result;
+use crate::load::LoadHistory;
+
+/// Number of equal parts of a run, at whose ends its load is looked at before the first step: a load that acts for a shorter time
+/// is found only if its history names a breakpoint there.
+const PARTS_OF_RUN: u32 = 4096;
+/// Number of equal parts of a step, for runs whose parts are longer than what happens in them.
+const PARTS_OF_STEP: u32 = 64;
+/// Loads that differ by less than this part of them are the same but for rounding.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// The tops of a load over a whole run, ascending. Rejects invalid loads.
+pub(super) fn tops_of_run(
+    history: &dyn LoadHistory,
+    ends: [f64; 2],
+    corners: &[f64],
+    attracts: bool,
+) -> Result<Vec<f64>> {
+    let load = |time: f64| Ok(history.checked_at(time, attracts)?.main());
+    let samples = sampled(ends, PARTS_OF_RUN, load).collect::<Result<Vec<_>>>()?;
+    // steps end at corners anyway
+    let named = |top: &f64| {
+        let part = (ends[1] - ends[0]) / f64::from(PARTS_OF_RUN);
+        let after = corners.partition_point(|&corner| corner < top - part);
+        corners.get(after).is_some_and(|&corner| corner <= top + part)
+    };
+    Ok(tops(&samples).filter(|top| !named(top)).collect())
+}
+
+/// The tops of a load within a step, as equal parts of the step show, ascending.
+pub(super) fn tops_of_step(history: &dyn LoadHistory, ends: [f64; 2]) -> Vec<f64> {
+    let samples: Vec<_> =
+        sampled(ends, PARTS_OF_STEP, |time| Ok(history.at(time).main())).filter_map(Result::ok).collect();
+    tops(&samples).collect()
+}
+
+fn sampled(
+    [from, to]: [f64; 2],
+    parts: u32,
+    load: impl Fn(f64) -> Result<f64>,
+) -> impl Iterator<Item = Result<(f64, f64)>> {
+    let time = move |k: u32| from + (to - from) * f64::from(k) / f64::from(parts);
+    (0..=parts).map(move |k| Ok((time(k), load(time(k))?)))
+}
+
+/// The tops of the parabolas through each three samples whose middle one is the greatest.
+fn tops(samples: &[(f64, f64)]) -> impl Iterator<Item = f64> {
+    samples.windows(3).filter_map(|three| {
+        let [(start, before), (time, load), (end, after)] = three else { return None };
+        let (rise, fall) = (load - before, load - after);
+        let is_top = rise > ROUNDING * load.abs() && fall >= 0.0;
+        is_top.then(|| time + 0.25 * (end - start) * (rise - fall) / (rise + fall))
+    })
+}
