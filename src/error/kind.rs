@@ -54,7 +54,7 @@ impl Error {
             Error::States(StatesError::Beyond { .. } | StatesError::Below { .. }) => ErrorKind::Value,
             Error::NotCovered { .. }
             | Error::Kernel(KernelError::NoStress { .. })
-            | Error::Material(MaterialError::ChangingPoisson { .. })
+            | Error::Material(MaterialError::ChangingPoisson { .. } | MaterialError::VerticalFactors { .. })
             | Error::States(_)
             | Error::Step(StepError::TiltOfPeriodic { .. }) => ErrorKind::Unsupported,
             _ => ErrorKind::Value,

@@ -7,6 +7,7 @@ mod refusals;
 mod sparse_tables;
 mod spectra;
 mod tension;
+mod vertical;
 
 use viscocontact::rheology::{CreepSeries, Experiment, Measurements, RelaxationSpectrum};
 

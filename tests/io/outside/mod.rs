@@ -2,6 +2,7 @@
 
 mod limits;
 mod others;
+mod silent;
 mod surfaces;
 
 use viscocontact::Error;
@@ -59,7 +60,7 @@ const WITHOUT_NUMBER: Warnings = Warnings::NEAR_EDGE
 
 /// The number of a warning, in the fields of its report.
 fn number(warning: Warnings, report: &StepReport) -> Option<f64> {
-    let Figures { max_slope, compression, cells_in_wave, periods, modulus, touch, .. } = report.figures;
+    let Figures { max_slope, compression, cells_across, cells_in_wave, periods, modulus, touch, .. } = report.figures;
     match warning {
         Warnings::STEEP => max_slope,
         Warnings::DEEP => compression,
@@ -68,7 +69,7 @@ fn number(warning: Warnings, report: &StepReport) -> Option<f64> {
         Warnings::MODULUS => modulus,
         Warnings::NO_CONTACT => touch,
         Warnings::LONG_STEP => report.time_error,
-        Warnings::FEW_CELLS => Some(report.contact_cells as f64),
+        Warnings::FEW_CELLS => cells_across,
         _ => None,
     }
 }

@@ -1,0 +1,200 @@
+//! Moduli that change with temperature beside the times: found in a master curve, carried to every temperature, and refused where they
+//! cannot be modelled. `VERTICAL_CURVES` random curves.
+
+use crate::common::{Draws, builder_of, builder_on, from_environment, sphere};
+use viscocontact::ErrorKind;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{
+    Experiment, Isotherm, MasterCurve, MaterialError, RelaxationSpectrum, TemperatureHistory, Tension, TimeTemperature,
+};
+use viscocontact::sliding::SlidingSweep;
+
+const REFERENCE: f64 = 300.0;
+
+/// A rubber with a relaxation time in each of sixteen decades.
+fn rubber(draws: &mut Draws) -> RelaxationSpectrum {
+    let slope = draws.between(0.25, 0.6);
+    let terms: Vec<(f64, f64)> = (-12..4)
+        .map(|decade| (1.0e6 * 10f64.powf(-slope * f64::from(decade)) * draws.between(0.7, 1.4), 10f64.powi(decade)))
+        .collect();
+    RelaxationSpectrum::new(1.0e6 * draws.scale(0.3, 3.0), 0.0, &terms).unwrap()
+}
+
+/// A law with moduli in proportion to the temperature, or as a table says.
+fn law(draws: &mut Draws) -> TimeTemperature {
+    let law = match draws.below(2) {
+        0 => TimeTemperature::wlf(draws.between(6.0, 12.0), draws.between(150.0, 220.0), REFERENCE),
+        _ => TimeTemperature::arrhenius(draws.scale(80.0e3, 150.0e3), REFERENCE),
+    };
+    if draws.chance(0.5) {
+        return law.unwrap().with_entropic_moduli();
+    }
+    let [cold, warm] = [0, 1].map(|_| draws.scale(0.75, 1.35));
+    law.unwrap().with_vertical_factors(&[(250.0, cold), (REFERENCE, 1.0), (360.0, warm)]).unwrap()
+}
+
+/// What an instrument measures of a body with such moduli and creep at a temperature, over four decades.
+fn isotherm(experiment: Experiment, body: &RelaxationSpectrum, law: &TimeTemperature, kelvin: f64) -> Isotherm {
+    let (slow, stiff) = (law.shift_factor(kelvin).unwrap(), law.vertical_factor(kelvin).unwrap());
+    let creep = body.creep();
+    let x = (-20..=20).map(|k| 10f64.powf(0.1 * f64::from(k)));
+    let measured = match experiment {
+        Experiment::Creep => {
+            Measurements::creep(&x.map(|t| (t, creep.compliance(t / slow) / stiff)).collect::<Vec<_>>())
+        }
+        Experiment::Relaxation => {
+            Measurements::relaxation(&x.map(|t| (t, stiff * body.modulus(t / slow))).collect::<Vec<_>>())
+        }
+        _ => {
+            let row = |w: f64| (w, stiff * body.storage_modulus(w * slow), stiff * body.loss_modulus(w * slow));
+            Measurements::dynamic(&x.map(row).collect::<Vec<_>>())
+        }
+    };
+    Isotherm::new(kelvin, measured.unwrap()).unwrap()
+}
+
+/// Random curves of known shifts: the factors that are found, and the creep at every temperature within the window measured there,
+/// by the curve's table, its own law and the law known before.
+#[test]
+fn the_creep_at_each_temperature_is_what_was_measured_there() {
+    let (mut worst, mut without, mut curves) = (0.0_f64, 0.0_f64, 0);
+    for number in 0..from_environment("VERTICAL_CURVES", 12) {
+        let mut draws = Draws::new(31 + number);
+        let (body, law) = (rubber(&mut draws), law(&mut draws));
+        let experiment = [Experiment::Creep, Experiment::Relaxation, Experiment::Dynamic][draws.below(3)];
+        let kelvins: Vec<f64> = (-3..=4).map(|k| REFERENCE + 11.0 * f64::from(k)).collect();
+        let isotherms = || kelvins.iter().map(|&kelvin| isotherm(experiment, &body, &law, kelvin)).collect::<Vec<_>>();
+        let found = MasterCurve::with_vertical_shifts(REFERENCE, isotherms()).unwrap();
+        let known = MasterCurve::with_law(&law, isotherms()).unwrap();
+        let own = if law.wlf_constants().is_some() { found.wlf() } else { found.arrhenius() }.unwrap();
+        assert!(own.has_vertical_factors() && found.shift_table().unwrap().has_vertical_factors());
+        let series = found.fit().unwrap();
+        for &kelvin in &kelvins {
+            let (slow, stiff) = (law.shift_factor(kelvin).unwrap(), law.vertical_factor(kelvin).unwrap());
+            let bodies: [Box<dyn Rheology>; 3] = [
+                Box::new(found.fit_at(kelvin).unwrap()),
+                Box::new(own.at(series.clone(), kelvin).unwrap()),
+                Box::new(law.at(known.fit().unwrap(), kelvin).unwrap()),
+            ];
+            for t in (-15..=15).map(|k| 10f64.powf(0.1 * f64::from(k))) {
+                let truth = body.creep().compliance(t / slow) / stiff;
+                for (k, shifted) in bodies.iter().enumerate() {
+                    let error = (shifted.creep_compliance(t) / truth - 1.0).abs();
+                    assert!(
+                        error < [0.04, 0.05, 0.02][k],
+                        "curve {number}, {experiment:?}, {kelvin} K, {t:e} s, body {k}: {error}"
+                    );
+                    worst = worst.max(error);
+                }
+                let plain = own.clone().without_vertical_factors().at(series.clone(), kelvin).unwrap();
+                without = without.max((plain.creep_compliance(t) / truth - 1.0).abs());
+            }
+        }
+        curves += 1;
+    }
+    println!("{curves} curves: creep off by at most {worst:.4}, without vertical factors by {without:.3}");
+    assert!(curves > 0 && worst > 0.0 && without > 5.0 * worst);
+}
+
+#[test]
+fn a_law_has_its_factors_at_every_temperature() {
+    let plain = TimeTemperature::wlf(8.61, 200.4, REFERENCE).unwrap();
+    let entropic = plain.clone().with_entropic_moduli();
+    let table = plain.clone().with_vertical_factors(&[(280.0, 280.0 / 300.0), (REFERENCE, 1.0), (330.0, 1.1)]).unwrap();
+    for kelvin in [280.0, 287.3, 300.0, 314.0, 330.0] {
+        assert_eq!(plain.vertical_factor(kelvin), Ok(1.0));
+        let factor = kelvin / REFERENCE;
+        assert!((entropic.vertical_factor(kelvin).unwrap() / factor - 1.0).abs() < 1e-15);
+        // a power of the temperature between two rows
+        assert!((table.vertical_factor(kelvin).unwrap() / factor - 1.0).abs() < 1e-14, "{kelvin}");
+    }
+    let outside = table.vertical_factor(340.0).unwrap_err();
+    assert!(outside.to_string().contains("TimeTemperature::extrapolated"), "{outside}");
+    assert!(table.at(Elastic::new(1.0e6).unwrap(), 340.0).is_err());
+    let beyond = table.clone().extrapolated().vertical_factor(340.0).unwrap();
+    assert!((beyond / (340.0 / REFERENCE) - 1.0).abs() < 1e-14);
+    assert!(plain.clone().with_vertical_factors(&[(280.0, 1.0), (330.0, 1.1)]).is_err(), "none at the reference");
+    assert!(plain.clone().with_vertical_factors(&[]).is_err());
+    assert_eq!(format!("{:?}", entropic.clone().without_vertical_factors()), format!("{plain:?}"));
+    assert_eq!(entropic.without_vertical_factors(), plain);
+
+    // C(t) of a material, in words too
+    let zener = || Zener::relaxing(4.0e6, 1.0e6, 0.5).unwrap();
+    let [cold, warm] = [REFERENCE, 330.0].map(|kelvin| Material::incompressible(table.at(zener(), kelvin).unwrap()));
+    assert!((cold.contact_compliance(0.0) / warm.contact_compliance(0.0) - 1.1).abs() < 1e-12);
+    assert!(warm.to_string().contains("1/C from 1.760e7 Pa to 4.400e6 Pa"), "{warm}");
+    let rod = Material::from_tension(Tension(table.at(zener(), 330.0).unwrap()), 0.5).unwrap();
+    assert!((rod.contact_compliance(0.0) * 4.4e6 / 0.75 - 1.0).abs() < 1e-12);
+}
+
+/// A sweep at a temperature is the contact built at that temperature.
+#[test]
+fn sweeps_at_temperatures_have_the_moduli_there() {
+    let terms = [(30.0e6, 1.0e-4), (10.0e6, 1.0e-2), (3.0e6, 1.0)];
+    let rubber = || GeneralizedMaxwell::new(1.0e6, &terms).unwrap();
+    let grid = || Grid::square(24, 4.0e-3).unwrap();
+    let law = TimeTemperature::wlf(8.61, 200.4, REFERENCE).unwrap();
+    let law = law.with_vertical_factors(&[(280.0, 0.9), (REFERENCE, 1.0), (340.0, 1.3)]).unwrap();
+    let (speeds, loads) = ([[1.0e-3, 0.0], [0.1, 0.0]], [Load::force(0.3), Load::approach(40.0e-6)]);
+    let kelvins = [285.0, REFERENCE, 340.0];
+    let build = |material: Material| builder_on(grid(), material).build_sliding().unwrap();
+    for load in loads {
+        let mut swept = build(Material::incompressible(rubber()));
+        let table = swept.sweep(&SlidingSweep::new(speeds, [load]).at_temperatures(law.clone(), kelvins)).unwrap();
+        for (k, state) in table.states().iter().enumerate() {
+            let kelvin = kelvins[k / speeds.len()];
+            let mut own = build(Material::incompressible(law.at(rubber(), kelvin).unwrap()));
+            let expected = own.at(speeds[k % speeds.len()], load).unwrap();
+            let found = state.report;
+            let pairs = [
+                (found.force, expected.force),
+                (found.approach, expected.approach),
+                (found.lateral_force[0], expected.lateral_force[0]),
+                (found.contact_area, expected.contact_area),
+            ];
+            assert!(pairs.iter().all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{kelvin}: {found:?} {expected:?}");
+            if k + 1 == table.states().len() {
+                let [shown, own] = [swept.contact(), own.contact()];
+                assert!((shown.force() / own.force() - 1.0).abs() < 1e-9 && shown.load() == load);
+                assert!((shown.max_pressure() / own.max_pressure() - 1.0).abs() < 1e-4);
+            }
+        }
+    }
+}
+
+/// Where a factor belongs to one body of two, to the shear and not to the bulk, or to a temperature that changes, it is refused.
+#[test]
+fn what_vertical_factors_do_not_describe_is_refused() {
+    let law = TimeTemperature::wlf(8.61, 200.4, REFERENCE).unwrap();
+    let entropic = law.clone().with_entropic_moduli();
+    let named = |error: Option<Error>, what: &str| {
+        let error = error.unwrap_or_else(|| panic!("{what} is accepted"));
+        assert!(matches!(error, Error::Material(MaterialError::VerticalFactors { .. })), "{what}: {error}");
+        let remedies = ["TimeTemperature::at", "TimeTemperature::without_vertical_factors"];
+        assert!(remedies.iter().all(|remedy| error.to_string().contains(remedy)), "{error}");
+        assert_eq!(error.kind(), ErrorKind::Unsupported);
+    };
+    named(TemperatureHistory::constant(entropic.clone(), 310.0).err(), "a constant");
+    named(TemperatureHistory::table(entropic.clone(), &[(0.0, 300.0), (1.0, 310.0)]).err(), "a table");
+    named(TemperatureHistory::function(entropic.clone(), |t| 300.0 + t, &[]).err(), "a function");
+    assert!(TemperatureHistory::constant(entropic.clone().without_vertical_factors(), 310.0).is_ok());
+
+    let rubber = || GeneralizedMaxwell::new(1.0e6, &[(10.0e6, 1.0e-2)]).unwrap();
+    let grid = || Grid::square(24, 4.0e-3).unwrap();
+    let steel = Material::constant_poisson(Elastic::young(210.0e9, 0.3).unwrap(), 0.3).unwrap();
+    let sweep = |law: &TimeTemperature, kelvin: f64| {
+        SlidingSweep::new([[0.01, 0.0]], [Load::force(0.3)]).at_temperatures(law.clone(), [kelvin])
+    };
+    let bodies =
+        [Material::incompressible(rubber()).against(steel.clone()), Material::elastic_bulk(rubber(), 2.0e9).unwrap()];
+    for body in bodies {
+        let mut sliding = builder_of(&sphere(), grid(), body).build_sliding().unwrap();
+        named(sliding.sweep(&sweep(&entropic, 310.0)).err(), "a sweep");
+        assert!(sliding.sweep(&sweep(&entropic, REFERENCE)).is_ok(), "nothing changes at the reference");
+        assert!(sliding.sweep(&sweep(&law, 310.0)).is_ok());
+    }
+    let layer = Layer::bonded_to_material(1.0e-3, &Material::incompressible(rubber()), &steel).unwrap();
+    let kernel = InfluenceKernel::layer(&grid(), layer).unwrap();
+    let on_steel = builder_on(grid(), Material::incompressible(rubber())).kernel(kernel).build_sliding_on(steel);
+    named(on_steel.unwrap().sweep(&sweep(&entropic, 310.0)).err(), "a layer on a base");
+}
