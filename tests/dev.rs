@@ -1,3 +1,5 @@
 use viscocontact_scenes as common;
-#[path = "io/clauses/mod.rs"]
-mod clauses;
+#[path = "time/inside.rs"]
+mod inside;
+#[path = "time/run.rs"]
+mod run;

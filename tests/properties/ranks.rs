@@ -1,4 +1,4 @@
-//! A contact that ranks share out is the same as in one process, bit by bit and whatever their number: its steps, its fields,
+//! A contact that ranks share out is the same as in one process that computes the whole grid, bit by bit and whatever their number: its steps, its fields,
 //! its files, and the steps after a checkpoint. `RANKS_SCENES` (16) and `RANKS_SEED` (1) choose random scenes.
 
 use std::collections::BTreeMap;
@@ -6,7 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::common::any_scene::{AnyScene, Course, Stepper};
-use crate::common::{Temporary, chosen_scenes, from_environment};
+use std::sync::Arc;
+
+use crate::common::{Draws, Temporary, builder_of, chosen_scenes, from_environment, zener};
 use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::Threads;
 use viscocontact::prelude::*;
@@ -60,6 +62,78 @@ fn random_scenes_are_the_same_on_all_ranks() {
     }
     println!("{scenes} scenes, {steps} steps, {pressed} scenes with contact, {failed} end with the same error");
     assert!(2 * pressed > scenes as usize && 3 * failed < scenes as usize, "{pressed} pressed, {failed} failed");
+}
+
+/// What is promised under the settings that users have: a random contact is the same on any number of ranks, and as in one process without a window; with its
+/// window it is the same to ten tolerances, and its file is refused where the window is not the whole grid.
+#[test]
+fn default_settings_keep_the_promises_of_ranks() {
+    let (scenes, first) = (from_environment("RANKS_SCENES", 16), from_environment("RANKS_SEED", 1));
+    let (mut windows, mut wholes, mut worst) = (0, 0, 0.0_f64);
+    let folder = Temporary::folder("ranks-default");
+    for seed in 1000 * first..1000 * first + scenes / 3 {
+        let draws = &mut Draws::new(seed);
+        let cells = [0, 1].map(|_| 2 * (40 + draws.below(32)));
+        let side = draws.power_of_ten(-5.0, -3.0);
+        let grid = Grid::new(cells, cells.map(|cells| cells as f64 * side)).unwrap();
+        let half = 0.5 * side * cells[0].min(cells[1]) as f64;
+        let radius = draws.scale(3.0, 30.0) * half;
+        // from a contact of a few cells to one of nearly the whole grid
+        let reach = if seed % 2 == 0 { draws.between(0.1, 0.4) } else { draws.between(0.75, 0.85) } * half;
+        let room = 0.8 * (half - reach);
+        let shift = [0, 1].map(|_| if draws.chance(0.5) { 0.0 } else { draws.between(-room, room) });
+        let shape = Shifted::new(Sphere::new(radius).unwrap(), shift).unwrap();
+        let loads: Vec<f64> = (0..4).map(|_| draws.between(0.9, 1.0) * reach * reach / radius).collect();
+        let builder = || builder_of(&shape, grid.clone(), zener());
+        let course = |contact: &mut ViscoelasticContact, loads: &[f64]| {
+            let steps =
+                loads.iter().map(|&depth| contact.step(0.3, Load::approach(depth)).map(|report| format!("{report:?}")));
+            let reports: Vec<String> = steps.collect::<Result<_, _>>().unwrap();
+            let fields = [contact.pressure(), contact.displacement()].map(|field| contact.gathered(field, 0).unwrap());
+            (reports, contact.force().to_bits(), contact.max_pressure().to_bits(), fields)
+        };
+        let whole = |builder: Builder| builder.settings(Settings::default().with_window(false)).build().unwrap();
+        let alone = course(&mut whole(builder()), &loads);
+        let (file, by_ranks) = (folder.join("of-one"), folder.join("of-ranks"));
+        let mut by_default = builder().build().unwrap();
+        course(&mut by_default, &loads[..2]);
+        by_default.save(&file).unwrap();
+        let on_from_file = course(&mut by_default, &loads[2..]).0;
+        let size = 1 + draws.below(3);
+        let shared = Threads::run(size, |ranks| {
+            let build = || builder().ranks(Arc::clone(&ranks)).build().unwrap();
+            let mut contact = build();
+            course(&mut contact, &loads[..2]);
+            contact.save(&by_ranks).unwrap();
+            let mut of_one = build();
+            let resumed = of_one.resume(&file).map(|()| course(&mut of_one, &loads[2..]));
+            (course(&mut build(), &loads), resumed)
+        })
+        .unwrap();
+        let has_window = shared[0].1.is_err();
+        for (rank, (own, resumed)) in shared.iter().enumerate() {
+            let what = format!("seed {seed}, rank {rank} of {size}");
+            assert_eq!((&own.0, own.1, own.2), (&alone.0, alone.1, alone.2), "{what}");
+            assert!(rank > 0 || own.3 == alone.3, "{what}: fields");
+            match resumed {
+                Err(error) => {
+                    assert!(has_window && format!("{error:?}").contains("Settings::window"), "{what}: {error}")
+                }
+                Ok(rest) => assert!(!has_window && rest.0 == on_from_file, "{what}: its file"),
+            }
+        }
+        let mut of_ranks = builder().build().unwrap();
+        of_ranks.resume(&by_ranks).unwrap();
+        assert_eq!(course(&mut of_ranks, &loads[2..]).0, alone.0[2..], "seed {seed}: the file of ranks");
+        let force = f64::from_bits(alone.1);
+        worst = worst.max((by_default.force() / force - 1.0).abs());
+        *if has_window { &mut windows } else { &mut wholes } += 1;
+    }
+    println!("{windows} with a window, {wholes} without; the force differs by {worst:.1e} at most");
+    assert!(
+        windows > 1 && wholes > 1 && worst < 10.0 * Settings::default().tolerance(),
+        "{windows} {wholes} {worst:e}"
+    );
 }
 
 /// Snapshots go back on all ranks alike.

@@ -220,9 +220,15 @@ fn a_state_within_a_long_step_follows_the_relaxation() {
     for outside in [-0.1, 10.1, f64::NAN] {
         assert!(matches!(contact.within_step(outside), Err(Error::OutOfRange { .. })), "{outside}");
     }
-    // a step that fails has overwritten the start of the last one
+    // a load that is refused changes nothing, a step that fails has overwritten the start of the last one
+    assert_eq!(contact.step(1.0, Load::force(f64::NAN)).unwrap_err().kind(), ErrorKind::Value);
+    assert_eq!(contact.within_step(time).unwrap().force(), within.force());
     assert_eq!(contact.step(1.0, Load::force(1.0e6)).unwrap_err().kind(), ErrorKind::Value);
-    assert!(contact.within_step(time).is_err() && contact.within_step(10.0).is_ok());
+    let lost = contact.within_step(time).unwrap_err();
+    assert!(lost.to_string().contains("whose start is lost"), "{lost}");
+    assert!(contact.within_step(10.0).is_ok());
+    let outside = contact.within_step(-0.1).unwrap_err();
+    assert!(outside.to_string().ends_with("between its start and its end"), "{outside}");
 }
 
 /// Greatest and mean error of approach and force inside the steps of an adaptive run, relative to their greatest values; and the

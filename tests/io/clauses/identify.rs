@@ -51,7 +51,7 @@ pub fn rows(t: &mut Table) {
     t.row("fit_each", lists.into_iter().last().unwrap(), Value, "contact point: 3 values given, 2 needed");
     let [first, second] = <[_; 2]>::try_from(zener.fit_each(&maps, |_| {})).unwrap();
     assert!(first.is_ok());
-    t.row("fit_each", second, Value, "curve 0: the force nowhere rises…ve the contact point");
+    t.row("fit_each", second, Value, "curve 0: the force nowhere rises…: check the sign of the force…");
 
     let bounds =
         |of: &Identification, values: &[(&str, f64)], sigma: f64| of.bounds(&[experiment.clone()], values, sigma);
@@ -60,7 +60,7 @@ pub fn rows(t: &mut Table) {
         (vec![("E0", 1.0e2), ZENER[1], ZENER[2]], "Einf = 500.0 → at most E0"),
         (vec![ZENER[0], ZENER[1]], "the parameter 'tau' is given 0 values: give it exactly one"),
         (vec![ZENER[0], ZENER[0], ZENER[1], ZENER[2]], "the parameter 'E0' is given 2 values: give it exactly one"),
-        (vec![ZENER[0], ZENER[1], ("lambda", 0.2)], "there is no parameter 'lambda':…es are E0, Einf, tau"),
+        (vec![ZENER[0], ZENER[1], ("lambda", 0.2)], "there is no parameter 'lambda': the names are E0, Einf, tau"),
         (vec![ZENER[0], ZENER[1], ("tau", f64::NAN)], "tau = NaN → finite and > 0"),
     ] {
         t.row("Identification::bounds", bounds(&zener, &values, 1.0e-11), Value, says);
@@ -78,7 +78,7 @@ pub fn rows(t: &mut Table) {
         "Identification::bounds",
         bounds(&unknown, &ZENER, 1.0e-11),
         Value,
-        "bounds need the correlation of…::AutoregressiveWith",
+        "bounds need the correlation…take Noise::AutoregressiveWith",
     );
     let table_of =
         |last: f64| ElasticStates::from_table(&[(1e-15, 1e-9, 1e-7, 1e-14), (1e-12, last, 1e-6, 1e-12)]).unwrap();
@@ -87,7 +87,7 @@ pub fn rows(t: &mut Table) {
         "Identification::bounds",
         zener.bounds(&[shallow], &ZENER, 1.0e-11),
         Value,
-        "curve 0: the depth of 1.50e-7 m…he unit of the drive",
+        "curve 0: the depth of 1.50e-7 m is beyond…: sweep it further…",
     );
 
     let falling = curve([1.0e-6, 0.0], vec![1.0e-9; 50], tip());
@@ -108,20 +108,20 @@ pub fn rows(t: &mut Table) {
         "usual::loading_modulus",
         usual::loading_modulus(&few, None),
         Value,
-        "a curve of 4 points is too short:…at a higher rate",
+        "a curve of 4 points is too short: at least 5 are needed…",
     );
     let deep = curve([0.0, 1.0e-6], rising(50), table_of(1.0e-7));
     t.row(
         "usual::loading_modulus",
         usual::loading_modulus(&deep, Some(0.0)),
         Value,
-        "curve 0: the depth of 1.00e-6 m…he unit of the drive",
+        "curve 0: the depth of 1.00e-6 m is beyond…: sweep it further…",
     );
     let flipped = curve([0.0, 1.0e-6], rising(50).into_iter().map(|force| -force).collect(), tip());
     t.row(
         "usual::loading_modulus",
         usual::loading_modulus(&flipped, None),
         Value,
-        "curve 0: the force nowhere rises…ve the contact point",
+        "curve 0: the force nowhere rises…: check the sign of the force…",
     );
 }
