@@ -14,6 +14,19 @@ pub enum SlidingError {
         compliance: [f64; 2],
     },
 
+    /// Rounding of the displacement exceeds the tolerance: bodies whose compliance at rest and in motion differ by many orders of magnitude
+    /// are pressed so hard by the stiff waves that the soft ones are rounding.
+    #[error("at a velocity of ({}, {}) m/s the rounding of the displacement is {rounding:.1e} of the gap that the contact closes, where {tolerance:.1e} is allowed: take a lower velocity, bodies that creep less, or a greater Settings::tolerance",
+        rounded(.velocity[0], 5), rounded(.velocity[1], 5))]
+    Rounding {
+        /// Velocity \[m/s\].
+        velocity: [f64; 2],
+        /// Rounding of the displacement over the range of the gap that the contact closes.
+        rounding: f64,
+        /// The residual allowed.
+        tolerance: f64,
+    },
+
     /// The contact at a velocity was not found.
     #[error("at a velocity of ({}, {}) m/s {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
         rounded(.velocity[0], 5), rounded(.velocity[1], 5))]

@@ -24,11 +24,13 @@ const CYCLES: usize = 3;
 const FIRST_PART: f64 = 0.3;
 /// Penetration outside of the contact may exceed the root mean square of the residual so many times.
 const SLACK: f64 = 10.0;
+/// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was computed anew.
+const BELOW: f64 = 1.5;
 /// A negative pressure of this part of the greatest is rounding.
 const ROUNDING: f64 = 1e-9;
 /// The least range of the gap in contact, over the range of the whole gap, or of the displacement.
 const FLAT: f64 = 1e-4;
-/// No residual is less than this part of the greatest displacement that the pressure could have.
+/// No residual is brought below this part of the maximum displacement that the pressure could have.
 const LEAST: f64 = 4.0 * f64::EPSILON;
 
 /// Gap and load.
@@ -54,6 +56,8 @@ pub(super) struct Found {
     pub(super) motion: RigidMotion,
     /// Root mean square of the gap in contact, over the range of the gap that the contact closes.
     pub(super) residual: f64,
+    /// What rounding leaves of it.
+    pub(super) rounding: f64,
     pub(super) sets: usize,
     pub(super) converged: bool,
 }
@@ -94,6 +98,15 @@ impl<'a> Balance<'a> {
         let motion = self.gram.solve(missing);
         self.values.iter().zip(field).for_each(|(of, value)| *value += dot(*of, motion));
         ModeCoefficients(motion)
+    }
+
+    /// Whether a pressure on the set has this force, and no moment about the load point.
+    fn holds(&self, field: &[f64], total: f64, tolerance: f64) -> bool {
+        (0..3).all(|m| {
+            let parts = || self.values.iter().zip(field).map(|(of, value)| of[m] * value);
+            let (sum, size) = (parts().sum::<f64>(), parts().map(f64::abs).sum::<f64>());
+            (sum - self.modes.load()[m] * total).abs() <= tolerance * if m == 0 { total } else { size }
+        })
     }
 
     /// The values of a field on the set.
@@ -143,22 +156,35 @@ impl Problem<'_> {
         while found.sets < MOST_SETS && !self.is_cancelled() {
             found.sets += 1;
             if !pressed.contains(&true) {
-                if !free.translation {
-                    return Found { sets: found.sets, ..Found::apart(cells) };
+                let support = self.support();
+                if !free.translation && support.height >= 0.0 {
+                    // upright if nothing touches then
+                    let upright = gap.iter().all(|&h| h >= 0.0);
+                    let motion = if upright { RigidMotion::default() } else { support.tilt };
+                    return Found { sets: found.sets, motion, ..Found::apart(cells) };
                 }
-                let low = gap.iter().copied().fold(f64::INFINITY, f64::min);
-                pressed = gap.iter().map(|&h| h <= low).collect();
+                support.cells.iter().for_each(|&k| pressed[k] = true);
             }
-            let balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
+            let mut balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
             let mut p = balance.of(&found.pressure);
-            balance.bring(&mut p, balance.modes.load().map(|unit| unit * free.total));
+            let load = balance.modes.load().map(|unit| unit * free.total);
+            balance.bring(&mut p, load);
+            if free.tilts() && !balance.holds(&p, free.total, self.tolerance) {
+                // too few cells to balance the load, or all on a line
+                self.support().cells.iter().for_each(|&k| pressed[k] = true);
+                balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
+                p = balance.of(&found.pressure);
+                balance.bring(&mut p, load);
+            }
             found.displacement = bodies.displacement(&balance.field(&p, cells));
             let least = LEAST * compliance * p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-            let allowed = (tolerance * self.unit(&balance, &found.displacement)).max(least);
+            let unit = self.unit(&balance, &found.displacement, least);
+            let allowed = (tolerance * unit).max(least);
             let part = if stands { 0.0 } else { ROUGHLY };
             let residual = self.solve_on(&balance, allowed, part, bodies, &mut p, &mut found);
             let left = balance.rms(&residual);
-            found.residual = if left > 0.0 { tolerance * left / allowed } else { 0.0 };
+            let over_unit = |length: f64| if length > 0.0 { length / unit } else { 0.0 };
+            (found.residual, found.rounding) = (over_unit(left), over_unit(least));
             let height = |k: usize| found.displacement[k] + gap[k] - found.motion.at(grid.center(k / n2, k % n2));
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
@@ -173,7 +199,8 @@ impl Problem<'_> {
             p.iter_mut().for_each(|p| *p = p.max(0.0));
             found.pressure = balance.field(&p, cells);
             if changes.iter().all(Vec::is_empty) {
-                found.converged = left <= 1.5 * allowed;
+                let balanced = || balance.holds(&balance.of(&found.pressure), free.total, tolerance);
+                found.converged = left <= BELOW * tolerance * unit && (!free.moves() || balanced());
                 if found.converged || stands {
                     break;
                 }
@@ -236,13 +263,15 @@ impl Problem<'_> {
     }
 
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps
-    /// where the contact is flat, and of the displacement, where a face has no other gap.
-    fn unit(&self, balance: &Balance<'_>, displacement: &[f64]) -> f64 {
+    /// where the contact is flat, and of the displacement, where a face has no other gap; its rounding is `least`.
+    fn unit(&self, balance: &Balance<'_>, displacement: &[f64], least: f64) -> f64 {
         let mut heights = balance.of(self.gap);
         balance.bring(&mut heights, [0.0; 3]);
         let [low, high] = range(self.gap);
-        let [least, most] = range(displacement);
-        balance.rms(&heights).max(FLAT * (high - low)).max(ROUNDING * high.abs()).max(FLAT * (most - least))
+        let [lowest, most] = range(displacement);
+        let own = balance.rms(&heights).max(FLAT * (high - low)).max(ROUNDING * high.abs()).max(FLAT * (most - lowest));
+        // a face without any gap closes without displacement where it fills a period
+        if high > low { own } else { own.max(least / self.tolerance) }
     }
 
     /// The cells of a first set: the lowest ones, those below zero under a given approach.

@@ -16,6 +16,7 @@ mod gmres;
 mod layer_on_base;
 mod operator;
 mod search;
+mod support;
 mod sweep;
 
 pub use crate::error::SlidingError;
@@ -273,9 +274,12 @@ impl SteadySliding {
         } else {
             problem.search(&mut bodies, self.contact.pressure())
         };
-        let Found { pressure, mut displacement, mut motion, residual, sets, converged } = found;
+        let Found { pressure, mut displacement, mut motion, residual, rounding, sets, converged } = found;
         if problem.is_cancelled() {
             return Err(Error::Cancelled { what: "a steady motion" });
+        }
+        if !converged && rounding > tolerance {
+            return Err(SlidingError::Rounding { velocity, rounding, tolerance }.into());
         }
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());

@@ -33,7 +33,8 @@ impl Problem<'_> {
             bodies.transforms += less.transforms;
             found
         };
-        let (mut last, mut reached, mut step) = (solve(0.0, before), 0.0, 1.0);
+        // not from the state before: a start that fails is left
+        let (mut last, mut reached, mut step) = (solve(0.0, &vec![0.0; before.len()]), 0.0, 1.0);
         sets += last.sets;
         loop {
             let skew = f64::min(reached + step, 1.0);

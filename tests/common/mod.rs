@@ -12,6 +12,7 @@ pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
 pub mod indenters;
 pub mod love;
+pub mod moving_bodies;
 #[path = "../../examples/support/scenes/noise.rs"]
 pub mod noise;
 #[path = "../../examples/support/scenes/oscillation.rs"]

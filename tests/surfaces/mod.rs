@@ -4,6 +4,7 @@ mod motion;
 mod rough;
 mod sliding;
 mod sliding_bodies;
+mod sliding_chains;
 mod sliding_cost;
 mod sliding_limits;
 mod sliding_marched;
