@@ -11,6 +11,7 @@ use crate::run::SAME_TIME;
 use crate::run::driven::Course;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
+use crate::states::passage::{Passage, Span};
 
 /// First step after a jump or a corner, over the time to the next one.
 const FIRST_STEP: f64 = 1e-4;
@@ -38,15 +39,12 @@ const ORDER: f64 = 3.0;
 const OF_HALVES: f64 = 1.0 / 3.0;
 /// Where there is no order, in a first step and one in which the force ends, halves may be no better than the whole.
 const WITHOUT_ORDER: f64 = 2.0;
-/// Number of equal parts of a run, and of a step, at which the load is looked at.
+/// Number of equal parts of a run at which the load is looked at.
 const PARTS_OF_RUN: u32 = 4096;
-const PARTS: usize = 8;
 /// Greatest deviation of the load from a parabola within a step, over the greatest load.
 const BEND: f64 = 0.03;
 /// Overshoot of the step that ends where bodies touch, in tolerances.
 const OVERSHOOT: f64 = 0.01;
-/// Bodies that touch this early in a step, as a part of it, touch at its start.
-const AT_START: f64 = 1e-3;
 /// Contacts that get smaller than this part of the greatest level within a step are looked at inside its halves too.
 const SHALLOW: f64 = 0.3;
 /// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run will make of them.
@@ -65,6 +63,8 @@ pub struct StatesControl {
     whole: StatesContact,
     halves: StatesContact,
     middle: StatesContact,
+    /// The load within the step.
+    passage: Passage,
 }
 
 /// What the control knows of the run: all that a run from a file needs.
@@ -135,31 +135,13 @@ impl Record {
         self.pressed = lengths.fold(length / f64::from(PARTS_OF_RUN), f64::max);
         Ok(())
     }
-
-    /// Greatest deviation of the load within a step from the parabola through its start, its middle and its end; infinite if it presses only
-    /// between the equal parts of the step. How far apart bodies are does not matter where this is farther than the greatest depth.
-    fn bend(&mut self, Span { now, end }: Span, loads: &[f64; PARTS + 1]) -> f64 {
-        self.greatest_load = loads.iter().copied().fold(self.greatest_load, f64::max);
-        let near = |load: f64| load.max(-self.greatest_load);
-        let [a, b, c] = [0, PARTS / 2, PARTS].map(|k| near(loads[k]));
-        let off = |s: f64, load: f64| {
-            let parabola = a * (1.0 - s) * (1.0 - 2.0 * s) + 4.0 * b * s * (1.0 - s) + c * s * (2.0 * s - 1.0);
-            (near(load) - parabola).abs()
-        };
-        let own = loads.iter().enumerate().map(|(k, load)| off(k as f64 / PARTS as f64, *load));
-        let after = self.loads.partition_point(|load| load.0 <= now);
-        let others = self.loads[after..].iter().take_while(|load| load.0 < end);
-        if loads.iter().all(|load| *load <= 0.0) && others.clone().any(|(_, load)| *load > 0.0) {
-            return f64::INFINITY;
-        }
-        own.chain(others.map(|(time, load)| off((time - now) / (end - now), *load))).fold(0.0, f64::max)
-    }
 }
 
 impl StatesControl {
     pub(super) fn new(contact: &StatesContact, record: Record) -> StatesControl {
         let [before, middle] = [contact.clone(), contact.clone().with_quadratic_steps()];
-        StatesControl { record, before, halved: false, whole: middle.clone(), halves: middle.clone(), middle }
+        let (whole, halves, passage) = (middle.clone(), middle.clone(), Passage::default());
+        StatesControl { record, before, halved: false, whole, halves, middle, passage }
     }
 
     /// Takes the longest step that the tolerance allows, towards the next stop of the run. If it fails, the contact stays as it was.
@@ -197,16 +179,16 @@ impl StatesControl {
                 return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
             }
             let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
-            let step = Span { now, end };
-            let mut loads = [value(contact, history.checked_at(now, false)?)?; PARTS + 1];
-            for (k, load) in loads.iter_mut().enumerate().skip(1) {
-                *load = value(contact, load_at(history, step.part(k as f64))?)?;
-            }
-            if self.record.bend(step, &loads) > BEND * self.record.greatest_load && end - now > 2.0 * shortest {
+            let value_at = |time: f64| value(contact, load_at(history, time)?);
+            let first = value(contact, history.checked_at(now, false)?)?;
+            self.passage.look(Span { now, end }, first, &self.record.loads, value_at)?;
+            self.record.greatest_load = self.record.greatest_load.max(self.passage.top());
+            let is_bent = self.passage.bend(self.record.greatest_load) > BEND * self.record.greatest_load;
+            if is_bent && end - now > 2.0 * shortest {
                 length = 0.5 * (end - now);
                 continue;
             }
-            let event = self.event(contact, history, step, &loads)?;
+            let event = self.event(contact, history, end)?;
             end = event.unwrap_or(end);
             let (report, difference) = self.compare(contact, history, Span { now, end })?;
             let force_ends = report.force == 0.0 && contact.level() > 0.0 && load_at(history, end)?.is_force();
@@ -237,63 +219,20 @@ impl StatesControl {
         }
     }
 
-    /// The first time within a step at which bodies that are apart touch, or a force begins or ends. A surface that nothing presses on only
-    /// sinks.
-    fn event(
-        &mut self,
-        contact: &StatesContact,
-        history: &dyn LoadHistory,
-        step: Span,
-        loads: &[f64; PARTS + 1],
-    ) -> Result<Option<f64>> {
-        let Span { now, end } = step;
-        let by_force = load_at(history, end)?.is_force();
-        if !by_force && contact.level() > 0.0 {
+    /// The first time within a step at which bodies touch or part, or a force begins or ends.
+    fn event(&mut self, contact: &StatesContact, history: &dyn LoadHistory, end: f64) -> Result<Option<f64>> {
+        let StatesControl { record, whole: scratch, passage, .. } = self;
+        let mut load = |time: f64| value(contact, load_at(history, time)?);
+        if load_at(history, end)?.is_force() {
+            return passage.first_change_of_force(&mut load);
+        }
+        let touch = contact.level() > 0.0;
+        if touch && !passage.falls() {
             return Ok(None);
         }
-        // the load at equal parts, the greatest among its neighbours at its top
-        let mut points = [(now, loads[0]); PARTS + 1];
-        for k in 1..=PARTS {
-            points[k] = (step.part(k as f64), loads[k]);
-            if k < PARTS && loads[k] > loads[k - 1] && loads[k] > loads[k + 1] {
-                let (before, after) = (loads[k] - loads[k - 1], loads[k] - loads[k + 1]);
-                let top = step.part(k as f64 + 0.5 * (before - after) / (before + after));
-                points[k] = (top, value(contact, load_at(history, top)?)?);
-            }
-        }
-        let scratch = &mut self.whole;
         scratch.copy_from(contact);
-        let mut excess = |time: f64, load: f64| -> Result<f64> {
-            Ok(if by_force { load } else { load - scratch.surface_at(time)? })
-        };
-        let top = points[1..].iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most));
-        if !by_force && excess(end, top)? <= 0.0 {
-            return Ok(None);
-        }
-        let scale = self.record.greatest[0].max(1e-3 * self.record.greatest_load);
-        let overshoot = if by_force { 0.0 } else { OVERSHOOT * self.record.tolerance * scale };
-        let near = now + if by_force { SAME_TIME } else { AT_START } * (end - now);
-        let (mut low, mut presses) = (now, by_force && loads[0] > 0.0);
-        for (time, load) in points.into_iter().skip(1) {
-            let (mut high, mut over) = (time, excess(time, load)?);
-            if (over > 0.0) != presses {
-                while high > near && (by_force || over > overshoot) {
-                    let middle = 0.5 * (low + high);
-                    if middle <= low || middle >= high {
-                        break;
-                    }
-                    let there = excess(middle, value(contact, load_at(history, middle)?)?)?;
-                    if (there > 0.0) == presses { low = middle } else { (high, over) = (middle, there) }
-                }
-                presses = !presses;
-                let event = if by_force && presses { low } else { high };
-                if near < event && event < end - SAME_TIME * (end - now) {
-                    return Ok(Some(event));
-                }
-            }
-            low = time;
-        }
-        Ok(None)
+        let scale = record.greatest[0].max(1e-3 * record.greatest_load);
+        passage.first_event(touch, OVERSHOOT * record.tolerance * scale, &mut |time| scratch.surface_at(time), &mut load)
     }
 
     /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth and force, relative to values that
@@ -381,18 +320,4 @@ pub(super) fn load_at(history: &dyn LoadHistory, time: f64) -> Result<Load> {
 fn value(contact: &StatesContact, load: Load) -> Result<f64> {
     let (Demand::Force(value) | Demand::Depth { depth: value, .. }) = contact.demand(load)?;
     Ok(value)
-}
-
-/// Start and end of a step.
-#[derive(Debug, Clone, Copy)]
-struct Span {
-    now: f64,
-    end: f64,
-}
-
-impl Span {
-    /// The end of one of the equal parts.
-    fn part(self, k: f64) -> f64 {
-        if k == PARTS as f64 { self.end } else { self.now + (self.end - self.now) * k / PARTS as f64 }
-    }
 }

@@ -48,6 +48,7 @@ mod elastic;
 mod fields;
 mod levels;
 mod outside;
+mod passage;
 mod pressed;
 mod reach;
 mod repeated;

@@ -1,0 +1,188 @@
+//! The load within a step, looked at densely, and the first time at which bodies touch or part there.
+
+use crate::error::Result;
+use crate::run::SAME_TIME;
+
+/// Number of equal parts of a step at which its load is looked at, besides the samples of the whole run within it.
+pub(super) const PARTS: usize = 8;
+/// An event so early in a step, as a part of it, happens at its start.
+const AT_START: f64 = 1e-3;
+
+/// Start and end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    pub(super) now: f64,
+    pub(super) end: f64,
+}
+
+/// The load at times of a step in ascending order, from its start to its end: force, or depth of the load point or of the far end of its
+/// spring. Each maximum and minimum of the others is among them as well.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Passage {
+    points: Vec<(f64, f64)>,
+    /// The load at the start, in the middle and at the end.
+    marks: [f64; 3],
+    /// Where they are collected.
+    seen: Vec<(f64, f64)>,
+}
+
+impl Passage {
+    /// Looks at the load within a step that begins with a load of this size, at equal parts of the step and where the run was sampled.
+    pub(super) fn look(
+        &mut self,
+        Span { now, end }: Span,
+        first: f64,
+        samples: &[(f64, f64)],
+        mut load: impl FnMut(f64) -> Result<f64>,
+    ) -> Result<()> {
+        let after = samples.partition_point(|sample| sample.0 <= now);
+        let mut others = samples[after..].iter().take_while(|sample| sample.0 < end).peekable();
+        self.seen.clear();
+        self.seen.push((now, first));
+        for k in 1..=PARTS {
+            let time = if k == PARTS { end } else { now + (end - now) * k as f64 / PARTS as f64 };
+            while let Some(other) = others.next_if(|other| other.0 < time) {
+                self.seen.push(*other);
+            }
+            others.next_if(|other| other.0 == time);
+            let value = load(time)?;
+            self.seen.push((time, value));
+            if k == PARTS / 2 {
+                self.marks[1] = value;
+            }
+        }
+        [self.marks[0], self.marks[2]] = [first, self.seen[self.seen.len() - 1].1];
+        self.points.clear();
+        self.points.push(self.seen[0]);
+        for three in self.seen.windows(3) {
+            let [a, b, c] = [three[0], three[1], three[2]];
+            let turn = if (b.1 - a.1) * (b.1 - c.1) > 0.0 { vertex([a, b, c]) } else { b.0 };
+            let turn = if a.0 < turn && turn < c.0 && turn != b.0 { Some((turn, load(turn)?)) } else { None };
+            self.points.extend(turn.filter(|turn| turn.0 < b.0));
+            self.points.push(b);
+            self.points.extend(turn.filter(|turn| turn.0 > b.0));
+        }
+        self.points.extend(self.seen.last());
+        Ok(())
+    }
+
+    /// Maximum load.
+    pub(super) fn top(&self) -> f64 {
+        self.points.iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most))
+    }
+
+    /// Whether the load ever falls below that at the start.
+    pub(super) fn falls(&self) -> bool {
+        self.points.iter().any(|point| point.1 < self.marks[0])
+    }
+
+    /// Maximum deviation of the load from the parabola through the start, the middle and the end of the step. How far apart bodies are does
+    /// not matter where this is more than `size`, the maximum load.
+    pub(super) fn bend(&self, size: f64) -> f64 {
+        let near = |load: f64| load.max(-size);
+        let ([a, b, c], Span { now, end }) = (self.marks.map(near), self.span());
+        let off = |&(time, load): &(f64, f64)| {
+            let s = (time - now) / (end - now);
+            let parabola = a * (1.0 - s) * (1.0 - 2.0 * s) + 4.0 * b * s * (1.0 - s) + c * s * (2.0 * s - 1.0);
+            (near(load) - parabola).abs()
+        };
+        self.points.iter().map(off).fold(0.0, f64::max)
+    }
+
+    fn span(&self) -> Span {
+        let [first, .., last] = self.points[..] else { return Span { now: 0.0, end: 0.0 } };
+        Span { now: first.0, end: last.0 }
+    }
+
+    /// The first time within the step, apart from its start and its end, at which bodies that touch at its start part, or that are apart touch:
+    /// where `load` passes `surface`, the depth that touches a surface that nothing presses on at a time, which only falls. Where they touch,
+    /// they overlap by at most `overshoot`; where they part, they are apart by as much.
+    pub(super) fn first_event(
+        &self,
+        mut touch: bool,
+        overshoot: f64,
+        surface: &mut impl FnMut(f64) -> Result<f64>,
+        load: &mut impl FnMut(f64) -> Result<f64>,
+    ) -> Result<Option<f64>> {
+        let Span { now, end } = self.span();
+        let (near, mut from) = (now + AT_START * (end - now), 0);
+        while let Some(k) = self.first_other(touch, from, self.points.len() - 1, surface)? {
+            let (mut low, (mut high, mut there)) = (self.points[k - 1].0, self.points[k]);
+            there -= surface(high)?;
+            while high > near && there.abs() > overshoot {
+                let middle = 0.5 * (low + high);
+                if middle <= low || middle >= high {
+                    break;
+                }
+                let over = load(middle)? - surface(middle)?;
+                if (over > 0.0) == touch { low = middle } else { (high, there) = (middle, over) }
+            }
+            if near < high && high < end - SAME_TIME * (end - now) {
+                return Ok(Some(high));
+            }
+            (touch, from) = (!touch, k);
+        }
+        Ok(None)
+    }
+
+    /// The number of the first point after `from`, up to `to`, at which the bodies are apart if they `touch`, or touch if they are apart. Loads
+    /// of all points and the surface at one end of them tell at once that there is none; else one half is looked at after the other.
+    fn first_other(
+        &self,
+        touch: bool,
+        from: usize,
+        to: usize,
+        surface: &mut impl FnMut(f64) -> Result<f64>,
+    ) -> Result<Option<usize>> {
+        if from == to {
+            return Ok(None);
+        }
+        let loads = self.points[from + 1..=to].iter().map(|point| point.1);
+        let none = match touch {
+            true => loads.fold(f64::INFINITY, f64::min) > surface(self.points[from + 1].0)?,
+            false => loads.fold(f64::NEG_INFINITY, f64::max) <= surface(self.points[to].0)?,
+        };
+        if none || to == from + 1 {
+            return Ok((!none).then_some(to));
+        }
+        let middle = from + (to - from) / 2;
+        match self.first_other(touch, from, middle, surface)? {
+            None => self.first_other(touch, middle, to, surface),
+            found => Ok(found),
+        }
+    }
+
+    /// The first time within the step at which a force ends that acts at its start, or begins: the last one without force.
+    pub(super) fn first_change_of_force(
+        &self,
+        load: &mut impl FnMut(f64) -> Result<f64>,
+    ) -> Result<Option<f64>> {
+        let (Span { now, end }, mut presses) = (self.span(), self.marks[0] > 0.0);
+        let near = now + SAME_TIME * (end - now);
+        for pair in self.points.windows(2) {
+            let [mut low, mut high] = [pair[0].0, pair[1].0];
+            if (pair[1].1 > 0.0) == presses {
+                continue;
+            }
+            while high > near {
+                let middle = 0.5 * (low + high);
+                if middle <= low || middle >= high {
+                    break;
+                }
+                if (load(middle)? > 0.0) == presses { low = middle } else { high = middle }
+            }
+            presses = !presses;
+            let event = if presses { low } else { high };
+            if near < event && event < end - SAME_TIME * (end - now) {
+                return Ok(Some(event));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The time at which the parabola through three points turns.
+fn vertex([a, b, c]: [(f64, f64); 3]) -> f64 {
+    let [left, right] = [(b.1 - a.1) / (b.0 - a.0), (c.1 - b.1) / (c.0 - b.0)];
+    0.5 * (a.0 + b.0) + 0.5 * (c.0 - a.0) * left / (left - right)
+}
