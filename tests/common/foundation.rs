@@ -1,5 +1,6 @@
-//! Winkler elements of the method of dimensionality reduction, each marched by itself: an axisymmetric contact of a body with a Prony
-//! series, or with a dashpot beside a spring. It shares nothing with the crate, and follows a prescribed approach or the far end of a spring.
+//! Winkler elements of the method of dimensionality reduction, each marched by itself: an
+//! axisymmetric contact of a body with a Prony series, or with a dashpot beside a spring. It shares
+//! nothing with the crate, and follows a prescribed approach or the far end of a spring.
 
 /// The relaxation modulus of a contact: E∞ + Σ E_i exp(−t/τ_i) + η δ(t), with terms or with η.
 #[derive(Debug, Clone, Default)]
@@ -21,7 +22,8 @@ impl Relaxation {
 /// Elements at rest. Those that were never touched are not marched.
 pub struct Foundation {
     body: Relaxation,
-    /// Of each element: gap, weight in the force, displacement, the depth that touches it, and the stress of each term.
+    /// Of each element: gap, weight in the force, displacement, the depth that touches it, and the
+    /// stress of each term.
     gaps: Vec<f64>,
     weights: Vec<f64>,
     moved: Vec<f64>,
@@ -65,15 +67,20 @@ impl Foundation {
         self.reached as f64 / self.gaps.len() as f64
     }
 
-    /// Takes a step in which all displacements are linear. Of a body with a dashpot the stress in the middle of the step counts, and elements
-    /// recover exactly under a prescribed approach.
+    /// Takes a step in which all displacements are linear. Of a body with a dashpot the stress in
+    /// the middle of the step counts, and elements recover exactly under a prescribed approach.
     pub fn step(&mut self, dt: f64, drive: Drive) {
         let (viscous, equilibrium) = (self.body.viscosity > 0.0, self.body.equilibrium);
-        let factors: Vec<[f64; 2]> = self.body.terms.iter().map(|&(modulus, tau)| {
-            let x = dt / tau;
-            let mean = if x > 1e-8 { -(-x).exp_m1() / x } else { 1.0 - 0.5 * x };
-            [(-x).exp(), modulus * mean]
-        }).collect();
+        let factors: Vec<[f64; 2]> = self
+            .body
+            .terms
+            .iter()
+            .map(|&(modulus, tau)| {
+                let x = dt / tau;
+                let mean = if x > 1e-8 { -(-x).exp_m1() / x } else { 1.0 - 0.5 * x };
+                [(-x).exp(), modulus * mean]
+            })
+            .collect();
         let rate = if viscous { self.body.viscosity / dt } else { 0.0 };
         let share = if viscous { 0.5 } else { 1.0 };
         let stiffness = share * equilibrium + rate + factors.iter().map(|factor| factor[1]).sum::<f64>();
@@ -83,12 +90,13 @@ impl Foundation {
         };
         for k in 0..self.reached {
             let moved = self.moved[k];
-            self.touched[k] = self.gaps[k] + if viscous {
-                left_of_displacement * moved
-            } else {
-                let left = |(stresses, [decay, mean]): (&Vec<f64>, &[f64; 2])| decay * stresses[k] - mean * moved;
-                -self.stresses.iter().zip(&factors).map(left).sum::<f64>() / stiffness
-            };
+            self.touched[k] = self.gaps[k]
+                + if viscous {
+                    left_of_displacement * moved
+                } else {
+                    let left = |(stresses, [decay, mean]): (&Vec<f64>, &[f64; 2])| decay * stresses[k] - mean * moved;
+                    -self.stresses.iter().zip(&factors).map(left).sum::<f64>() / stiffness
+                };
         }
         let depth = match drive {
             Drive::Approach(depth, _) => depth,
@@ -122,7 +130,9 @@ impl Foundation {
             }
             force += self.weights[k] * stress.max(0.0);
         }
-        if let Drive::Spring(spring, [stop, _]) = drive && viscous {
+        if let Drive::Spring(spring, [stop, _]) = drive
+            && viscous
+        {
             force = if force > 0.0 { (spring * (stop - depth)).max(0.0) } else { 0.0 };
         }
         (self.depth, self.force) = (depth, force);
@@ -143,7 +153,8 @@ impl Foundation {
         sums
     }
 
-    /// The depth at which a spring whose far end is at `drive` balances the elements: a convex function of the depth, by Newton's method.
+    /// The depth at which a spring whose far end is at `drive` balances the elements: a convex
+    /// function of the depth, by Newton's method.
     fn balanced(&self, drive: f64, spring: f64, stiffness: f64) -> f64 {
         let mut depth = self.depth;
         for _ in 0..200 {

@@ -1,4 +1,5 @@
-//! Bodies that are tapped and let go, drawn at random, and their forces by a foundation that is marched beside.
+//! Bodies that are tapped and let go, drawn at random, and their forces by a foundation that is
+//! marched beside.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -9,7 +10,8 @@ use viscocontact::states::ElasticStates;
 use super::draws::Draws;
 use super::foundation::{Drive, Foundation, Relaxation};
 
-/// Finenesses of the foundation: steps in the run and elements, and by how many times more the next has, until two agree.
+/// Finenesses of the foundation: steps in the run and elements, and by how many times more the next
+/// has, until two agree.
 const FIRST: [f64; 2] = [10_000.0, 150.0];
 const FINER: [f64; 2] = [2.0, 1.5];
 const FINENESSES: i32 = 6;
@@ -37,10 +39,10 @@ pub struct Taps {
 }
 
 /// A run of the foundation.
-struct Marched {
+pub struct Marched {
     /// Force and approach at the times asked for, and the maximum of each in contact.
-    found: Vec<[f64; 2]>,
-    greatest: [f64; 2],
+    pub found: Vec<[f64; 2]>,
+    pub greatest: [f64; 2],
     /// The part of the elements that were touched.
     reached: f64,
 }
@@ -58,8 +60,8 @@ fn material(body: &Relaxation) -> Material {
     Material::incompressible(GeneralizedMaxwell::new(0.25 * equilibrium, &terms).unwrap())
 }
 
-/// Fluids of one to three relaxation times, solids with 1e-5 to all of their modulus left, and Kelvin-Voigt bodies; times from 1e-4 of the
-/// run.
+/// Fluids of one to three relaxation times, solids with 1e-5 to all of their modulus left, and
+/// Kelvin-Voigt bodies; times from 1e-4 of the run.
 fn body(draws: &mut Draws, until: f64) -> (String, Relaxation) {
     let (modulus, tau) = (draws.power_of_ten(4.0, 8.0), until * draws.power_of_ten(-4.0, 0.0));
     let kind = draws.below(6);
@@ -76,7 +78,8 @@ fn body(draws: &mut Draws, until: f64) -> (String, Relaxation) {
     (name, Relaxation { equilibrium: left * modulus, terms, viscosity: 0.0 })
 }
 
-/// Name, part of the depth at a time, and the rows of a table; of one that begins apart, for bodies that follow no jump.
+/// Name, part of the depth at a time, and the rows of a table; of one that begins apart, for bodies
+/// that follow no jump.
 fn drive(draws: &mut Draws, until: f64, jumps: bool) -> (String, Part, Vec<(f64, f64)>) {
     let (duty, phase) = (draws.power_of_ten(-2.0, 0.0), draws.between(0.0, TAU));
     let phase = if jumps { phase } else { -0.5 * PI };
@@ -148,7 +151,8 @@ impl Taps {
         let first = if jumps { 0.0 } else { part(0.0).max(0.0) };
         let is_by_spring = draws.chance(0.5);
         // a punch under an approach is one number
-        let (name, gap, states, radius): (_, fn(f64) -> f64, _, _) = match draws.below(if is_by_spring { 8 } else { 7 }) {
+        let (name, gap, states, radius): (_, fn(f64) -> f64, _, _) = match draws.below(if is_by_spring { 8 } else { 7 })
+        {
             0..=3 => ("ball", |x| x * x / 1e-2, ElasticStates::sphere(1e-2), (depth * 1e-2_f64).sqrt()),
             4 | 5 => ("cone", |x| 0.05 * PI * x, ElasticStates::cone(0.1), depth / (0.05 * PI)),
             6 => {
@@ -186,8 +190,9 @@ impl Taps {
         taps
     }
 
-    /// Force and approach at these times, and the maximum of each in contact, by so many steps and elements.
-    fn marched(&self, times: &[f64], [steps, elements]: [usize; 2]) -> Marched {
+    /// Force and approach at these times, and the maximum of each in contact, by so many steps and
+    /// elements.
+    pub fn marched(&self, times: &[f64], [steps, elements]: [usize; 2]) -> Marched {
         let count = if (self.gap)(self.radius) == 0.0 { 1 } else { elements };
         let mut foundation = Foundation::new(&self.body, self.radius, count, self.gap);
         // jumps are no part of these scenes; one at the start is linear in a step of no length
@@ -203,7 +208,8 @@ impl Taps {
             foundation.depth = before;
         }
         for (end, is_asked_for) in ends {
-            if end > now {
+            // changes in shorter steps are rounded
+            if end - now > 1e-9 * self.until {
                 let value = (self.part)(end);
                 foundation.step(end - now, self.drive(end, value, before));
                 (now, before) = (end, value);
@@ -222,28 +228,31 @@ impl Taps {
         if self.spring > 0.0 {
             return Drive::Spring(self.spring, [value, before]);
         }
-        let short = 1e-6 * self.until;
+        let short = 1e-9 * self.until;
         let [one, two] = [1.0, 2.0].map(|k| (self.part)(time - k * short));
         Drive::Approach(value, 0.5 * (3.0 * value - 4.0 * one + two) / short)
     }
 
-    /// Maximum error of a run at some times in ascending order, in force and depth over the maximum of each, in tolerances; `None` where two
-    /// finenesses of the foundation still differ by half a tolerance.
-    pub fn error_of(&self, points: &[Point]) -> Option<f64> {
+    fn apart(&self, a: &[f64; 2], b: &[f64; 2], greatest: [f64; 2]) -> f64 {
+        let relative = |k: usize| if greatest[k] > 0.0 { (a[k] - b[k]).abs() / greatest[k] } else { 0.0 };
+        relative(0).max(relative(1)) / self.tolerance
+    }
+
+    /// Errors of a run at some times in ascending order, in force and depth over the maximum of
+    /// each, in tolerances; `None` where two finenesses of the foundation still differ by half a
+    /// tolerance.
+    pub fn errors(&self, points: &[Point]) -> Option<Vec<f64>> {
         assert!(points.len() > 100 && points.is_sorted_by(|a, b| a.0 <= b.0), "{}: not a run", self.name);
         let times: Vec<f64> = points.iter().map(|point| point.0).collect();
-        let apart = |a: &[f64; 2], b: &[f64; 2], greatest: [f64; 2]| {
-            let relative = |k: usize| if greatest[k] > 0.0 { (a[k] - b[k]).abs() / greatest[k] } else { 0.0 };
-            relative(0).max(relative(1)) / self.tolerance
-        };
         let fineness = |k: i32| [0, 1].map(|axis| (FIRST[axis] * FINER[axis].powi(k)) as usize);
         let mut coarse = self.marched(&times, fineness(0));
         for k in 1..FINENESSES {
             let fine = self.marched(&times, fineness(k));
-            let doubt = coarse.found.iter().zip(&fine.found).map(|(a, b)| apart(a, b, fine.greatest));
+            let doubt = coarse.found.iter().zip(&fine.found).map(|(a, b)| self.apart(a, b, fine.greatest));
             if doubt.fold(0.0, f64::max) <= DOUBT {
-                let off = points.iter().zip(&fine.found).map(|(point, right)| apart(&point.1, right, fine.greatest));
-                return Some(off.fold(0.0, |most, off| if off.is_nan() { off } else { off.max(most) }));
+                let off =
+                    points.iter().zip(&fine.found).map(|(point, right)| self.apart(&point.1, right, fine.greatest));
+                return Some(off.collect());
             }
             coarse = fine;
         }
