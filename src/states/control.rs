@@ -37,7 +37,8 @@ const ORDER: f64 = 3.0;
 /// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
 /// curvature.
 const OF_HALVES: f64 = 1.0 / 3.0;
-/// Where there is no order, in a first step and one in which the force ends, halves may be no better than the whole.
+/// Where there is no order, in a first step, the one after bodies touched and one in which they part,
+/// halves may be no better than the whole.
 const WITHOUT_ORDER: f64 = 2.0;
 /// Number of equal parts of a run at which the load is looked at.
 const PARTS_OF_RUN: u32 = 4096;
@@ -80,6 +81,8 @@ pub(super) struct Record {
     pub(super) next: f64,
     /// Time of the last jump or corner.
     corner: f64,
+    /// Whether the last step ended where bodies touched.
+    touches: bool,
     /// Whether forces are given throughout the run.
     by_force: bool,
     /// Greatest depth and force of the run, for errors relative to them.
@@ -102,6 +105,7 @@ impl Record {
             until,
             next: 0.0,
             corner: 0.0,
+            touches: false,
             by_force: true,
             greatest: [0.0; 2],
             loads,
@@ -191,8 +195,8 @@ impl StatesControl {
             let event = self.event(contact, history, end)?;
             end = event.unwrap_or(end);
             let (report, difference) = self.compare(contact, history, Span { now, end })?;
-            let force_ends = report.force == 0.0 && contact.level() > 0.0 && load_at(history, end)?.is_force();
-            let error = if is_first || force_ends { WITHOUT_ORDER } else { OF_HALVES } * difference;
+            let parts = report.force == 0.0 && contact.level() > 0.0;
+            let error = if is_first || self.record.touches || parts { WITHOUT_ORDER } else { OF_HALVES } * difference;
             let order = match last {
                 _ if is_first => 1.0,
                 Some((length, before)) if 0.0 < error && error < before => {
@@ -209,6 +213,7 @@ impl StatesControl {
                     None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
                 };
                 self.record.greatest = self.greatest_with(report.force);
+                self.record.touches = event.is_some() && contact.level() == 0.0;
                 contact.copy_from(&self.halves);
                 contact.levels.merge(&contact.states, MERGING * tolerance);
                 return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
@@ -232,7 +237,12 @@ impl StatesControl {
         }
         scratch.copy_from(contact);
         let scale = record.greatest[0].max(1e-3 * record.greatest_load);
-        passage.first_event(touch, OVERSHOOT * record.tolerance * scale, &mut |time| scratch.surface_at(time), &mut load)
+        passage.first_event(
+            touch,
+            OVERSHOOT * record.tolerance * scale,
+            &mut |time| scratch.surface_at(time),
+            &mut load,
+        )
     }
 
     /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth and force, relative to values that

@@ -1,9 +1,11 @@
-//! The load within a step, looked at densely, and the first time at which bodies touch or part there.
+//! The load within a step, looked at densely, and the first time at which bodies touch or part
+//! there.
 
 use crate::error::Result;
 use crate::run::SAME_TIME;
 
-/// Number of equal parts of a step at which its load is looked at, besides the samples of the whole run within it.
+/// Number of equal parts of a step at which its load is looked at, besides the samples of the whole
+/// run within it.
 pub(super) const PARTS: usize = 8;
 /// An event so early in a step, as a part of it, happens at its start.
 const AT_START: f64 = 1e-3;
@@ -15,8 +17,9 @@ pub(super) struct Span {
     pub(super) end: f64,
 }
 
-/// The load at times of a step in ascending order, from its start to its end: force, or depth of the load point or of the far end of its
-/// spring. Each maximum and minimum of the others is among them as well.
+/// The load at times of a step in ascending order, from its start to its end: force, or depth of
+/// the load point or of the far end of its spring. Each maximum and minimum of the others is among
+/// them as well.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passage {
     points: Vec<(f64, f64)>,
@@ -27,7 +30,8 @@ pub(super) struct Passage {
 }
 
 impl Passage {
-    /// Looks at the load within a step that begins with a load of this size, at equal parts of the step and where the run was sampled.
+    /// Looks at the load within a step that begins with a load of this size, at equal parts of the
+    /// step and where the run was sampled.
     pub(super) fn look(
         &mut self,
         Span { now, end }: Span,
@@ -76,8 +80,9 @@ impl Passage {
         self.points.iter().any(|point| point.1 < self.marks[0])
     }
 
-    /// Maximum deviation of the load from the parabola through the start, the middle and the end of the step. How far apart bodies are does
-    /// not matter where this is more than `size`, the maximum load.
+    /// Maximum deviation of the load from the parabola through the start, the middle and the end of
+    /// the step. How far apart bodies are does not matter where this is more than `size`, the
+    /// maximum load.
     pub(super) fn bend(&self, size: f64) -> f64 {
         let near = |load: f64| load.max(-size);
         let ([a, b, c], Span { now, end }) = (self.marks.map(near), self.span());
@@ -94,8 +99,9 @@ impl Passage {
         Span { now: first.0, end: last.0 }
     }
 
-    /// The first time within the step, apart from its start and its end, at which bodies that touch at its start part, or that are apart touch:
-    /// where `load` passes `surface`, the depth that touches a surface that nothing presses on at a time, which only falls. Where they touch,
+    /// The first time within the step, apart from its start and its end, at which bodies that touch
+    /// at its start part, or that are apart touch: where `load` passes `surface`, the depth that
+    /// touches a surface that nothing presses on at a time, which only falls. Where they touch,
     /// they overlap by at most `overshoot`; where they part, they are apart by as much.
     pub(super) fn first_event(
         &self,
@@ -125,8 +131,9 @@ impl Passage {
         Ok(None)
     }
 
-    /// The number of the first point after `from`, up to `to`, at which the bodies are apart if they `touch`, or touch if they are apart. Loads
-    /// of all points and the surface at one end of them tell at once that there is none; else one half is looked at after the other.
+    /// The number of the first point after `from`, up to `to`, at which the bodies are apart if
+    /// they `touch`, or touch if they are apart. Loads of all points and the surface at one end of
+    /// them tell at once that there is none; else one half is looked at after the other.
     fn first_other(
         &self,
         touch: bool,
@@ -152,11 +159,9 @@ impl Passage {
         }
     }
 
-    /// The first time within the step at which a force ends that acts at its start, or begins: the last one without force.
-    pub(super) fn first_change_of_force(
-        &self,
-        load: &mut impl FnMut(f64) -> Result<f64>,
-    ) -> Result<Option<f64>> {
+    /// The first time within the step at which a force ends that acts at its start, or begins: the
+    /// last one without force.
+    pub(super) fn first_change_of_force(&self, load: &mut impl FnMut(f64) -> Result<f64>) -> Result<Option<f64>> {
         let (Span { now, end }, mut presses) = (self.span(), self.marks[0] > 0.0);
         let near = now + SAME_TIME * (end - now);
         for pair in self.points.windows(2) {
