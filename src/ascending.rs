@@ -58,6 +58,11 @@ impl Times {
         Times { rules: vec![Rule::Decades(first, per_decade)], ..Times::default() }
     }
 
+    /// The given ones among them.
+    pub(crate) fn given(&self) -> &[f64] {
+        &self.given
+    }
+
     /// Both.
     #[must_use]
     pub fn and(mut self, other: impl Into<Times>) -> Times {
@@ -68,7 +73,7 @@ impl Times {
     }
 }
 
-/// In any order; times before the time of the contact have no effect.
+/// In any order.
 impl<T: AsRef<[f64]> + ?Sized> From<&T> for Times {
     fn from(times: &T) -> Times {
         Times { given: times.as_ref().to_vec(), rules: Vec::new() }

@@ -53,6 +53,7 @@ pub(crate) use read::limits::{DEEP, Limits, STEEP};
 pub use read::report::{BodyState, Estimated, Figures, StepReport};
 pub use read::stress::StressHistory;
 pub use read::warnings::Warnings;
+pub(crate) use settings::DEFAULT_TOLERANCE;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;

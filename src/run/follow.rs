@@ -5,14 +5,14 @@ use std::sync::atomic::AtomicBool;
 
 use crate::ascending::{Schedule, Times};
 use crate::contact::{StepReport, ViscoelasticContact};
-use crate::error::{LoadError, Result};
+use crate::error::{LoadError, Result, within};
 use crate::load::LoadHistory;
 #[cfg(feature = "checkpoint")]
 use crate::run::autosave::Autosave;
 use crate::run::driven::Course;
 use crate::run::event::Event;
 use crate::run::field::RunFields;
-use crate::run::progress::{Progress, RunProgress, SAME_TIME, Stepping};
+use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
 use crate::run::{OwnedOrBorrowed, RunContact};
 
 /// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
@@ -24,6 +24,11 @@ pub(super) fn history_of<'h>(history: &'h RunHistory<'_>) -> &'h dyn LoadHistory
         OwnedOrBorrowed::Borrowed(history) => *history,
         OwnedOrBorrowed::Owned(history) => &**history,
     }
+}
+
+/// Times up to here are the one at which a step has ended.
+fn covered_by(time: f64) -> f64 {
+    time + rounding(time)
 }
 
 /// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
@@ -86,7 +91,7 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
-    /// Times up to here were sampled at the ends of the steps before.
+    /// Times up to here were sampled in the steps before.
     pub(super) covered: f64,
     pub(super) fields: Option<RunFields<C>>,
     #[cfg(feature = "checkpoint")]
@@ -133,6 +138,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         until: f64,
     ) -> Run<'a, C> {
         let (progress, control) = contact.begin(stepping, until);
+        let covered = if progress.is_new() { progress.start.next_down() } else { covered_by(progress.now) };
         Run {
             contact,
             history,
@@ -145,7 +151,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             events: Vec::new(),
             cancelled: None,
             last: None,
-            covered: 0.0,
+            covered,
             fields: None,
             #[cfg(feature = "checkpoint")]
             autosave: None,
@@ -155,20 +161,32 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Makes steps end exactly at these [`Times`] too. Stops shorten steps, so that an adaptive run takes more of them.
     ///
     /// # Errors
-    /// If a time is not finite, an interval or the first time in decades not finite and positive, or there are not 1 to 1000
-    /// times per decade.
+    /// If a given time is not finite, or not between the start and the end of the run (where it is resumed, of the whole run),
+    /// an interval or the first time in decades not finite and positive, or there are not 1 to 1000 times per decade.
     pub fn stop_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
-        self.stops.add(times.into(), self.progress.start)?;
+        self.stops.add(self.within_run(times.into())?, self.progress.start)?;
         Ok(self)
     }
 
-    /// Samples the states at these [`Times`] ([`Run::samples`]). Samples leave the steps as they are, bitwise.
+    /// Samples the states at these [`Times`] ([`Run::samples`]), the start of the run among them if it is given. Samples leave
+    /// the steps as they are, bitwise.
     ///
     /// # Errors
     /// As [`Run::stop_at`].
     pub fn sample_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
-        self.sampled.add(times.into(), self.progress.start)?;
+        self.sampled.add(self.within_run(times.into())?, self.progress.start)?;
         Ok(self)
+    }
+
+    /// Rejects given times at which the run has no state.
+    fn within_run(&self, times: Times) -> Result<Times> {
+        let (from, to) = (self.progress.start, self.until);
+        let is_within = |time: f64| time >= from - rounding(from) && time <= to + rounding(to);
+        let (field, allowed) = ("time to stop at or to sample", "between the start and the end of the run");
+        // times and ends that are not finite have errors of their own
+        let refused = times.given().iter().find(|time| time.is_finite() && to.is_finite() && !is_within(**time));
+        refused.map_or(Ok(()), |&time| within(field, time, false, allowed).map(drop))?;
+        Ok(times)
     }
 
     /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
@@ -209,8 +227,8 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too
     /// short to change the time, the tolerance is out of range or requires steps too short to change the time, the
     /// history returns an invalid load at any time that is evaluated
-    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run evaluates the whole history when it
-    /// begins, for the greatest loads, and adaptive steps evaluate it between their ends and ahead), or a step fails.
+    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); [`LoadHistory::at`] states when a run evaluates
+    /// it), or a step fails.
     /// The contact then keeps its state after the last successful step, and the call may be repeated.
     ///
     /// If the file of `Run::autosave_to` cannot be written. The step is then taken nevertheless; the next call
@@ -224,8 +242,8 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Takes the next step and keeps its report for [`Run::samples`].
     pub(super) fn take_next(&mut self) -> Result<Option<StepReport>> {
-        if let Some((start, StepReport { time, .. })) = self.last.take() {
-            self.covered = self.covered.max(time + SAME_TIME * (time - start));
+        if let Some((_, StepReport { time, .. })) = self.last.take() {
+            self.covered = covered_by(time);
         }
         self.prepare_fields()?;
         let start = self.contact.time();
