@@ -58,9 +58,10 @@ impl Times {
         Times { rules: vec![Rule::Decades(first, per_decade)], ..Times::default() }
     }
 
-    /// The given ones among them.
-    pub(crate) fn given(&self) -> &[f64] {
-        &self.given
+    /// The same with the given ones among them as `map` has them.
+    pub(crate) fn map_given(mut self, map: impl Fn(f64) -> Result<f64>) -> Result<Times> {
+        self.given.iter_mut().try_for_each(|time| map(*time).map(|mapped| *time = mapped))?;
+        Ok(self)
     }
 
     /// Both.

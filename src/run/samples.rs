@@ -89,7 +89,10 @@ impl<C: RunContact> Run<'_, C> {
             let next = self.sampled.after(time).filter(|next| *next < end - same);
             let Some(next) = next else {
                 left = None;
-                let is_asked_for = self.sampled.after((end - same).next_down()).is_some_and(|next| next <= end + same);
+                // a step may be as short as times differ by rounding; a jump has a state of its own
+                let before = (end - same).next_down();
+                let before = if whole.dt == 0.0 { before } else { before.max(self.covered) };
+                let is_asked_for = self.sampled.after(before).is_some_and(|next| next <= end + same);
                 let field = if is_asked_for { self.with_field(self.contact(), whole.dt == 0.0) } else { Ok(None) };
                 return Some(field.map(|field| {
                     let (contact, field) = field.map_or((None, None), |(contact, report)| (contact, Some(report)));

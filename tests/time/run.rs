@@ -250,7 +250,8 @@ behaviours! {
             }
             assert_eq!(found, all, "resumed after {} steps", k + 1);
         }
-        assert!(cuts.len() > 10 && all.iter().filter(|sample| sample.1).count() == 18, "{}", cuts.len());
+        let asked = all.iter().filter(|sample| sample.1).count();
+        assert!(cuts.len() > 10 && asked == 18, "{} {asked}", cuts.len());
     }
 
     fixed_steps_look_at_no_load_ahead: kind, C => {
