@@ -58,6 +58,12 @@ impl Times {
         Times { rules: vec![Rule::Decades(first, per_decade)], ..Times::default() }
     }
 
+    /// The same with the given ones among them as `map` has them.
+    pub(crate) fn map_given(mut self, map: impl Fn(f64) -> Result<f64>) -> Result<Times> {
+        self.given.iter_mut().try_for_each(|time| map(*time).map(|mapped| *time = mapped))?;
+        Ok(self)
+    }
+
     /// Both.
     #[must_use]
     pub fn and(mut self, other: impl Into<Times>) -> Times {
@@ -68,7 +74,7 @@ impl Times {
     }
 }
 
-/// In any order; times before the time of the contact have no effect.
+/// In any order.
 impl<T: AsRef<[f64]> + ?Sized> From<&T> for Times {
     fn from(times: &T) -> Times {
         Times { given: times.as_ref().to_vec(), rules: Vec::new() }

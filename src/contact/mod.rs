@@ -54,6 +54,7 @@ pub use read::report::{BodyState, Estimated, Figures, StepReport};
 #[cfg(feature = "stress")]
 pub use read::stress::StressHistory;
 pub use read::warnings::Warnings;
+pub(crate) use settings::DEFAULT_TOLERANCE;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;

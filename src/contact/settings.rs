@@ -3,6 +3,9 @@
 use crate::error::{Result, count_within, within};
 use crate::hereditary::Interpolant;
 
+/// Adaptive steps that are less accurate solve less accurately, unless a stricter tolerance was asked for.
+pub(crate) const DEFAULT_TOLERANCE: f64 = 1e-6;
+
 value! {
 /// How a contact is computed: [`Settings::default`], changed by methods `with_…`, and validated when a contact is built.
 ///
@@ -18,7 +21,8 @@ value! {
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Settings {
     /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the
-    /// deepest penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]). Where surfaces attract each other,
+    /// deepest penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]). Adaptive steps
+    /// solve to 0.03 of their own tolerance if that is more, unless this one is stricter than the default. Where surfaces attract each other,
     /// forces are as exact, over the greatest attraction, down to 3e-4, and below 1e-6 to three hundred tolerances.
     tolerance: f64, with_tolerance;
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
@@ -122,7 +126,7 @@ pub enum Edge {
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
-            tolerance: 1e-6,
+            tolerance: DEFAULT_TOLERANCE,
             max_iterations: 1000,
             solver: Solver::default(),
             time_rule: TimeRule::default(),

@@ -367,8 +367,12 @@ impl Load {
 /// assert_eq!(Knock.at(0.5), Load::force(1.0));
 /// ```
 pub trait LoadHistory: Debug + Send + Sync {
-    /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous). A run evaluates the history at the
-    /// ends of steps, with adaptive steps also within them, and fails with [`LoadError::OutOfRange`] at a load that is
+    /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous).
+    ///
+    /// A run of fixed steps ([`Stepping::fixed`](crate::run::Stepping::fixed)) asks for the load at the start and at the end of the
+    /// step that it takes, and for the next breakpoint; so a history may read a channel whose values come while the run goes on.
+    /// [Events](crate::run::Run::stop_when) look within that step. A run of adaptive steps asks for loads of the whole history
+    /// before its first step, and then within each step and ahead. A run fails with [`LoadError::OutOfRange`] at a load that is
     /// not allowed.
     fn at(&self, t: f64) -> Load;
 

@@ -21,7 +21,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Finds out how the fields of the run are found, before its first step.
     pub(super) fn prepare_fields(&mut self) -> Result<()> {
         let Some(fields) = self.fields.as_mut().filter(|fields| !fields.is_prepared) else { return Ok(()) };
-        let (mut times, mut time) = (Vec::new(), self.progress.start);
+        let (mut times, mut time) = (Vec::new(), self.progress.start.next_down());
         while let Some(next) = self.sampled.after(time).filter(|next| *next <= self.until && times.len() <= MOST_FIELDS)
         {
             times.push(next);

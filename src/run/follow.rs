@@ -5,14 +5,14 @@ use std::sync::atomic::AtomicBool;
 
 use crate::ascending::{Schedule, Times};
 use crate::contact::{StepReport, ViscoelasticContact, Warnings};
-use crate::error::{LoadError, Result};
+use crate::error::{LoadError, Result, within};
 use crate::load::LoadHistory;
 #[cfg(feature = "checkpoint")]
 use crate::run::autosave::Autosave;
 use crate::run::driven::Course;
 use crate::run::event::Event;
 use crate::run::field::RunFields;
-use crate::run::progress::{Progress, RunProgress, SAME_TIME, Stepping};
+use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
 use crate::run::{OwnedOrBorrowed, RunContact};
 
 /// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
@@ -25,6 +25,14 @@ pub(super) fn history_of<'h>(history: &'h RunHistory<'_>) -> &'h dyn LoadHistory
         OwnedOrBorrowed::Owned(history) => &**history,
     }
 }
+
+/// Times up to here are the one at which a step has ended.
+fn covered_by(time: f64) -> f64 {
+    time + rounding(time)
+}
+
+/// Times beyond the ends of a run by this part of them are the ends: 10^3 by a power of ten in steps.
+const COMPUTED: f64 = 1e-12;
 
 /// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
 /// [`Run::next_step`] takes one step.
@@ -88,7 +96,7 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) last: Option<(f64, StepReport)>,
     /// Whether the material is known until the end.
     known: bool,
-    /// Times up to here were sampled at the ends of the steps before.
+    /// Times up to here were sampled in the steps before.
     pub(super) covered: f64,
     pub(super) fields: Option<RunFields<C>>,
     #[cfg(feature = "checkpoint")]
@@ -135,6 +143,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         until: f64,
     ) -> Run<'a, C> {
         let (progress, control) = contact.begin(stepping, until);
+        let covered = if progress.is_new() { progress.start.next_down() } else { covered_by(progress.now) };
         Run {
             contact,
             history,
@@ -148,7 +157,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             cancelled: None,
             last: None,
             known: false,
-            covered: 0.0,
+            covered,
             fields: None,
             #[cfg(feature = "checkpoint")]
             autosave: None,
@@ -158,20 +167,35 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Makes steps end exactly at these [`Times`] too. Stops shorten steps, so that an adaptive run takes more of them.
     ///
     /// # Errors
-    /// If a time is not finite, an interval or the first time in decades not finite and positive, or there are not 1 to 1000
-    /// times per decade.
+    /// If a given time is not finite, or not between the start and the end of the run (where it is resumed, of the whole run),
+    /// an interval or the first time in decades not finite and positive, or there are not 1 to 1000 times per decade.
     pub fn stop_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
-        self.stops.add(times.into(), self.progress.start)?;
+        self.stops.add(self.within_run(times.into())?, self.progress.start)?;
         Ok(self)
     }
 
-    /// Samples the states at these [`Times`] ([`Run::samples`]). Samples leave the steps as they are, bitwise.
+    /// Samples the states at these [`Times`] ([`Run::samples`]), the start of the run among them if it is given. Samples leave
+    /// the steps as they are, bitwise.
     ///
     /// # Errors
     /// As [`Run::stop_at`].
     pub fn sample_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
-        self.sampled.add(times.into(), self.progress.start)?;
+        self.sampled.add(self.within_run(times.into())?, self.progress.start)?;
         Ok(self)
+    }
+
+    /// Rejects given times at which the run has no state; those that are beyond its ends by their computation alone are moved there.
+    fn within_run(&self, times: Times) -> Result<Times> {
+        let (from, to) = (self.progress.start, self.until);
+        times.map_given(|time| {
+            let inside = time.clamp(from, to.max(from));
+            let is_near = (time - inside).abs() <= COMPUTED * inside.abs();
+            // times and ends that are not finite have errors of their own
+            let is_allowed = is_near || !time.is_finite() || !to.is_finite();
+            let allowed = "between the start and the end of the run";
+            within("time to stop at or to sample", time, is_allowed, allowed)?;
+            Ok(if is_near { inside } else { time })
+        })
     }
 
     /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
@@ -213,8 +237,8 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// step on in which the bodies touch); if the fixed step is not finite and positive or too
     /// short to change the time, the tolerance is out of range or requires steps too short to change the time, the
     /// history returns an invalid load at any time that is evaluated
-    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run evaluates the whole history when it
-    /// begins, for the greatest loads, and adaptive steps evaluate it between their ends and ahead), or a step fails.
+    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); [`LoadHistory::at`] states when a run evaluates
+    /// it), or a step fails.
     /// The contact then keeps its state after the last successful step, and the call may be repeated.
     ///
     /// If the file of `Run::autosave_to` cannot be written. The step is then taken nevertheless; the next call
@@ -228,8 +252,8 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Takes the next step and keeps its report for [`Run::samples`].
     pub(super) fn take_next(&mut self) -> Result<Option<StepReport>> {
-        if let Some((start, StepReport { time, .. })) = self.last.take() {
-            self.covered = self.covered.max(time + SAME_TIME * (time - start));
+        if let Some((_, StepReport { time, .. })) = self.last.take() {
+            self.covered = covered_by(time);
         }
         self.prepare_fields()?;
         let start = self.contact.time();

@@ -1,7 +1,7 @@
 //! What the error of a step depends on, besides the step, and the tolerance of its solver.
 
 use crate::contact::step::error_in_time::SHORTEST_TOUCH;
-use crate::contact::{Computation, Scene, State, Step};
+use crate::contact::{Computation, DEFAULT_TOLERANCE, Scene, State, Step};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, Meeting, StepContext};
@@ -30,10 +30,12 @@ const MOST_ON_SWITCH: f64 = 3e3;
 const SHORTEST: f64 = 0.03;
 
 impl StepControl {
-    /// Tolerance of the solver that suits the tolerance in time, at least the tolerance of the settings, where no given approach is to come.
+    /// Tolerance of the solver that suits the tolerance in time, where no prescribed approach is to come. A tolerance of the settings that
+    /// is stricter than the default was asked for, and counts if it is stricter than that, too.
     pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
         let share = if scene.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
-        scene.settings.tolerance.max(share * self.tolerance)
+        let own = scene.settings.tolerance;
+        if own < DEFAULT_TOLERANCE { own } else { own.max(share * self.tolerance) }
     }
 
     /// Tolerance of the solver in a step, at most its own: where a given approach is to come, the bodies respond to an error of u by more

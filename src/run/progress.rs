@@ -6,8 +6,13 @@ use crate::contact::StepReport;
 use crate::error::{Error, Result, finite, positive, within};
 use crate::rounded::rounded;
 
-/// Two times closer than this fraction of a step are the same time.
+/// A step that would end closer than this fraction of it before another end of a step ends there, and events are found as closely.
 pub(crate) const SAME_TIME: f64 = 1e-6;
+
+/// How far times may be apart that agree but for rounding, as 0.3 and 3 · 0.1 do.
+pub(super) fn rounding(time: f64) -> f64 {
+    8.0 * f64::EPSILON * time.abs()
+}
 
 /// The rule for the length of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,8 +41,12 @@ impl Stepping {
     /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under a
     /// given force, the error of the force under a given approach, of both under a spring. It is relative to the displacement or force; for
     /// small values it is relative to a fraction of the greatest of the run. Errors of the pressure at a point may be
-    /// larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The tolerance of the solver is
-    /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`, whichever is greater.
+    /// larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The tolerance of the solver is 0.03 of
+    /// `tolerance`, 1e-6 at least, or [`Settings::tolerance`](crate::contact::Settings::tolerance) where that is set below
+    /// 1e-6.
+    ///
+    /// Such a run looks at the whole history before its first step, at 4096 equal parts and at its breakpoints: a load that acts for a
+    /// shorter time than a part needs a breakpoint.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }
     }
@@ -97,6 +106,11 @@ impl Progress {
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self) -> bool {
         self.dt == 0.0 || (self.now - self.start - self.equal_steps as f64 * self.dt).abs() <= 2.0 * self.dt
+    }
+
+    /// Whether no step has been taken.
+    pub(super) fn is_new(&self) -> bool {
+        self.steps == 0
     }
 
     /// Counts a step.

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::run::FieldReport;
 use crate::run::RunContact;
 use crate::run::follow::{Run, history_of};
-use crate::run::progress::SAME_TIME;
+use crate::run::progress::rounding;
 
 /// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
 #[derive(Debug)]
@@ -49,7 +49,8 @@ impl<C: RunContact> Sample<'_, C> {
 
 impl<C: RunContact> Run<'_, C> {
     /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and at its
-    /// end. Each is as exact as the end of the step
+    /// end; of the first step of a run that does not begin with a jump of its load at its start, too. Times that agree but for rounding
+    /// are one. Each is as exact as the end of the step
     /// ([`Run::within_step`]). So a run of few long steps is drawn as a curve, and the steps stay as they are.
     ///
     /// A sample inside the step costs a copy of the contact and a contact problem; the end costs nothing. Where ranks share out
@@ -80,15 +81,18 @@ impl<C: RunContact> Run<'_, C> {
     /// # Errors
     /// Each sample as [`Run::within_step`].
     pub fn samples(&self) -> impl Iterator<Item = Result<Sample<'_, C>>> {
-        let (start, end) = self.last.map_or((0.0, 0.0), |(start, report)| (start, report.time));
-        let same = SAME_TIME * (end - start);
-        let (mut time, mut left) = (self.covered.max(start), self.last);
+        let end = self.last.map_or(0.0, |(_, report)| report.time);
+        let same = rounding(end);
+        let (mut time, mut left) = (self.covered, self.last);
         std::iter::from_fn(move || {
             let (_, whole) = left?;
             let next = self.sampled.after(time).filter(|next| *next < end - same);
             let Some(next) = next else {
                 left = None;
-                let is_asked_for = self.sampled.after((end - same).next_down()).is_some_and(|next| next <= end + same);
+                // a step may be as short as times differ by rounding; a jump has a state of its own
+                let before = (end - same).next_down();
+                let before = if whole.dt == 0.0 { before } else { before.max(self.covered) };
+                let is_asked_for = self.sampled.after(before).is_some_and(|next| next <= end + same);
                 let field = if is_asked_for { self.with_field(self.contact(), whole.dt == 0.0) } else { Ok(None) };
                 return Some(field.map(|field| {
                     let (contact, field) = field.map_or((None, None), |(contact, report)| (contact, Some(report)));
@@ -97,7 +101,7 @@ impl<C: RunContact> Run<'_, C> {
                 }));
             };
             // times of two rules that agree but for rounding are one
-            time = next + same;
+            time = next + rounding(next);
             Some(self.field_within_step(next).map(|(contact, report, field)| {
                 let report = StepReport { time_error: whole.time_error, ..report };
                 Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true, field }

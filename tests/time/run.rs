@@ -119,7 +119,7 @@ behaviours! {
     }
 
     times_of_every_kind_are_met: kind, C => {
-        let times = || Times::decades(1e-2, 3).and(Times::every(0.5)).and([0.77, 90.0]);
+        let times = || Times::decades(1e-2, 3).and(Times::every(0.5)).and([0.77, 9.0]);
         let mut expected: Vec<f64> = (0..9).map(|k| 1e-2 * 10f64.powf(f64::from(k) / 3.0)).collect();
         expected.extend((1..=20).map(|k| 0.5 * f64::from(k)).chain([0.77]));
         expected.sort_by(f64::total_cmp);
@@ -138,7 +138,7 @@ behaviours! {
             }
             assert_eq!(run.samples().count(), 0, "the run is over");
             assert!(asked.len() == expected.len() && asked.iter().zip(&expected).all(|(a, b)| are_near(*a, *b)), "{asked:?}");
-            let given = [0.7, 0.31, 20.0];
+            let given = [0.7, 0.31, 10.0];
             let found = stopped(Times::from(given));
             assert!([0.31, 0.7, 10.0].iter().all(|time| found.iter().any(|step| step[0] == *time)), "{found:?}");
             assert_eq!([stopped(Times::from(given.to_vec())), stopped(Times::from(&given[..]))], [found.clone(), found]);
@@ -189,6 +189,94 @@ behaviours! {
             assert_eq!(asked, times);
             assert_eq!(found, steps(kind.run(load(), stepping, 2.0)));
         }
+    }
+
+    times_are_one_only_if_they_agree_but_for_rounding: kind, C => {
+        // a jump at 0.4, and times beside it; the start, where the load does not jump; two that differ by rounding
+        let rows = [(0.0, 0.0), (0.4, 0.1), (0.4, 0.3), (1.0, 0.2)].map(|(time, force)| (time, Load::force(force)));
+        let load = || PiecewiseLinear::new(&rows).unwrap();
+        let times = [0.0, 0.3999999999, 0.4, 0.4000000001, 0.7, 0.7 + 1e-16, 0.7 - 1e-12, 1.0];
+        for stepping in [Stepping::fixed(0.5), Stepping::fixed(0.4), Stepping::adaptive(1e-3)] {
+            let mut run = kind.run(load(), stepping, 1.0).sample_at(times).unwrap();
+            let mut found = Vec::new();
+            while run.next_step().unwrap().is_some() {
+                let asked = run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for());
+                found.extend(asked.map(|sample| [sample.report().time, sample.contact().force()]));
+            }
+            let expected = [
+                [0.0, 0.0], [0.3999999999, 0.1], [0.4, 0.1], [0.4, 0.3], [0.4000000001, 0.3], [0.7 - 1e-12, 0.25], [0.7, 0.25],
+                [1.0, 0.2],
+            ];
+            assert_eq!(found.len(), expected.len(), "{stepping:?}: {found:?}");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!(found[0] == expected[0] && (found[1] - expected[1]).abs() < 1e-6, "{found:?} {expected:?}");
+            }
+        }
+        // times without a state are refused
+        for time in [-1e-6, 1.0001, 1e300] {
+            let run = || kind.run(load(), Stepping::fixed(0.5), 1.0);
+            for refusal in [run().sample_at([0.5, time]).err(), run().stop_at(vec![time]).err()] {
+                let text = refusal.expect("refused").to_string();
+                assert!(text.contains("time to stop at or to sample") && text.contains("the end of the run"), "{text}");
+            }
+        }
+        assert!(kind.run(load(), Stepping::fixed(0.5), 0.3).stop_at([3.0 * 0.1]).is_ok());
+    }
+
+    resumed_runs_sample_every_time_once: kind, C => {
+        // corners at multiples of 0.3, and samples at multiples of 0.05, which differ by rounding
+        let folder = Temporary::folder("resumed-samples");
+        let rows: Vec<_> = (0..4).map(|k| (0.3 * f64::from(k), Load::force(0.02 + 0.01 * f64::from(k % 2)))).collect();
+        let load = || PiecewiseLinear::new(&rows).unwrap();
+        let samples = |run: &Run<'static, C>| -> Vec<(u64, bool)> {
+            run.samples().map(|sample| { let sample = sample.unwrap(); (sample.report().time.to_bits(), sample.is_asked_for()) }).collect()
+        };
+        let path = folder.join("run");
+        let whole = |contact: C| (kind.follow)(contact, Box::new(load()), Stepping::adaptive(1e-3), 0.9).sample_at(Times::every(0.05)).unwrap();
+        let (mut run, mut all, mut cuts) = (whole((kind.new)()).autosave_to(&path, Duration::ZERO), Vec::new(), Vec::new());
+        let mut taken = 0;
+        while run.next_step().unwrap().is_some() {
+            all.extend(samples(&run));
+            taken += 1;
+            fs::copy(&path, folder.join(format!("run-{taken}"))).unwrap();
+            cuts.push(all.len());
+        }
+        for (k, cut) in cuts.iter().enumerate() {
+            let mut contact = (kind.new)();
+            (kind.resume)(&mut contact, &folder.join(format!("run-{}", k + 1))).unwrap();
+            let (mut run, mut found) = (whole(contact), all[..*cut].to_vec());
+            while run.next_step().unwrap().is_some() {
+                found.extend(samples(&run));
+            }
+            assert_eq!(found, all, "resumed after {} steps", k + 1);
+        }
+        let asked = all.iter().filter(|sample| sample.1).count();
+        assert!(cuts.len() > 10 && asked == 18, "{} {asked}", cuts.len());
+    }
+
+    fixed_steps_look_at_no_load_ahead: kind, C => {
+        // the latest time at which a load is asked for; its breakpoints are those of a channel that is read a little ahead
+        #[derive(Debug)]
+        struct Channel(Arc<std::sync::Mutex<f64>>);
+        impl LoadHistory for Channel {
+            fn at(&self, t: f64) -> Load {
+                let mut latest = self.0.lock().unwrap();
+                *latest = latest.max(t);
+                Load::force(0.2 + 0.1 * t)
+            }
+            fn next_breakpoint(&self, after: f64) -> Option<f64> {
+                Some((10.0 * after).floor() * 0.1 + 0.1)
+            }
+        }
+        let latest = Arc::new(std::sync::Mutex::new(0.0));
+        let mut run = kind.run(Channel(Arc::clone(&latest)), Stepping::fixed(0.07), 2.0);
+        let (mut steps, mut ends) = (0, 0.0);
+        while let Some(report) = run.next_step().unwrap() {
+            let asked = *latest.lock().unwrap();
+            assert!(asked <= report.time && report.time >= ends, "{asked} after {}", report.time);
+            (steps, ends) = (steps + 1, report.time);
+        }
+        assert!(steps > 30 && ends == 2.0);
     }
 
     a_flag_ends_a_step_and_the_run_goes_on: kind, C => {
@@ -639,4 +727,22 @@ fn a_long_step_is_cancelled_within_it() {
         assert!(matches!(run.next_step(), Err(Error::Cancelled { .. })));
         assert_eq!((run.contact().time(), run.contact().force(), run.progress().steps), (0.0, 0.0, 0));
     });
+}
+
+/// A tolerance of the solver that was set counts in adaptive runs, too: stricter than the default, it is kept in every step.
+#[test]
+fn a_strict_tolerance_of_the_solver_counts_in_adaptive_runs() {
+    let solved_to = |settings: Settings| {
+        let mut contact = sphere_on(Grid::square(24, 4.0e-3).unwrap(), rubber(), settings);
+        let load = Ramp::new(Load::force(0.1), Load::force(0.5), 1.0).unwrap();
+        let mut run = contact.follow(&load, Stepping::adaptive(1e-2), 10.0);
+        while run.next_step().unwrap().is_some() {}
+        run.error_budget().solver
+    };
+    let [strict, default, loose] = [1e-9, 1e-6, 1e-2].map(|set| solved_to(Settings::default().with_tolerance(set)));
+    assert!(
+        strict <= 1e-9 && default > 1e-6 && default <= 3e-4 && loose >= default,
+        "{strict:e} {default:e} {loose:e}"
+    );
+    assert_eq!(default, solved_to(Settings::default()));
 }
