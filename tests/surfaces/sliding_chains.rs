@@ -73,7 +73,11 @@ impl Scene {
         waves[0][0] = 1.0;
         let lengths = bodies.lengths();
         let hole = (!line && draws.chance(0.15)).then(|| {
-            [draws.between(-0.4, 0.4) * lengths[0], draws.between(-0.4, 0.4) * lengths[1], 0.2 * lengths[0].min(lengths[1])]
+            [
+                draws.between(-0.4, 0.4) * lengths[0],
+                draws.between(-0.4, 0.4) * lengths[1],
+                0.2 * lengths[0].min(lengths[1]),
+            ]
         });
         let mut scene = Scene {
             bodies,
@@ -284,13 +288,21 @@ fn states_are_those_of_their_problem_whatever_came_before() {
                 (Ok(found), Ok(fresh)) => (found, fresh),
                 (Err(a), Err(b)) if !not_found(&a) && !not_found(&b) => {
                     infeasible += 1;
-                    if place == 0 && only == number { println!("  infeasible {name}: {a}"); }
+                    if place == 0 && only == number {
+                        println!("  infeasible {name}: {a}");
+                    }
                     continue;
                 }
                 (a, b) => {
                     refused[usize::from(fold > 1e3)] += 1;
-                    let text = |own: viscocontact::Result<SlidingReport>| own.map_or_else(|e| e.to_string(), |r| r.to_string());
-                    println!("refused {name}: fold {fold:.1e}, {velocity:?} {load}: {:.110} | {:.110}", text(a), text(b));
+                    let text = |own: viscocontact::Result<SlidingReport>| {
+                        own.map_or_else(|e| e.to_string(), |r| r.to_string())
+                    };
+                    println!(
+                        "refused {name}: fold {fold:.1e}, {velocity:?} {load}: {:.110} | {:.110}",
+                        text(a),
+                        text(b)
+                    );
                     continue;
                 }
             };
@@ -302,7 +314,11 @@ fn states_are_those_of_their_problem_whatever_came_before() {
             let energy: f64 = influence.displacement(&differ).iter().zip(&differ).map(|(u, p)| u * p).sum();
             let sums: f64 = [&chain, &anew].map(|own| own.contact().pressure().iter().sum::<f64>()).iter().sum();
             let same = if sums > 0.0 { energy / (sums * own.unit * scene.tolerance) } else { 0.0 };
-            let force = if report.force == fresh.force { 0.0 } else { (report.force / fresh.force - 1.0).abs() / scene.tolerance };
+            let force = if report.force == fresh.force {
+                0.0
+            } else {
+                (report.force / fresh.force - 1.0).abs() / scene.tolerance
+            };
             let energies = [0, 1].map(|axis| report.velocity[axis] * report.lateral_force[axis]);
             assert!(energies[0] + energies[1] >= 0.0, "{name}: {report:?}");
             let measures = [own.gap, own.penetration, own.balance, own.drag * 1e6, same, force];
@@ -311,7 +327,10 @@ fn states_are_those_of_their_problem_whatever_came_before() {
             }
             let limits = [3.0, 3.0, 3.0, 1.0, 3.0, f64::INFINITY];
             if measures.iter().zip(limits).any(|(measure, limit)| *measure > limit) {
-                println!("FAIL {name}: {measures:?} fold {fold:.1e} {velocity:?} {load} {report} residual {:e} tol {:e} | anew {fresh}", report.residual, scene.tolerance);
+                println!(
+                    "FAIL {name}: {measures:?} fold {fold:.1e} {velocity:?} {load} {report} residual {:e} tol {:e} | anew {fresh}",
+                    report.residual, scene.tolerance
+                );
                 failures.push(name);
             }
         }
