@@ -35,7 +35,7 @@ macro_rules! both {
             /// stop_at : times, optional
             ///     Where steps end too: a sequence of times [s], or `Times`.
             /// sample_at : times, optional
-            ///     Times at which `Run.samples` and `Run.table` give the state. Samples leave the steps as they are.
+            ///     Times between the start and `until` at which `Run.samples` and `Run.table` give the state. Samples leave the steps as they are.
             /// fields_to : float, optional
             ///     Error in time of the pressure at the times of `sample_at`, relative, in [1e-5, 0.1]; `Sample.field` has the error estimated.
             ///     Without it approach and force alone are as exact as `tolerance` says.

@@ -38,7 +38,7 @@ pub struct ErrorBudget {
     /// step after a jump or a corner of a force it follows from the material alone. Measured on a sphere and six bodies
     /// (`tests/time/fixed_steps.rs`), the true error is 0.5 to 1.5 times the estimate for forces that jump or grow
     /// linearly. It is up to 4.5 times the estimate where a force begins like a power of time, since the estimate does
-    /// not include its course within the first step. It is down to 0.05 times under a given motion of bodies that begin
+    /// not include its course within the first step. It is down to 0.02 times under a given motion of bodies that begin
     /// to touch, when the first cells touch in part.
     pub time: Option<f64>,
     /// Greatest estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the

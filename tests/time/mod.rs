@@ -18,5 +18,6 @@ mod states_limits;
 mod states_merging;
 mod states_outside;
 mod states_population;
+mod taps_in_space;
 mod temperature;
 mod time_rules;
