@@ -146,7 +146,7 @@ impl Identification {
         // computed forces have no noise
         let problem = self.clone().noise(Noise::White).planned(std::slice::from_ref(experiment))?;
         let values = self.given(&problem, values)?;
-        let prony = problem.finite_prony(&values)?;
+        let prony = problem.prony(&values)?.finite()?;
         problem.samples(0, &values, &prony)
     }
 
@@ -176,7 +176,7 @@ impl Identification {
         }
         let problem = self.planned(experiments)?;
         let values = self.given(&problem, values)?;
-        problem.finite_prony(&values)?;
+        problem.prony(&values)?.finite()?;
         let coordinates = problem.coordinates(&values);
         let inverse = inverse_gram(&problem.jacobian(&coordinates)?, 0.0)?;
         let sigma = if let Noise::Covariance(_) = self.noise { 1.0 } else { sigma };

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use faer::Mat;
 
-use crate::error::{Error, Result, within};
+use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
 use crate::model::{Model, Scale};
@@ -228,14 +228,6 @@ impl Problem {
         let count = coordinates.len();
         let ends: Vec<_> = (0..count).map(|column| [-WIDTH, WIDTH].map(|width| on_scales(column, width))).collect();
         Mat::from_fn(count, count, |i, j| (ends[j][1][i] - ends[j][0][i]) / (2.0 * WIDTH))
-    }
-
-    /// The exponentials of the material of given values, which are no steps of a search: a law that is not finite is refused.
-    pub(crate) fn finite_prony(&self, values: &[f64]) -> Result<Prony> {
-        let prony = self.prony(values)?;
-        let endless = prony.moduli.iter().copied().find(|modulus| !modulus.is_finite());
-        within("modulus of the law", endless.unwrap_or_default(), true, "finite at all times from t = 0 on")?;
-        Ok(prony)
     }
 
     /// The exponentials of the material of given values.

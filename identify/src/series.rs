@@ -41,6 +41,13 @@ impl Prony {
         Prony { moduli, rates }
     }
 
+    /// Itself, unless its law is not finite: for values that are no steps of a search.
+    pub(crate) fn finite(self) -> Result<Prony> {
+        let endless = self.moduli.iter().copied().find(|modulus| !modulus.is_finite());
+        within("modulus of the law", endless.unwrap_or_default(), true, "finite at all times from t = 0 on")?;
+        Ok(self)
+    }
+
     /// E(t).
     pub(crate) fn modulus(&self, t: f64) -> f64 {
         self.moduli.iter().zip(&self.rates).map(|(modulus, rate)| modulus * (-t * rate).exp()).sum()

@@ -67,12 +67,6 @@ fn pull_offs_are_told_from_what_the_fit_explains() {
         let told = fit.warnings().iter().any(|warning| matches!(warning, FitWarning::PullOff { .. }));
         *if pull > 0.0 { &mut with } else { &mut without } += 1;
         if told != (pull > 0.0) {
-            println!(
-                "{seed} {pull:.3} {:?} {:?} {:?}",
-                fit.warnings(),
-                fit.estimates().iter().map(|e| (e.name.clone(), e.value, e.limit)).collect::<Vec<_>>(),
-                fit.sigma() / curve.force().iter().fold(0.0, |a: f64, b| a.max(*b))
-            );
             if told { &mut wrong } else { &mut missed }.push((seed, pull));
         }
     }

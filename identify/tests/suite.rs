@@ -1,5 +1,6 @@
 //! Tests of the public interface.
 
+mod beyond;
 mod bounds;
 mod coverage;
 mod data;

@@ -235,7 +235,7 @@ pub enum Error {
     Step(#[from] StepError),
 
     /// A [`Snapshot`](crate::contact::Snapshot), or a history of the stress, is of another contact.
-    #[error("{what} is of another contact: {remedy}")]
+    #[error("{what} was taken of another contact: {remedy}")]
     OtherContact {
         /// What was made of another contact.
         what: &'static str,

@@ -2,6 +2,7 @@
 
 mod absurd_sizes;
 mod checkpoint;
+mod clauses;
 mod diagnosis;
 mod documents;
 mod errors;

@@ -88,7 +88,7 @@ impl Fit {
         let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
         let jacobian = &problem.jacobian(coordinates)?;
         let values = problem.values(coordinates);
-        let prony = problem.finite_prony(&values)?;
+        let prony = problem.prony(&values)?.finite()?;
         let (count, points) = (coordinates.len(), problem.len());
         if points <= count {
             return Err(Error::TooFewPoints { points, parameters: count });

@@ -105,7 +105,7 @@ impl EnergyBalance {
         contact.covers(coverage::ENERGIES)?;
         let cells = contact.grid().len();
         count_within("rigid bodies of an energy balance", contact.bodies(), contact.bodies() == 1, "1")?;
-        let before = "0: begin before the first step";
+        let before = "0, before any step";
         within("time at which an energy balance begins", contact.time(), contact.time() == 0.0, before)?;
         let moved = crate::sum::greatest(contact.displacement());
         within("displacement where an energy balance begins", moved, moved == 0.0, before)?;

@@ -280,7 +280,8 @@ mod tests {
             other => panic!("unexpected {other}"),
         };
         assert_eq!(refused(RoughSpec { hurst: 1.1, ..SPEC }), "Hurst exponent");
-        assert_eq!(refused(RoughSpec { longest: 0.2, ..SPEC }), "longest wavelength");
+        assert_eq!(refused(RoughSpec { longest: 0.06, ..SPEC }), "longest wavelength");
+        assert_eq!(refused(RoughSpec { longest: 0.2, ..SPEC }), "roll-off wavelength");
         assert_eq!(refused(RoughSpec { roll_off: 0.01, ..SPEC }), "roll-off wavelength");
         let fine = Rough::new(&grid, RoughSpec { shortest: 0.06, ..SPEC }).unwrap_err();
         assert!(matches!(fine, Error::Map(MapError::TooFine { .. })), "{fine}");
