@@ -6,8 +6,11 @@ use crate::extent::Extent;
 use crate::parallel::Rows;
 use crate::sum;
 
-/// A contact of fewer cells across is not resolved.
-pub(crate) const LEAST_ACROSS: f64 = 8.0;
+/// A contact of fewer cells across, or of fewer cells, which are a disc as wide, is not resolved. By where it lies between the cells the mean
+/// chord makes of such a disc one of 7 to 8.5.
+const LEAST_ACROSS: f64 = 8.0;
+const LEAST_CELLS: f64 = 50.0;
+const LEAST_MEAN: f64 = 7.0;
 
 /// How contact goes on beyond the first and the last cells of a field along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +26,8 @@ pub(crate) struct Outline<'a> {
     pub(crate) rows: &'a Rows,
     pub(crate) pressure: &'a [f64],
     pub(crate) ends: [Ends; 2],
+    /// How many cells of the grid each of its cells stands for.
+    pub(crate) images: usize,
 }
 
 /// Cells in contact, and their sides along each axis with which contact ends.
@@ -43,7 +48,7 @@ impl Outline<'_> {
         let ([n1, n2], seam) = (rows.cells(), usize::from(self.ends[0].joined));
         let counted = if self.is_one_band() { n1 } else { n1 - n1.div_ceil(rows.band_cells() / n2) };
         let share = if self.is_one_band() { 1.0 } else { (n1 - 1 + seam) as f64 / counted as f64 };
-        Resolution { cells, sides: [across * share, along] }
+        Resolution { cells, sides: [across * share, along] }.imaged(self.images)
     }
 
     /// Of the cells under each of `N` bodies from `first` on, with the rectangles of the field that hold them. In one process.
@@ -64,7 +69,7 @@ impl Outline<'_> {
                 *extent = Some(extent.map_or(cell, |extent: Extent| extent.with(cell)));
             }
         }
-        found
+        found.map(|(resolution, extent)| (resolution.imaged(self.images), extent))
     }
 
     fn is_one_band(&self) -> bool {
@@ -93,16 +98,24 @@ impl Outline<'_> {
 }
 
 impl Resolution {
-    /// Cells across the contact: 4/π times the mean chord along the axis on which it is shorter, which is the diameter of a disc; at most the
-    /// `extent` of all cells on a grid of so many `cells`. Infinite without contact, and where contact has no end.
-    pub(crate) fn across(&self, extent: Extent, cells: [usize; 2], periodic: [bool; 2]) -> f64 {
+    fn imaged(self, images: usize) -> Resolution {
+        let Resolution { cells, sides } = self;
+        Resolution { cells: cells * images as f64, sides: sides.map(|sides| sides * images as f64) }
+    }
+
+    /// Cells across the contact, if they are few: 4/π times the mean chord along the axis on which it is shorter, which is the diameter of a
+    /// disc; at most the `extent` of all cells on a grid of so many `cells`. `None` without contact, and where contact has no end.
+    pub(crate) fn few(&self, extent: Extent, cells: [usize; 2], periodic: [bool; 2]) -> Option<f64> {
         let is_line = |axis: usize| cells[axis] == 1 && periodic[axis];
-        let of_chord = if is_line(0) || is_line(1) { 1.0 } else { 1.0 / FRAC_PI_4 };
+        let line = is_line(0) || is_line(1);
         let along = |axis: usize| {
             let extent = (extent.high[axis] + 1 - extent.low[axis]) as f64;
-            (of_chord * 2.0 * self.cells / self.sides[axis]).min(extent)
+            let chord = 2.0 * self.cells / self.sides[axis] / if line { 1.0 } else { FRAC_PI_4 };
+            let few = extent < LEAST_ACROSS || chord < LEAST_MEAN || !line && self.cells < LEAST_CELLS;
+            few.then(|| chord.min(extent))
         };
-        (0..2).filter(|&axis| !is_line(axis) && self.sides[axis] > 0.0).map(along).fold(f64::INFINITY, f64::min)
+        let ended = (0..2).filter(|&axis| !is_line(axis) && self.sides[axis] > 0.0);
+        ended.filter_map(along).reduce(f64::min)
     }
 }
 
@@ -144,7 +157,7 @@ mod tests {
             };
             let expected = [0, 1].map(|axis| (0..n1 * n2).filter(|&k| pressed(k)).map(|k| ended(k, axis)).sum::<f64>());
             let rows = Rows::all(cells);
-            let outline = Outline { rows: &rows, pressure: &pressure, ends };
+            let outline = Outline { rows: &rows, pressure: &pressure, ends, images: 1 };
             let found = outline.resolution();
             assert_eq!((found.cells, found.sides[1]), (pressure.iter().sum(), expected[1]), "{scene}");
             let exact = if outline.is_one_band() { 1e-12 } else { 0.1 };
@@ -153,7 +166,7 @@ mod tests {
             let on_ranks = Threads::run(3, |ranks| {
                 let rows = Rows::of_rank(cells, ranks);
                 let own = &pressure[rows.own().start * n2..rows.own().end * n2];
-                Outline { rows: &rows, pressure: own, ends }.resolution()
+                Outline { rows: &rows, pressure: own, ends, images: 1 }.resolution()
             });
             assert!(on_ranks.unwrap().iter().all(|other| *other == found), "{scene}");
             let [(one, extent)] = outline.resolutions::<1>(0, |_| 0);

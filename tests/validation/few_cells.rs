@@ -9,8 +9,9 @@ use viscocontact::prelude::*;
 
 use crate::common::{Draws, elastic, from_environment};
 
-/// Cells across the contact of the cells that `own` holds for: 4/π times the mean chord, along one axis or the other, at most their extent.
-fn across(contact: &ViscoelasticContact, own: impl Fn([f64; 2]) -> bool) -> f64 {
+/// Cells across the contact of the cells that `own` holds for, if they are few: 4/π times the mean chord, along one axis or the other, at most
+/// their extent.
+fn few(contact: &ViscoelasticContact, own: impl Fn([f64; 2]) -> bool) -> Option<f64> {
     let (grid, periodic) = (contact.grid(), contact.kernel().periodic_axes());
     let cells = grid.cells();
     let touches =
@@ -18,21 +19,29 @@ fn across(contact: &ViscoelasticContact, own: impl Fn([f64; 2]) -> bool) -> f64 
     let along = |axis: usize| {
         let (mut inside, mut ends, mut low, mut high) = (0, 0, usize::MAX, 0);
         for other in 0..cells[1 - axis] {
-            let line: Vec<bool> =
-                (0..cells[axis]).map(|k| touches(if axis == 0 { [k, other] } else { [other, k] })).collect();
-            let outside = |k: usize| if periodic[axis] { !line[k % line.len()] } else { line.get(k) != Some(&true) };
-            for k in (0..line.len()).filter(|&k| line[k]) {
-                let before = if k > 0 { !line[k - 1] } else { outside(line.len() - 1) || !periodic[axis] };
-                ends += usize::from(before) + usize::from(outside(k + 1));
+            let n = cells[axis];
+            let line: Vec<bool> = (0..n).map(|k| touches(if axis == 0 { [k, other] } else { [other, k] })).collect();
+            for k in (0..n).filter(|&k| line[k]) {
+                let before = if k > 0 { line[k - 1] } else { periodic[axis] && line[n - 1] };
+                let after = if k + 1 < n { line[k + 1] } else { periodic[axis] && line[0] };
+                ends += usize::from(!before) + usize::from(!after);
                 (inside, low, high) = (inside + 1, low.min(k), high.max(k));
             }
         }
-        if ends == 0 {
-            return f64::INFINITY;
-        }
-        (2.0 * inside as f64 / ends as f64 / FRAC_PI_4).min((high + 1 - low) as f64)
+        let (chord, extent) = (2.0 * inside as f64 / ends as f64 / FRAC_PI_4, (high + 1).saturating_sub(low) as f64);
+        let few = ends > 0 && (extent < 8.0 || chord < 7.0 || inside < 50);
+        few.then(|| chord.min(extent))
     };
-    along(0).min(along(1))
+    [along(0), along(1)].into_iter().flatten().reduce(f64::min)
+}
+
+/// The warning of a step and its number are those of the contact that few cells resolve.
+fn assert_same(report: &StepReport, few: Option<f64>, name: &str) {
+    assert_eq!(report.warnings.contains(Warnings::FEW_CELLS), few.is_some(), "{name}");
+    match (report.figures.cells_across, few) {
+        (Some(told), Some(few)) => assert!((told / few - 1.0).abs() < 1e-12, "{name}: {few}"),
+        (told, few) => assert_eq!(told, few, "{name}"),
+    }
 }
 
 /// The ratio of a value to the one on a finer mesh, less 1.
@@ -49,7 +58,7 @@ fn a_body_on_few_cells_is_warned_of_beside_others() {
         let (count, n) = (2 + draws.below(2), 20 + 2 * draws.below(14));
         let radii: Vec<f64> = (0..count).map(|_| draws.scale(2.0e-3, 8.0e-3)).collect();
         // the radius of each contact, in cells of the coarse mesh
-        let widths: Vec<f64> = (0..count).map(|_| draws.scale(0.6, 0.4 * n as f64)).collect();
+        let widths: Vec<f64> = (0..count).map(|_| draws.scale(1.0, 0.4 * n as f64)).collect();
         let side = 4.0e-3;
         let at = |body: usize| (body as f64 - 0.5 * (count as f64 - 1.0)) * side + 1.0e-6;
         let ball = |body: usize| Shifted::new(Sphere::new(radii[body]).unwrap(), [at(body), 0.0]).unwrap();
@@ -69,19 +78,15 @@ fn a_body_on_few_cells_is_warned_of_beside_others() {
         };
         let ((report, contact), (_, fine)) = (solve(n), solve(4 * n));
         let own = |body: usize| move |[x1, _]: [f64; 2]| (x1 - at(body)).abs() < 0.5 * side;
-        let fewest = (0..count).map(|body| across(&contact, own(body))).fold(f64::INFINITY, f64::min);
+        let fewest = (0..count).filter_map(|body| few(&contact, own(body))).reduce(f64::min);
         let name = format!("scene {number}, {widths:?} on {n}: {report}");
-        assert_eq!(report.warnings.contains(Warnings::FEW_CELLS), fewest < 8.0, "{name}, {fewest}");
-        match report.figures.cells_across {
-            Some(told) => assert!((told / fewest - 1.0).abs() < 1e-12, "{name}, {fewest}"),
-            None => assert!(fewest >= 8.0, "{name}"),
-        }
+        assert_same(&report, fewest, &name);
         let errors = (0..count)
             .map(|body| error(contact.body(body).unwrap().approach, fine.body(body).unwrap().approach))
             .fold(0.0, f64::max);
         assert!(errors.is_finite(), "{name}");
-        assert!(fewest < 8.0 || errors < 5e-3, "{name}: {errors}");
-        warned += u32::from(fewest < 8.0);
+        assert!(fewest.is_some() || errors < 5e-3, "{name}: {errors}");
+        warned += u32::from(fewest.is_some());
         match contact.mesh_error().unwrap() {
             Some(estimate) => {
                 assert!(errors < 4.0 * estimate.approach, "{name}: {errors} for {estimate}");
@@ -89,7 +94,7 @@ fn a_body_on_few_cells_is_warned_of_beside_others() {
                 worst = worst.max(errors / estimate.approach);
             }
             None => {
-                assert!(fewest < 8.0, "{name}, {fewest}");
+                assert!(fewest.is_some(), "{name}");
                 unresolved += 1;
             }
         }
@@ -101,7 +106,7 @@ fn a_body_on_few_cells_is_warned_of_beside_others() {
 /// Rough surfaces, periodic and on a ball, from few cells in a patch to many.
 #[test]
 fn patches_of_few_cells_on_average_are_warned_of() {
-    // number, greatest and sum of the errors of area and approach: below 4 cells across, to 8, and above
+    // number, greatest and sum of the errors of area and approach: below 4 cells across, few, and enough
     let mut found = [(0, [0.0_f64; 2], [0.0; 2]); 3];
     for number in 0..from_environment("FEW_CELLS_SCENES", 30) {
         let mut draws = Draws::new(2_200 + number);
@@ -124,11 +129,11 @@ fn patches_of_few_cells_on_average_are_warned_of() {
             (report, contact)
         };
         let ((report, contact), (_, fine)) = (solve(n), solve(4 * n));
-        let cells = across(&contact, |_| true);
+        let cells = few(&contact, |_| true);
         let name = format!("scene {number}: {report}");
-        assert_eq!(report.warnings.contains(Warnings::FEW_CELLS), cells < 8.0, "{name}, {cells}");
+        assert_same(&report, cells, &name);
         let errors = [error(contact.contact_area(), fine.contact_area()), error(contact.approach(), fine.approach())];
-        let (count, greatest, sum) = &mut found[usize::from(cells >= 4.0) + usize::from(cells >= 8.0)];
+        let (count, greatest, sum) = &mut found[cells.map_or(2, |cells| usize::from(cells >= 4.0))];
         *count += 1;
         (0..2).for_each(|k| (greatest[k], sum[k]) = (greatest[k].max(errors[k]), sum[k] + errors[k]));
         assert!(errors.iter().all(|error| error.is_finite()), "{name}");
@@ -138,11 +143,11 @@ fn patches_of_few_cells_on_average_are_warned_of() {
             assert!(holds, "{name}: {errors:?} for {estimate}");
         }
     }
-    println!("below 4, to 8, above: number, greatest and sum of the errors of area and approach: {found:?}");
+    println!("below 4, few, enough: number, greatest and sum of the errors of area and approach: {found:?}");
     let [few, some, many] = found;
     assert!(few.0 > 3 && some.0 > 3 && many.0 > 3);
     // what the page says of eight cells, and of four
-    assert!(many.1[0] < 0.04 && many.1[1] < 0.013 && some.1[0] < 0.1 && some.1[1] < 0.1);
+    assert!(many.1[0] < 0.04 && many.1[1] < 0.02 && some.1[0] < 0.1 && some.1[1] < 0.1, "{found:?}");
     let mean = |(count, _, sum): (i32, [f64; 2], [f64; 2])| sum.map(|sum| sum / f64::from(count));
     assert!((0..2).all(|k| mean(few)[k] > 3.0 * mean(many)[k]), "{found:?}");
 }

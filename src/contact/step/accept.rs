@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::contact::read::limits::{DEEP, LONG_STEP};
 use crate::contact::{Computation, Edge, Figures, Scene, State, Step, TimeRule, ViscoelasticContact, Warnings};
 use crate::extent::Extent;
-use crate::observe::resolution::{LEAST_ACROSS, Outline, Resolution};
+use crate::observe::resolution::{Outline, Resolution};
 use crate::solver::RigidMotion;
 
 impl Computation {
@@ -61,18 +61,17 @@ impl ViscoelasticContact {
         let (Scene { grid, kernel, bodies, .. }, state) = (&*self.scene, &self.computation.state);
         let State { region, indenter, current, .. } = state;
         let (rows, cells, periodic) = (region.rows(), grid.cells(), kernel.periodic_axes());
-        let outline = Outline { rows: &rows, pressure: &current.solution.pressure, ends: region.ends(periodic) };
-        let across = if *bodies == 1 {
-            outline.resolution().across(reach, cells, periodic)
-        } else {
-            let body = |k: usize| indenter.gap().owner(indenter.index(grid, region, k));
-            let found = (0..*bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
-            let across = |(resolution, extent): (Resolution, Option<Extent>)| {
-                extent.map(|extent| resolution.across(region.shown_extent(extent), cells, periodic))
-            };
-            found.filter_map(across).fold(f64::INFINITY, f64::min)
+        let (pressure, ends, images) = (&current.solution.pressure, region.ends(periodic), region.images());
+        let outline = Outline { rows: &rows, pressure, ends, images };
+        if *bodies == 1 {
+            return outline.resolution().few(reach, cells, periodic);
+        }
+        let body = |k: usize| indenter.gap().owner(indenter.index(grid, region, k));
+        let found = (0..*bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
+        let few = |(resolution, extent): (Resolution, Option<Extent>)| {
+            resolution.few(region.shown_extent(extent?), cells, periodic)
         };
-        Some(across).filter(|across| *across < LEAST_ACROSS)
+        found.filter_map(few).reduce(f64::min)
     }
 }
 

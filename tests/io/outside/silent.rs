@@ -66,7 +66,8 @@ fn far_from_zero() -> FnGeometry<impl Fn(f64, f64) -> f64> {
 
 /// Creep from 0.1 s to 1000 s.
 fn table() -> CreepSeries {
-    let rows = [0.1, 1.0, 10.0, 100.0, 1000.0].map(|t: f64| (t, 1.0e-6 * (1.0 + 0.1 * t.ln_1p())));
+    let row = |t: f64| (t, 1.0e-6 * (1.0 + 0.1 * t.ln_1p()));
+    let rows: Vec<_> = (-4..=12).map(|k| row(10f64.powf(0.25 * f64::from(k)))).collect();
     Measurements::creep(&rows).unwrap().fit().unwrap()
 }
 /// A run to `until`, and how far it came before it was refused.
@@ -173,7 +174,7 @@ const SCENES: &[Scene] = &[
 ("contact at the edge of the grid",
     || pressed(builder_on(grid(), zener()), Load::force(30.0)), "enlarge the grid"),
 ("contact beside the edge of the grid",
-    || pressed(builder_on(grid(), Material::incompressible(Elastic::new(1.0e6)?)), Load::approach(0.31e-3)), "enlarge the grid"),
+    || pressed(builder_on(grid(), Material::incompressible(Elastic::new(1.0e6)?)), Load::approach(0.35e-3)), "enlarge the grid"),
 ("a wave of another period",
     || periodic(&Wavy::new(1.0e-6, 0.4e-3)?, 48, Load::force(1.0e-3)), "make the grid as long"),
 // shapes and layers
@@ -187,7 +188,7 @@ const SCENES: &[Scene] = &[
 ("a steep cone", || pressed(builder_of(&Cone::new(0.8)?, grid(), zener()), Load::approach(1.0e-3)), "check that lengths are in m"),
 ("a radius in mm", || pressed(builder_of(&Sphere::new(1.0e-3)?, grid(), zener()), Load::approach(0.8e-3)), "check that lengths are in m"),
 ("sides in µm",
-    || pressed(builder_of(&sphere(), Grid::square(48, 4.0e3)?, zener()), Load::approach(1.0e-6)), "refine the mesh"),
+    || pressed(builder_of(&sphere(), Grid::square(48, 4.0e3)?, zener()), Load::force(0.1)), "refine the mesh"),
 ("a layer pressed in by half of its thickness",
     || {
         let kernel = InfluenceKernel::layer(&grid(), Layer::bonded_to_rigid(60.0e-6, 0.5)?)?;
@@ -204,10 +205,10 @@ const SCENES: &[Scene] = &[
 ("a modulus in MPa",
     || pressed(builder_on(grid(), Material::incompressible(Elastic::new(1.0)?)), Load::approach(20.0e-6)), "moduli are in Pa"),
 ("a compliance in 1/GPa",
-    || pressed(builder_on(grid(), Material::incompressible(PowerLaw::new(1.0, 1.0, 0.2)?)).times(1e-2..=1e2), Load::force(0.0)).and_then(|_| {
+    || {
         let body = Material::incompressible(PowerLaw::new(1.0, 1.0, 0.2)?);
-        builder_on(grid(), body).times(1e-2..=1e2).build()?.step(1.0, Load::approach(20.0e-6)).map(told)
-    }), "moduli are in Pa"),
+        builder_on(grid(), body).times(1.0..=1e4).build()?.step(10.0, Load::approach(20.0e-6)).map(told)
+    }, "moduli are in Pa"),
 ("Young's modulus for shear, by its heading", in_tension, "fit_tension"),
 ("a table that falls where creep rises",
     || Measurements::creep(&[(0.1, 4.0e-6), (1.0, 3.0e-6), (10.0, 2.0e-6), (100.0, 1.0e-6)])?.fit().map(|_| String::new()), "compliances rise"),
@@ -289,7 +290,7 @@ const SCENES: &[Scene] = &[
     }
     Ok(last)
 }, "never touched"),
-("a load beyond a sweep of states", || StatesContact::new(&states()?, &zener())?.step(0.0, Load::approach(50.0e-6)).map(told), "Sweep"),
+("a load beyond a sweep of states", || StatesContact::new(&states()?, &zener())?.step(0.0, Load::approach(50.0e-6)).map(told), "sweep further"),
 // steady motions and attraction
 ("a shape that jumps at its period", sliding_over_steps, "jumps at the period"),
 ("a thin layer on a base of its own", || {
