@@ -245,6 +245,8 @@ pub(super) struct Rules {
 const STEEP: f64 = 1e5;
 /// Below it a constant and a straight line alone have moments.
 const FLAT: f64 = 1e-9;
+/// The last panel of a cell is longer than this part of it: its ends are far from those of the source.
+const LEAST_PART: f64 = 1e-3;
 
 impl Rules {
     pub(super) fn new() -> Rules {
@@ -283,7 +285,9 @@ impl Rules {
         };
         let own: Vec<f64> = self.gauss[panel.points].points().iter().map(of_point).collect();
         let after = whole - panel.begin - panel.length;
-        let [forward, mirrored] = [panel.begin, after.max(0.0)].map(|s| (-s / reach).exp());
+        // nothing is left after the last panel: rounding of it would count for a short reach
+        let after = if after < LEAST_PART * whole { 0.0 } else { after };
+        let [forward, mirrored] = [panel.begin, after].map(|s| (-s / reach).exp());
         [own.iter().map(|w| forward * w).collect(), own.iter().rev().map(|w| mirrored * w).collect()]
     }
 }

@@ -274,15 +274,20 @@ impl Problem<'_> {
         if high > low { own } else { own.max(least / self.tolerance) }
     }
 
-    /// The cells of a first set: the lowest ones, those below zero under a given approach.
+    /// The cells of a first set: the lowest ones, those below zero under a prescribed approach, of a body that leans on its support.
     fn lowest(&self) -> Vec<bool> {
-        let mut heights: Vec<f64> = self.gap.iter().copied().filter(|h| h.is_finite()).collect();
+        let n2 = self.grid.cells()[1];
+        let tilt = if self.free.tilts() { self.support().tilt } else { RigidMotion::default() };
+        let leans =
+            |(k, h): (usize, &f64)| if self.free.tilts() { h - tilt.at(self.grid.center(k / n2, k % n2)) } else { *h };
+        let gap: Vec<f64> = self.gap.iter().enumerate().map(leans).collect();
+        let mut heights: Vec<f64> = gap.iter().copied().filter(|h| h.is_finite()).collect();
         let level = if self.free.translation {
             let place = ((FIRST_PART * heights.len() as f64) as usize).min(heights.len() - 1);
             *heights.select_nth_unstable_by(place, f64::total_cmp).1
         } else {
             0.0
         };
-        self.gap.iter().map(|&h| h <= level).collect()
+        gap.iter().map(|&h| h <= level).collect()
     }
 }

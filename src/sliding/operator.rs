@@ -151,6 +151,21 @@ impl MovingBodies {
         bodies
     }
 
+    /// Bodies on which each cell has a spring that is compressed `by` \[m/Pa\] in addition.
+    pub(super) fn softened(&self, by: f64) -> MovingBodies {
+        let mut bodies = MovingBodies { transforms: 0, ..self.clone() };
+        bodies.response.factors.iter_mut().for_each(|factor| *factor += by);
+        let inverse = |factor: &Complex64| if *factor == Complex64::ZERO { *factor } else { factor.inv() };
+        bodies.inverse.factors.iter_mut().for_each(|factor| *factor = (inverse(factor) + by).inv());
+        bodies
+    }
+
+    /// The least compliance of any wave but those of none \[m/Pa\].
+    pub(super) fn least_compliance(&self) -> f64 {
+        let all = self.response.factors.iter().map(|factor| factor.norm());
+        all.filter(|own| *own > 0.0).fold(f64::INFINITY, f64::min)
+    }
+
     /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies resist.
     pub(super) fn drag(&mut self, pressure: &[f64]) -> [f64; 2] {
         let Multiplier { plane, coefficients, cells, .. } = &mut self.response;

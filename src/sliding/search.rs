@@ -10,43 +10,64 @@ use crate::solver::Freedom;
 const COARSEST: usize = 128;
 /// Residual allowed there.
 const ROUGHLY: f64 = 1e-3;
-/// The skew-symmetric part of the response grows by no less than this.
+/// Steps in the logarithm of the compliance of springs: the first, and the least before the search ends.
+const FIRST_STEP: f64 = 1.0;
 const LEAST_STEP: f64 = 1e-3;
+/// Springs of this part of the least compliance of any wave change nothing.
+const NEGLIGIBLE: f64 = 1e-3;
 
 impl Problem<'_> {
     /// The state, from the state of a coarser mesh, else from the pressure `before`, else from the state of the symmetric part of the response: in slow
-    /// motion a set would grow by one row of cells at a time. Where sets come back, the skew-symmetric part grows in steps.
+    /// motion a set would grow by one row of cells at a time. Where sets come back, springs on the cells, which press independently of each other,
+    /// lead to it: each set that stands changes little under somewhat stiffer springs.
     pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> Found {
         let coarse = self.on_coarser(bodies, before);
         let first = coarse.as_deref().unwrap_or(before);
-        let found = first.iter().any(|&p| p > 0.0).then(|| self.solve(bodies, first));
-        let mut sets = match found {
-            Some(found) if found.converged => return found,
-            found => found.map_or(0, |found| found.sets),
-        };
-        let mut solve = |skew: f64, from: &[f64]| {
-            if skew == 1.0 {
-                return self.solve(bodies, from);
+        let mut sets = 0;
+        if first.iter().any(|&p| p > 0.0) {
+            let found = self.solve(bodies, first);
+            if found.converged {
+                return found;
             }
-            let mut less = bodies.with_skew(skew);
-            let found = self.solve(&mut less, from);
-            bodies.transforms += less.transforms;
-            found
-        };
-        // not from the state before: a start that fails is left
-        let (mut last, mut reached, mut step) = (solve(0.0, &vec![0.0; before.len()]), 0.0, 1.0);
-        sets += last.sets;
-        loop {
-            let skew = f64::min(reached + step, 1.0);
-            let found = solve(skew, &last.pressure);
             sets += found.sets;
-            if found.converged && skew < 1.0 {
-                (last, reached, step) = (found, skew, 2.0 * step);
-            } else if found.converged || step <= LEAST_STEP || self.is_cancelled() {
-                return Found { sets, ..found };
+        }
+        // not from the state before: a start that fails is left
+        let nowhere = vec![0.0; before.len()];
+        let mut solve = |bodies: &mut MovingBodies, other: Option<MovingBodies>, from: &[f64]| {
+            let found = match other {
+                Some(mut other) => {
+                    let found = self.solve(&mut other, from);
+                    bodies.transforms += other.transforms;
+                    found
+                }
+                None => self.solve(bodies, from),
+            };
+            sets += found.sets;
+            Found { sets, ..found }
+        };
+        let symmetric = bodies.with_skew(0.0);
+        let start = solve(bodies, Some(symmetric), &nowhere);
+        let found = solve(bodies, None, &start.pressure);
+        if found.converged || self.is_cancelled() {
+            return found;
+        }
+        let (mut spring, mut step, mut last) = (bodies.greatest_compliance(), FIRST_STEP, nowhere);
+        let least = NEGLIGIBLE * bodies.least_compliance();
+        loop {
+            let softer = (spring > least).then(|| bodies.softened(spring));
+            let is_last = softer.is_none();
+            let found = solve(bodies, softer, &last);
+            if is_last && found.converged || step < LEAST_STEP || self.is_cancelled() {
+                return found;
+            }
+            if found.converged {
+                (last, step) = (found.pressure, 2.0 * step);
             } else {
+                // back, and on by less
+                spring *= step.exp();
                 step *= 0.25;
             }
+            spring *= (-step).exp();
         }
     }
 

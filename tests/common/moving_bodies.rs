@@ -41,6 +41,12 @@ impl Creep {
         self.glassy + self.terms.iter().map(|(c, _)| c).sum::<f64>()
     }
 
+    /// Response and loss of a kernel with its derivatives, at a distance x.
+    fn of_history(&self, kernel: &Kernel<'_>, x: f64, speed: f64) -> [f64; 2] {
+        let terms = self.terms.iter().map(|&(c, time)| (c, kernel.moved(x, speed * time), kernel.lost(x, speed * time)));
+        terms.fold([self.glassy * (kernel.value)(x), 0.0], |sum, (c, moved, lost)| [sum[0] + c * moved, sum[1] + c * lost])
+    }
+
     /// A body of this Poisson's ratio: C is (1 − ν)/2 of J.
     pub fn material(&self, nu: f64) -> Material {
         let scale = 2.0 / (1.0 - nu);
@@ -264,6 +270,7 @@ impl Bodies {
         Influence::new(cells, |i, j| period[i.rem_euclid(all[0]) as usize][j.rem_euclid(all[1]) as usize])
     }
 
+<<<<<<< HEAD
     /// Response and loss of the terms of the creep, of a kernel with its derivatives at a distance x.
     fn of_history(&self, kernel: &Kernel<'_>, x: f64, speed: f64) -> [f64; 2] {
         let terms =
@@ -272,6 +279,8 @@ impl Bodies {
             [sum[0] + c * moved, sum[1] + c * lost]
         })
     }
+=======
+>>>>>>> w-a
 
     fn of_cells(&self, axis: usize, speed: f64) -> Vec<Vec<[f64; 2]>> {
         let [(n, d), (m, side)] = [axis, 1 - axis].map(|axis| (self.cells[axis], self.spacing[axis]));
@@ -297,7 +306,7 @@ impl Bodies {
                     if far(x) { area * (2.0 * x * x - y * y) / r / r / r.powi(3) } else { corners(x, &of) }
                 },
             };
-            (0..2 * n - 1).map(|i| self.of_history(&kernel, (i as f64 - (n - 1) as f64) * d, speed)).collect()
+            (0..2 * n - 1).map(|i| self.creep.of_history(&kernel, (i as f64 - (n - 1) as f64) * d, speed)).collect()
         };
         let mut rows: Vec<Vec<[f64; 2]>> = (0..m).map(row).collect();
         if !matches!(self.base, Base::None) {
@@ -356,14 +365,12 @@ impl Bodies {
     }
 
     /// (1/π) ∫ over q > 0, along an axis, of what a wave adds to the half-space, times `wave` of q, and the loss of it. The
-    /// wave κ aside, or along the motion.
+    /// wave κ aside, or along the motion. Of the mean, a load buried in either body is taken out, at another depth than the crate's.
     fn integral(&self, axis: usize, x: f64, kappa: f64, (moves, speed): (bool, f64)) -> (Complex64, f64) {
         if matches!(self.base, Base::None) {
             return (Complex64::ZERO, 0.0);
         }
         let (h, d) = (self.thickness, self.spacing[axis]);
-        // of the mean, the buried load of the relaxed bodies is taken out, at another depth than the crate's
-        let relaxed = if kappa > 0.0 { 0.0 } else { self.base_relaxed() - self.creep.relaxed() };
         let (mut sum, mut loss) = (Complex64::ZERO, 0.0);
         let last = 20.0 / h;
         let reach = if moves { self.longest(axis, speed) } else { self.longest(axis, 0.0) };
@@ -373,19 +380,16 @@ impl Bodies {
                 let total = q.hypot(kappa);
                 let along = if moves { q } else { kappa };
                 let part = weight * of_cell(q, d) * d / PI;
-                let added = self.added(total, along * speed);
-                let own = added - 2.0 / total * relaxed * (-1.3 * total * h).exp();
+                let below = if let Base::Body(base) = &self.base { base.at(along * speed) } else { Complex64::ZERO };
+                let buried = (below - self.creep.at(along * speed)) * (2.0 / total * (-DEPTH * total * h).exp());
+                let own = self.added(total, along * speed) - if kappa > 0.0 { Complex64::ZERO } else { buried };
                 let wave = if moves { Complex64::from_polar(1.0, q * x) } else { Complex64::from((q * x).cos()) };
                 sum += own * wave * part;
-                loss += along * added.im * (q * x).cos() * part;
+                loss += along * own.im * (q * x).cos() * part;
             }
             (from, end) = (end, (2.0 * end).min(end + 3.0 / (x.abs() + self.spacing[axis])).min(last));
         }
-        (sum + relaxed * buried(x, 1.3 * h, d, self.datum), loss)
-    }
-
-    fn base_relaxed(&self) -> f64 {
-        if let Base::Body(base) = &self.base { base.relaxed() } else { 0.0 }
+        (sum, loss)
     }
 
     /// What is taken from the mean so that the relaxed bodies displace nothing at the datum; on a rigid base nothing.
@@ -399,7 +403,10 @@ impl Bodies {
             *base = relaxed(base);
         }
         still.spacing[axis] = 1e-3 * self.spacing[axis];
-        still.integral(axis, self.datum, 0.0, (true, 0.0)).0.re * 1e3
+        let (h, side) = (self.thickness, still.spacing[axis]);
+        let below = if let Base::Body(base) = &still.base { base.glassy } else { 0.0 };
+        let buried = (below - still.creep.glassy) * buried(self.datum, DEPTH * h, side, self.datum);
+        (still.integral(axis, self.datum, 0.0, (true, 0.0)).0.re + buried) * 1e3
     }
 
     /// Response and loss of the wave k aside.
@@ -424,11 +431,37 @@ impl Bodies {
             },
         };
         let at_datum = if k == 0 { self.at_datum(axis) } else { 0.0 };
+        let z = DEPTH * self.thickness;
+        let layered = k == 0 && !matches!(self.base, Base::None);
+        // of the half-space less the load buried in it nothing is left far away
+        let less = Kernel {
+            value: &|x| (kernel.value)(x) - buried(x, z, d, datum),
+            slope: &|x| (kernel.slope)(x) + FRAC_2_PI * ((x + half).hypot(z) / (x - half).hypot(z)).ln(),
+            curvature: &|x| {
+                let part = |x: f64| x / (x * x + z * z);
+                (kernel.curvature)(x) + FRAC_2_PI * (part(x + half) - part(x - half))
+            },
+            ..kernel
+        };
+        let below = Kernel {
+            half,
+            aside: z,
+            value: &|x| buried(x, z, d, datum),
+            slope: &|x| -FRAC_2_PI * ((x + half).hypot(z) / (x - half).hypot(z)).ln(),
+            curvature: &|x| {
+                let part = |x: f64| x / (x * x + z * z);
+                FRAC_2_PI * (part(x - half) - part(x + half))
+            },
+        };
         let at = |i: usize| {
             let x = (i as f64 - (n - 1) as f64) * d;
             let (rest, lost) = self.integral(axis, x, kappa, (true, speed));
-            let [response, loss] = self.of_history(&kernel, x, speed);
-            [response + rest.re - at_datum, loss + lost]
+            let mut both = self.creep.of_history(if layered { &less } else { &kernel }, x, speed);
+            if let (true, Base::Body(base)) = (layered, &self.base) {
+                let of_base = base.of_history(&below, x, speed);
+                (0..2).for_each(|part| both[part] += of_base[part]);
+            }
+            [both[0] + rest.re - at_datum, both[1] + lost]
         };
         (0..2 * n - 1).map(at).collect()
     }
@@ -439,10 +472,15 @@ impl Bodies {
         let x = j as f64 * side;
         let wave = |k: usize| {
             let kappa = TAU * k as f64 / self.lengths()[axis];
-            let own = self.creep.at(kappa * speed) * strip(x, side, kappa, self.datum);
+            let mut own = self.creep.at(kappa * speed) * strip(x, side, kappa, self.datum);
             let (rest, lost) = self.integral(1 - axis, x, kappa, (false, speed));
-            let at_datum = if k == 0 { self.at_datum(1 - axis) } else { 0.0 };
-            (own + rest - at_datum, kappa * own.im + lost)
+            let lost = kappa * own.im + lost;
+            if k == 0 && !matches!(self.base, Base::None) {
+                let below = if let Base::Body(base) = &self.base { base.relaxed() } else { 0.0 };
+                own += (below - self.creep.relaxed()) * buried(x, DEPTH * self.thickness, side, self.datum);
+                own -= self.at_datum(1 - axis);
+            }
+            (own + rest, lost)
         };
         let waves: Vec<_> = (0..=n / 2).map(wave).collect();
         let at = |i: usize| {
@@ -509,10 +547,13 @@ fn of_cell(q: f64, side: f64) -> f64 {
     if half < 1e-5 { 1.0 } else { half.sin() / half }
 }
 
+/// Depth of a buried load over the thickness of the layer.
+const DEPTH: f64 = 1.3;
+
 /// −(1/π) ∫ ln((s² + z²)/D²) ds over a side.
 fn buried(x: f64, z: f64, side: f64, datum: f64) -> f64 {
     let own = |s: f64| -((x + s).hypot(z) / datum).ln() * 2.0 / PI;
-    points(-0.5 * side, 0.5 * side, 4).map(|(s, w)| w * own(s)).sum()
+    points(-0.5 * side, 0.5 * side, if x.hypot(z) > 4.0 * side { 1 } else { 4 }).map(|(s, w)| w * own(s)).sum()
 }
 
 /// (2/π) ∫ K0(κ |x − s|) ds over a side, or of −ln(|x − s|/D).

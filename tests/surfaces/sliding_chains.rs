@@ -225,7 +225,9 @@ fn errors(scene: &Scene, influence: &Influence, load: Load, sliding: &SteadySlid
     }
     let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
     let unit = rms(&closed).max(1e-4 * range(&gap)).max(1e-4 * range(&u));
-    let per = |value: f64| value / unit / scene.tolerance;
+    // the influences are right to so many digits of the displacement, which may exceed all gaps
+    let digits = 1e-11 * u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+    let per = |value: f64| (value - digits).max(0.0) / unit / scene.tolerance;
     let outside = (0..p.len()).filter(|&k| p[k] == 0.0).map(|k| -height(k)).fold(0.0, f64::max);
     let sum = |of: &dyn Fn(usize) -> f64| on.iter().map(|&k| p[k] * of(k)).sum::<f64>();
     let mut balance: f64 = 0.0;
@@ -281,6 +283,10 @@ fn states_are_those_of_their_problem_whatever_came_before() {
                 matches!(error, Error::Sliding(SlidingError::NotConverged { .. } | SlidingError::Rounding { .. }))
             };
             if only == number {
+                println!(
+                    "BODIES {:?} tol {:e} hole {:?} flat {}",
+                    scene.bodies, scene.tolerance, scene.hole, scene.flat
+                );
                 println!("{name}: {velocity:?} {load}: {found:?} {fresh:?}");
             }
             strong[usize::from(fold > 1e3)] += 1;
@@ -308,6 +314,12 @@ fn states_are_those_of_their_problem_whatever_came_before() {
             };
             let influence = scene.bodies.influence(velocity);
             let own = errors(&scene, &influence, load, &chain, &report);
+            if only == number {
+                let (u, v) = (influence.displacement(chain.contact().pressure()), chain.contact().displacement());
+                for k in 0..u.len() {
+                    println!("U {k} {} {:e} {:e} {:e}", chain.contact().pressure()[k], u[k], v[k], u[k] - v[k]);
+                }
+            }
             // two states within ε of their problem differ by d with d·A d ≤ ε (Σ p + Σ p′)
             let differ: Vec<f64> =
                 chain.contact().pressure().iter().zip(anew.contact().pressure()).map(|(a, b)| a - b).collect();
