@@ -43,8 +43,11 @@ impl Creep {
 
     /// Response and loss of a kernel with its derivatives, at a distance x.
     fn of_history(&self, kernel: &Kernel<'_>, x: f64, speed: f64) -> [f64; 2] {
-        let terms = self.terms.iter().map(|&(c, time)| (c, kernel.moved(x, speed * time), kernel.lost(x, speed * time)));
-        terms.fold([self.glassy * (kernel.value)(x), 0.0], |sum, (c, moved, lost)| [sum[0] + c * moved, sum[1] + c * lost])
+        let terms =
+            self.terms.iter().map(|&(c, time)| (c, kernel.moved(x, speed * time), kernel.lost(x, speed * time)));
+        terms.fold([self.glassy * (kernel.value)(x), 0.0], |sum, (c, moved, lost)| {
+            [sum[0] + c * moved, sum[1] + c * lost]
+        })
     }
 
     /// A body of this Poisson's ratio: C is (1 − ν)/2 of J.
@@ -269,18 +272,6 @@ impl Bodies {
         let period: Vec<Vec<[f64; 3]>> = (0..all[0]).map(|i| (0..all[1]).map(|j| at(i, j)).collect()).collect();
         Influence::new(cells, |i, j| period[i.rem_euclid(all[0]) as usize][j.rem_euclid(all[1]) as usize])
     }
-
-<<<<<<< HEAD
-    /// Response and loss of the terms of the creep, of a kernel with its derivatives at a distance x.
-    fn of_history(&self, kernel: &Kernel<'_>, x: f64, speed: f64) -> [f64; 2] {
-        let terms =
-            self.creep.terms.iter().map(|&(c, time)| (c, kernel.moved(x, speed * time), kernel.lost(x, speed * time)));
-        terms.fold([self.creep.glassy * (kernel.value)(x), 0.0], |sum, (c, moved, lost)| {
-            [sum[0] + c * moved, sum[1] + c * lost]
-        })
-    }
-=======
->>>>>>> w-a
 
     fn of_cells(&self, axis: usize, speed: f64) -> Vec<Vec<[f64; 2]>> {
         let [(n, d), (m, side)] = [axis, 1 - axis].map(|axis| (self.cells[axis], self.spacing[axis]));
