@@ -278,7 +278,8 @@ impl Problem<'_> {
     fn lowest(&self) -> Vec<bool> {
         let n2 = self.grid.cells()[1];
         let tilt = if self.free.tilts() { self.support().tilt } else { RigidMotion::default() };
-        let leans = |(k, h): (usize, &f64)| if self.free.tilts() { h - tilt.at(self.grid.center(k / n2, k % n2)) } else { *h };
+        let leans =
+            |(k, h): (usize, &f64)| if self.free.tilts() { h - tilt.at(self.grid.center(k / n2, k % n2)) } else { *h };
         let gap: Vec<f64> = self.gap.iter().enumerate().map(leans).collect();
         let mut heights: Vec<f64> = gap.iter().copied().filter(|h| h.is_finite()).collect();
         let level = if self.free.translation {

@@ -11,9 +11,9 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use super::gauss::points;
 use super::love::love;
+use viscocontact::Layer;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
-use viscocontact::Layer;
 
 /// Contact compliance C(0) + Σ C_k (1 − e^(−t/λ_k)) \[1/Pa\].
 #[derive(Debug, Clone)]
@@ -43,8 +43,11 @@ impl Creep {
 
     /// Response and loss of a kernel with its derivatives, at a distance x.
     fn of_history(&self, kernel: &Kernel<'_>, x: f64, speed: f64) -> [f64; 2] {
-        let terms = self.terms.iter().map(|&(c, time)| (c, kernel.moved(x, speed * time), kernel.lost(x, speed * time)));
-        terms.fold([self.glassy * (kernel.value)(x), 0.0], |sum, (c, moved, lost)| [sum[0] + c * moved, sum[1] + c * lost])
+        let terms =
+            self.terms.iter().map(|&(c, time)| (c, kernel.moved(x, speed * time), kernel.lost(x, speed * time)));
+        terms.fold([self.glassy * (kernel.value)(x), 0.0], |sum, (c, moved, lost)| {
+            [sum[0] + c * moved, sum[1] + c * lost]
+        })
     }
 
     /// A body of this Poisson's ratio: C is (1 − ν)/2 of J.
@@ -98,9 +101,8 @@ impl Influence {
     fn sum(&self, part: usize, p: &[f64]) -> Vec<f64> {
         let [n1, n2] = self.cells;
         let pressed: Vec<usize> = (0..p.len()).filter(|&k| p[k] != 0.0).collect();
-        let at = |k: usize, l: usize| {
-            self.of[(n1 - 1 + k / n2 - l / n2) * (2 * n2 - 1) + n2 - 1 + k % n2 - l % n2][part]
-        };
+        let at =
+            |k: usize, l: usize| self.of[(n1 - 1 + k / n2 - l / n2) * (2 * n2 - 1) + n2 - 1 + k % n2 - l % n2][part];
         (0..p.len()).map(|k| pressed.iter().map(|&l| at(k, l) * p[l]).sum()).collect()
     }
 
@@ -256,7 +258,8 @@ impl Bodies {
                 (sum + own, [0, 1].map(|axis| loss[axis] + q[axis] * own.im))
             })
         };
-        let waves: Vec<_> = (0..cells[0]).flat_map(|k| (0..cells[1]).map(move |l| [k, l])).map(|k| (k, wave(k))).collect();
+        let waves: Vec<_> =
+            (0..cells[0]).flat_map(|k| (0..cells[1]).map(move |l| [k, l])).map(|k| (k, wave(k))).collect();
         let all = cells.map(|n| n as isize);
         let phase = |k: usize, i: isize, n: isize| TAU * (k as isize * i).rem_euclid(n) as f64 / n as f64;
         let at = |i: isize, j: isize| {
@@ -269,7 +272,6 @@ impl Bodies {
         let period: Vec<Vec<[f64; 3]>> = (0..all[0]).map(|i| (0..all[1]).map(|j| at(i, j)).collect()).collect();
         Influence::new(cells, |i, j| period[i.rem_euclid(all[0]) as usize][j.rem_euclid(all[1]) as usize])
     }
-
 
     fn of_cells(&self, axis: usize, speed: f64) -> Vec<Vec<[f64; 2]>> {
         let [(n, d), (m, side)] = [axis, 1 - axis].map(|axis| (self.cells[axis], self.spacing[axis]));
@@ -591,9 +593,7 @@ fn k0(z: f64) -> f64 {
 
 fn k1(z: f64) -> f64 {
     let log = (0.5 * z).ln() + EULER;
-    let term = |(k, term, harmonic): (f64, f64, f64)| {
-        0.5 * z * term / (k + 1.0) * (log - harmonic - 0.5 / (k + 1.0))
-    };
+    let term = |(k, term, harmonic): (f64, f64, f64)| 0.5 * z * term / (k + 1.0) * (log - harmonic - 0.5 / (k + 1.0));
     if z > SMALL { waves_of(z, 1) } else { 1.0 / z + series(z).map(term).sum::<f64>() }
 }
 
@@ -612,9 +612,8 @@ fn k0_to(z: f64) -> f64 {
         return 0.0;
     }
     let log = (0.5 * own).ln() + EULER;
-    let term = |(k, term, harmonic): (f64, f64, f64)| {
-        own * term / (2.0 * k + 1.0) * (harmonic - log + 1.0 / (2.0 * k + 1.0))
-    };
+    let term =
+        |(k, term, harmonic): (f64, f64, f64)| own * term / (2.0 * k + 1.0) * (harmonic - log + 1.0 / (2.0 * k + 1.0));
     series(own).map(term).sum::<f64>().copysign(z)
 }
 
