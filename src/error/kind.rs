@@ -46,7 +46,7 @@ impl Error {
             Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
             Error::Material(MaterialError::PoorFit { .. })
             | Error::Adhesion(AdhesionError::NotConverged { .. })
-            | Error::Sliding(SlidingError::NotConverged { .. })
+            | Error::Sliding(SlidingError::NotConverged { .. } | SlidingError::Rounding { .. })
             | Error::States(StatesError::OutOfOrder { .. })
             | Error::Step(
                 StepError::NotConverged { .. } | StepError::StepTooShort { .. } | StepError::NotSteady { .. },

@@ -250,7 +250,7 @@ impl SteadySliding {
     /// # Errors
     /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a spring, cannot be balanced, tilts a periodic body, or is an approach
     /// beyond full contact, or one in line contact whose datum is too near; if contact reaches the edge of the grid, or the state is not found
-    /// ([`SlidingError::NotConverged`]), or another thread ends the search. The state found last is then kept.
+    /// ([`SlidingError::NotConverged`]) or lost in rounding ([`SlidingError::Rounding`]), or another thread ends the search. The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
@@ -340,7 +340,11 @@ impl SteadySliding {
         coverage::DRIFT.unless(|_| drifts)?;
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
-        let reaches = creep.reaches(if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() });
+        let speed = if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() };
+        let mut reaches = creep.reaches(speed);
+        if let Some(layer) = &self.bodies.layer {
+            reaches.extend(layer.base.reaches(speed));
+        }
         let farthest = reaches.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
         let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
         coverage::NEAR_DATUM.unless(|_| near)?;

@@ -58,7 +58,7 @@ impl Problem<'_> {
             let is_last = softer.is_none();
             let found = solve(bodies, softer, &last);
             if is_last && found.converged || step < LEAST_STEP || self.is_cancelled() {
-                return found;
+                return Found { converged: is_last && found.converged, ..found };
             }
             if found.converged {
                 (last, step) = (found.pressure, 2.0 * step);
