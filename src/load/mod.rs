@@ -12,6 +12,7 @@
 //! | [`Sinusoid`] | oscillation between two loads |
 //! | [`FnHistory`] | any closure of time |
 
+mod effect;
 mod function;
 mod history;
 #[cfg(feature = "laws")]
@@ -155,24 +156,6 @@ impl Load {
     /// An approach of the origin \[m\] and tilts \[rad\].
     pub fn approach_and_tilt(approach: f64, tilt: [f64; 2]) -> Load {
         Load::Approach { approach, tilt: tilt.map(Tilt::Fixed) }
-    }
-
-    /// The load with its force, if it is one, divided by a factor.
-    pub(crate) fn with_force_over(self, factor: f64) -> Load {
-        match self {
-            Load::Force { normal, tilt } => Load::Force { normal: normal / factor, tilt },
-            Load::Approach { .. } | Load::Spring { .. } => self,
-        }
-    }
-
-    /// Whether it surely presses undisturbed bodies that touch, upright, at the approach `touch`.
-    pub(crate) fn presses(&self, touch: f64) -> bool {
-        match *self {
-            Load::Force { normal, .. } => normal > 0.0,
-            Load::Approach { approach: place, tilt } | Load::Spring { drive: place, tilt, .. } => {
-                tilt == UPRIGHT && place > touch
-            }
-        }
     }
 
     /// A spring of `stiffness` \[N/m\] whose far end is at `drive` \[m\], on a body that cannot tilt: it carries the force W = k (z − ω), or

@@ -76,6 +76,7 @@ mod log_creep;
 mod material;
 mod maxwell;
 mod mittag_leffler;
+mod own_series;
 mod power_law;
 mod series;
 mod shifted;

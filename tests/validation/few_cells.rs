@@ -147,7 +147,7 @@ fn patches_of_few_cells_on_average_are_warned_of() {
     let [few, some, many] = found;
     assert!(few.0 > 3 && some.0 > 3 && many.0 > 3);
     // what the page says of eight cells, and of four
-    assert!(many.1[0] < 0.04 && many.1[1] < 0.02 && some.1[0] < 0.1 && some.1[1] < 0.1, "{found:?}");
+    assert!(many.1[0] < 0.05 && many.1[1] < 0.03 && some.1[0] < 0.1 && some.1[1] < 0.1, "{found:?}");
     let mean = |(count, _, sum): (i32, [f64; 2], [f64; 2])| sum.map(|sum| sum / f64::from(count));
     assert!((0..2).all(|k| mean(few)[k] > 3.0 * mean(many)[k]), "{found:?}");
 }

@@ -261,25 +261,6 @@ impl MasterCurve {
     /// The body at another `temperature` \[K\] between those of the isotherms: [`MasterCurve::fit`], shifted by
     /// [`MasterCurve::shift_table`], in time and in its moduli.
     ///
-    /// ```
-    /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology};
-    ///
-    /// // a rubber whose moduli are in proportion to the temperature
-    /// let storage = |factor: f64, shift: f64| {
-    ///     let at = |w: f64| (w, factor * (1.0e6 + 3.0e6 * (w * shift).powf(0.4) / (1.0 + (w * shift).powf(0.4))));
-    ///     Measurements::storage(&[0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0].map(at))
-    /// };
-    /// let isotherms = vec![
-    ///     Isotherm::new(290.0, storage(1.0, 1.0)?)?,
-    ///     Isotherm::new(320.0, storage(320.0 / 290.0, 0.1)?)?,
-    /// ];
-    /// let master = MasterCurve::with_vertical_shifts(290.0, isotherms)?;
-    /// let warm = master.fit_at(320.0)?;
-    /// assert!((warm.vertical_factor() * 290.0 / 320.0 - 1.0).abs() < 0.02);
-    /// assert!(warm.creep_compliance(1.0) > master.fit()?.creep_compliance(1.0)); // it creeps faster
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    ///
     /// # Errors
     /// If the curve cannot be fitted, or the temperature is beyond the isotherms.
     pub fn fit_at(&self, temperature: f64) -> Result<ShiftedRheology<CreepSeries>> {

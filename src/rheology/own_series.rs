@@ -1,0 +1,26 @@
+//! Whether the series of a rheology is that of its creep.
+
+use std::sync::Arc;
+
+use crate::error::{MaterialError, Result};
+use crate::rheology::{Rheology, is_known};
+
+/// A contact takes steps by the series, and its elastic response by J(t): they must be the same function but for such a part.
+const SAME_CREEP: f64 = 1e-3;
+
+/// Rejects a rheology with a series of another function than its creep, at t = 0 and about each retardation time.
+pub(super) fn series_is_creep(rheology: &Arc<dyn Rheology>) -> Result<()> {
+    let Some(spectrum) = rheology.creep_spectrum() else { return Ok(()) };
+    let until = rheology.known_until();
+    let flow = Some(spectrum.glassy() / spectrum.fluidity()).filter(|time| time.is_finite() && *time > 0.0);
+    let scales = spectrum.terms().iter().map(|(_, time)| *time).chain(flow);
+    let times = scales.flat_map(|scale| [0.1, 1.0, 10.0].map(|part| part * scale)).filter(|&t| is_known(t, until));
+    for time in std::iter::once(0.0).chain(times) {
+        let [creep, series] = [rheology.creep_compliance(time), spectrum.compliance(time)];
+        // what is no compliance is refused where it is used
+        if (series - creep).abs() > SAME_CREEP * creep.abs() {
+            return Err(MaterialError::OtherSeries { time, creep, series }.into());
+        }
+    }
+    Ok(())
+}
