@@ -65,18 +65,21 @@ impl Matrix {
     pub(crate) fn least_squares(mut self, right: &[f64]) -> Vec<f64> {
         let (rows, columns) = (self.rows, self.columns);
         let (mut right, mut order) = (right.to_vec(), (0..columns).collect::<Vec<_>>());
-        let dependent = f64::EPSILON * self.norm();
+        // columns may differ in size by any factor: each is measured by itself
+        let mut sizes: Vec<f64> = (0..columns).map(|j| norm(self.column(j))).collect();
         let mut rank = 0;
         while rank < columns.min(rows) {
             // what is left of the columns below the rows that are reduced
-            let rest = |j: usize| norm(&self.column(j)[rank..]);
-            let remaining = (rank..columns).map(|j| (rest(j), j));
-            let Some((length, pivot)) = remaining.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            let rest = |j: usize| norm(&self.column(j)[rank..]) / sizes[j];
+            let remaining = (rank..columns).filter(|&j| sizes[j] != 0.0).map(|j| (rest(j), j));
+            let Some((part, pivot)) = remaining.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
             // a NaN compares as above every number, and is not passed over
-            if length <= dependent {
+            if part <= f64::EPSILON {
                 break;
             }
+            let length = part * sizes[pivot];
             order.swap(rank, pivot);
+            sizes.swap(rank, pivot);
             (0..rows).for_each(|i| self.data.swap(rank * rows + i, pivot * rows + i));
             let (reduced, others) = self.data.split_at_mut((rank + 1) * rows);
             let own = &mut reduced[rank * rows + rank..];

@@ -202,7 +202,7 @@ fn fits_warn_of_contacts_outside_the_model() {
         ),
         ("steeper than 0.5 in contact", ElasticStates::sphere(2.0e-6).unwrap(), 2.0e3, "(greatest slope 0.7071)"),
         ("pressed in by over a fifth of its thickness", gel(4.0e-6, cells), 2.0e3, "(depth over thickness 0.2"),
-        ("fewer than 8 cells across", gel(100.0e-6, 13), 2.0e3, "(cells in contact: "),
+        ("fewer than 8 cells across", gel(100.0e-6, 13), 2.0e3, "(cells across: "),
         ("no solid has such a modulus", ElasticStates::sphere(20.0e-6).unwrap(), 2.0e-3, "(E* in Pa: 0.002)"),
         ("", gel(100.0e-6, cells), 2.0e3, ""),
         ("", ElasticStates::sphere(20.0e-6).unwrap(), 2.0e3, ""),

@@ -246,16 +246,17 @@ impl TimeTemperature {
     /// a_T at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table, less than half
-    /// or more than twice the temperature at which an Arrhenius law begins, or a_T is outside \[1e-30, 1e30\].
+    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table, less than a third
+    /// or more than three times the temperature at which an Arrhenius law begins, or a_T is outside \[1e-60, 1e60\].
     pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
         positive("temperature", temperature)?;
-        let allowed = "in [1e-30, 1e30]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
-        let in_range = |factor: f64| within("shift factor", factor, (1e-30..=1e30).contains(&factor), allowed);
+        let allowed = "in [1e-60, 1e60]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
+        let in_range = |factor: f64| within("shift factor", factor, (1e-60..=1e60).contains(&factor), allowed);
         // one energy does not hold so far, and degrees Celsius are as far from kelvin
         let arrhenius = |energy: f64, from: f64| {
-            let allowed = "from half to twice that of an Arrhenius law: temperatures are in kelvin (20 °C is 293.15)";
-            within("temperature", temperature, (0.5 * from..=2.0 * from).contains(&temperature), allowed)?;
+            let allowed =
+                "from a third to three times that of an Arrhenius law: temperatures are in kelvin (20 °C is 293.15)";
+            within("temperature", temperature, (from / 3.0..=3.0 * from).contains(&temperature), allowed)?;
             Ok::<f64, Error>((energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / from)).exp())
         };
         if let Some(below) = self.below.iter().rfind(|below| temperature < below.temperature) {

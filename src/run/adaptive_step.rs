@@ -8,9 +8,9 @@ use crate::events;
 use crate::hereditary::{StepContext, TimeError};
 use crate::run::driven::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
-use crate::run::load_within::approach;
 use crate::run::outlook::excess;
 use crate::run::step_control::{Proposal, StepControl};
+use crate::run::tops::approach;
 
 /// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;

@@ -63,8 +63,9 @@ impl Driven for ViscoelasticContact {
         let loads = |_: &_| Ok(vec![history.checked_at(time, self.scene.attraction.is_some())?]);
         let of_last = |halves: &&Halves| halves.middle == self.computation.state.start.clock.time;
         let before = control.halves.as_deref().filter(of_last).map(|halves| &halves.start);
-        let (contact, reach) = self.advanced_within_step(time, control.solver_tolerance(&self.scene), before, loads)?;
-        let report = contact.report(None, reach);
+        let (contact, pressed) =
+            self.advanced_within_step(time, control.solver_tolerance(&self.scene), before, loads)?;
+        let report = contact.report(None, pressed);
         Ok((contact, report))
     }
 

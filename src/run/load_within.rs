@@ -2,7 +2,7 @@
 
 use crate::contact::{Scene, State};
 use crate::error::{Error, Result};
-use crate::load::{Load, LoadHistory, Tilt};
+use crate::load::LoadHistory;
 use crate::run::step_control::{NODES, StepControl};
 
 /// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
@@ -35,15 +35,6 @@ impl StepControl {
             most = most.max(if like { off()? } else { f64::INFINITY });
         }
         Ok(most)
-    }
-}
-
-/// The prescribed approach of an upright body, or of the far end of its spring: of a body that is apart, where it is.
-pub(super) fn approach(load: &Load) -> Option<f64> {
-    match *load {
-        Load::Approach { approach: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] }
-        | Load::Spring { drive: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)], .. } => Some(at),
-        _ => None,
     }
 }
 

@@ -6,9 +6,8 @@ use crate::error::{Error, Result, within};
 use crate::hereditary::Meeting;
 use crate::load::{Load, LoadHistory};
 use crate::quadrature::bisect;
-use crate::run::load_within::approach;
 use crate::run::rises::{Rise, rises};
-use crate::run::tops::{tops_of_run, tops_of_step};
+use crate::run::tops::{approach, first_top_of_step, tops_of_run};
 
 /// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
 const SMALL: f64 = 0.05;
@@ -256,7 +255,7 @@ impl RunScale {
     /// presses recover, and rise.
     pub(super) fn first_top(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Option<f64> {
         let is_below = |&top: &f64| approach(&history.at(top)).is_some_and(|approach| approach > self.touch);
-        let seen = tops_of_step(history, [now, time]).into_iter().find(is_below);
+        let seen = first_top_of_step(history, [now, time], is_below);
         self.tops_within(now, time).find(is_below).into_iter().chain(seen).reduce(f64::min)
     }
 

@@ -200,7 +200,7 @@ const MISTAKES: &[Mistake] = &[
      with FnHistory::with_breakpoints, ramp the load, or allow a greater error"),
 ("a stop that is not a number",
     || stop().map(drop),
-    "time to stop at or to sample = NaN is not allowed: it must be finite"),
+    "time to stop at or to sample = NaN is not allowed: it must be between the start and the end of the run"),
 ("an accuracy in per cent",
     || Accuracy::new(5.0).map(drop),
     "accuracy = 5.0 is not allowed: it must be in [1e-6, 0.1]"),

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::contact::step::Pressed;
 use crate::contact::{Scene, State, ViscoelasticContact};
 use crate::error::{Error, Result, within};
-use crate::extent::Extent;
 use crate::load::{Load, Tilt, load_point};
 
 /// What is left of the last step where its start is lost.
@@ -128,15 +128,15 @@ impl ViscoelasticContact {
         .map(|(contact, _)| contact)
     }
 
-    /// The contact at a `time` within the last step, under the loads that are found for the contact at its start, and the
-    /// rectangle of its pressed cells if it was advanced. Before the last step from there on, if the state `before` is given.
+    /// The contact at a `time` within the last step, under the loads that are found for the contact at its start, and
+    /// where it presses if it was advanced. Before the last step from there on, if the state `before` is given.
     pub(crate) fn advanced_within_step(
         &self,
         time: f64,
         tolerance: f64,
         before: Option<&State>,
         loads: impl FnOnce(&ViscoelasticContact) -> Result<Vec<Load>>,
-    ) -> Result<(ViscoelasticContact, Option<Extent>)> {
+    ) -> Result<(ViscoelasticContact, Pressed)> {
         let state = &self.computation.state;
         let start = if state.history.start_is_kept() { state.start.clock.time } else { state.clock.time };
         let before = before.filter(|_| state.history.start_is_kept() && time < start);
@@ -150,19 +150,19 @@ impl ViscoelasticContact {
         let mut contact = self.clone();
         contact.saved_run = None;
         if time == state.clock.time {
-            return Ok((contact, None));
+            return Ok((contact, Pressed::default()));
         }
         match before {
             Some(before) => contact.computation.restore(&self.scene, before),
             None => contact.computation.state.roll_back(),
         }
         contact.view.refresh(&contact.computation.state);
-        let mut reach = None;
+        let mut pressed = Pressed::default();
         if time > from {
             let loads = loads(&contact)?;
-            reach = contact.take_part(time, &loads, tolerance, state.start.interpolant)?;
+            pressed = contact.take_part(time, &loads, tolerance, state.start.interpolant)?;
         }
-        Ok((contact, reach))
+        Ok((contact, pressed))
     }
 
     /// The load of a body at present, as one of the kind of `other`.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::read::limits::{DEEP, LONG_STEP};
-use crate::contact::{Computation, Edge, Figures, Scene, State, Step, TimeRule, ViscoelasticContact, Warnings};
+use crate::contact::{Computation, Edge, Figures, Indenter, Scene, State, Step, TimeRule, Warnings};
 use crate::extent::Extent;
 use crate::observe::resolution::{Outline, Resolution};
 use crate::solver::RigidMotion;
@@ -55,13 +55,29 @@ impl Computation {
 /// Bodies whose cells are counted together.
 const TOGETHER: usize = 8;
 
-impl ViscoelasticContact {
-    /// Cells across the contact of the body with the fewest, if they are few; `reach` holds all pressed cells. A call of all ranks.
-    pub(crate) fn few_cells(&self, reach: Extent) -> Option<f64> {
-        let (Scene { grid, kernel, bodies, .. }, state) = (&*self.scene, &self.computation.state);
-        let State { region, indenter, current, .. } = state;
+/// Where a step presses: found before the state changes, since all ranks take part.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Pressed {
+    /// Number of pressed cells of the region.
+    pub(crate) cells: usize,
+    /// The rectangle of the grid that holds them.
+    pub(crate) reach: Option<Extent>,
+    /// Cells across the contact of the body with the fewest, if they are few.
+    pub(crate) few: Option<f64>,
+}
+
+impl Computation {
+    /// Where the trial of a step of this `indenter` presses. A call of all ranks.
+    pub(super) fn pressed_under(&self, scene: &Scene, indenter: &Indenter) -> Pressed {
+        let (cells, reach) = self.pressed();
+        Pressed { cells, reach, few: reach.and_then(|reach| self.few_cells(scene, indenter, reach)) }
+    }
+
+    /// Cells across the contact of the body with the fewest, if they are few; `reach` holds all pressed cells.
+    fn few_cells(&self, scene: &Scene, indenter: &Indenter, reach: Extent) -> Option<f64> {
+        let (Scene { grid, kernel, bodies, .. }, region) = (scene, &self.state.region);
         let (rows, cells, periodic) = (region.rows(), grid.cells(), kernel.periodic_axes());
-        let (pressure, ends, images) = (&current.solution.pressure, region.ends(periodic), region.images());
+        let (pressure, ends, images) = (&self.trial.solution.pressure, region.ends(periodic), region.images());
         let outline = Outline { rows: &rows, pressure, ends, images };
         if *bodies == 1 {
             return outline.resolution().few(reach, cells, periodic);

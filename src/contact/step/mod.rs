@@ -37,11 +37,11 @@ use crate::contact::{
 };
 use crate::error::{Error, Result, StepError, coverage, non_negative, unless_failed};
 use crate::events;
-use crate::extent::Extent;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
 use crate::solver::{Freedom, RigidMotion, Solution, Stop};
+pub(crate) use accept::Pressed;
 use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
@@ -194,34 +194,34 @@ impl ViscoelasticContact {
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let is_suspected = self.passes().is_some_and(|report| report.suspected);
         let again = is_suspected.then(|| (step.clone(), self.computation.state.clone()));
-        let reach = self.adopt(attempt, step, error.sizes)?;
+        let pressed = self.adopt(attempt, step, error.sizes)?;
         if let Some((step, before)) = again
             && let Err(error) = self.look_for_jump(&step)
         {
             self.go_to(&before);
             return Err(error);
         }
-        let report = self.report(estimated.then_some(error.relative), reach);
+        let report = self.report(estimated.then_some(error.relative), pressed);
         report.emit();
         Ok(report)
     }
 
-    /// Takes a part of a step, to `time`, under loads of its own; returns the smallest rectangle that contains all pressed cells.
+    /// Takes a part of a step, to `time`, under loads of its own; returns where it presses.
     pub(in crate::contact) fn take_part(
         &mut self,
         time: f64,
         loads: &[Load],
         tolerance: f64,
         interpolant: Interpolant,
-    ) -> Result<Option<Extent>> {
+    ) -> Result<Pressed> {
         let mut part = self.request(time, time - self.time(), loads, tolerance)?;
         part.interval.interpolant = interpolant;
         let attempt = self.attempt(&part)?;
         self.adopt(attempt, part, [0.0; 2])
     }
 
-    /// The report of the last step, whose pressed cells are within `reach`.
-    pub(crate) fn report(&self, time_error: Option<f64>, reach: Option<Extent>) -> StepReport {
+    /// The report of the last step, and where it presses.
+    pub(crate) fn report(&self, time_error: Option<f64>, pressed: Pressed) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
         let State { indenter, region, clock, .. } = state;
@@ -233,7 +233,7 @@ impl ViscoelasticContact {
         let figures = Figures {
             max_slope: indenter.steepest(&scene.grid, region, pressure),
             compression: scene.compression(indenter, region, pressure, motion),
-            cells_across: reach.and_then(|reach| self.few_cells(reach)),
+            cells_across: pressed.few,
             cells_in_wave: self.missed.cells,
             periods: self.missed.periods,
             cells_in_zone: (scene.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
@@ -250,7 +250,7 @@ impl ViscoelasticContact {
             dt: state.clock.last_length,
             time_error,
             estimated: Estimated::under(&state.loads),
-            warnings: collect_warnings(scene, &self.computation, reach, &figures, time_error),
+            warnings: collect_warnings(scene, &self.computation, pressed.reach, &figures, time_error),
             figures,
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
@@ -262,16 +262,16 @@ impl ViscoelasticContact {
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
     /// the smallest rectangle that contains all pressed cells.
-    pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Option<Extent>> {
+    pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Pressed> {
         // all exchanges with other ranks precede the change of the state
-        let (contact_cells, reach) = attempt.computation(&self.computation).pressed();
+        let pressed = attempt.computation(&self.computation).pressed_under(&self.scene, &step.indenter);
         self.computation.state.region.rows().intact()?;
         if let Some(larger) = attempt.larger {
             self.computation = *larger;
         }
-        self.computation.accept(step, attempt.sum, contact_cells, sizes);
+        self.computation.accept(step, attempt.sum, pressed.cells, sizes);
         self.view.refresh(&self.computation.state);
-        Ok(reach)
+        Ok(pressed)
     }
 }
 

@@ -221,7 +221,7 @@ pub fn rows(t: &mut Table) {
         "TimeTemperature::shift_factor",
         TimeTemperature::arrhenius(3.0e5, 300.0).unwrap().shift_factor(20.0),
         Value,
-        "shift factor = inf → in [1e-60, 1e60]: …kelvin…",
+        "temperature = 20.0 → from a third to three times that of an Arrhenius law: …kelvin…",
     );
     let constant = || TemperatureHistory::constant(wlf(), 300.0).unwrap();
     for ([rate, reference, start], says) in [
@@ -237,7 +237,11 @@ pub fn rows(t: &mut Table) {
         (vec![(300.0, 1.0), (290.0, 10.0)], 300.0, "temperatures of shift factors[1] = 290.0 …must ascend"),
         (vec![(290.0, 0.0), (300.0, 1.0)], 300.0, "shift factor = 0.0 → finite and > 0"),
         (vec![(-290.0, 10.0), (300.0, 1.0)], 300.0, "temperature = -290.0 → finite and > 0"),
-        (vec![(290.0, 10.0), (300.0, 1.1)], 300.0, "reference temperature = 300.0 → …of the table at which a_T = 1"),
+        (
+            vec![(290.0, 10.0), (300.0, 1.1)],
+            300.0,
+            "reference temperature = 300.0 → …of the table at which the factor is 1",
+        ),
         (vec![(290.0, 10.0), (300.0, f64::NAN)], 300.0, "shift factor = NaN → finite and > 0"),
     ] {
         t.row("TimeTemperature::table", TimeTemperature::table(&rows, reference), Value, says);

@@ -232,7 +232,7 @@ mod tests {
             assert_eq!(read(&format!("1 2 3\n4 {text} 6\n")).unwrap_err(), numeric.into());
         }
         for empty in ["", "\n\n", "# nothing\n"] {
-            assert!(matches!(read(empty), Err(Error::CountOutOfRange { value: 0, .. })));
+            assert!(matches!(read(empty), Err(Error::Map(MapError::Missing { key: "line of heights", .. }))));
         }
         assert!(matches!(read("1 2\0\n"), Err(Error::File(FileError::Unreadable { .. }))));
         let flat = HeightMap::from_text("1 2\n".as_bytes(), [0.0, 1.0], LengthUnit::Metre, TextFormat::default());

@@ -267,7 +267,10 @@ mod tests {
             assert!(matches!(error, Error::Map(MapError::Missing { key: found, .. }) if found == key), "{error}");
         }
         for increment in ["0", "-1", "NaN", "INF"] {
-            assert!(matches!(with("1e-6", increment), Error::OutOfRange { field: "Record1/Axes/CX/Increment", .. }));
+            assert!(matches!(
+                with("1e-6", increment),
+                Error::Map(MapError::Entry { key: "Record1/Axes/CX/Increment", .. })
+            ));
         }
         assert!(matches!(with(" 3 ", "0"), Error::CountOutOfRange { value: 0, .. }));
         for size in ["400000000", "4000000000", "18446744073709551615"] {
