@@ -144,7 +144,7 @@ impl Record {
 impl StatesControl {
     pub(super) fn new(contact: &StatesContact, record: Record) -> StatesControl {
         let [before, middle] = [contact.clone(), contact.clone().with_quadratic_steps()];
-        let (whole, halves, passage) = (middle.clone(), middle.clone(), Passage::default());
+        let (whole, halves, passage) = (middle.clone(), middle.clone(), Passage::new(PARTS_OF_RUN as usize + 1));
         StatesControl { record, before, halved: false, whole, halves, middle, passage }
     }
 

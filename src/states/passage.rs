@@ -20,7 +20,7 @@ pub(super) struct Span {
 /// The load at times of a step in ascending order, from its start to its end: force, or depth of
 /// the load point or of the far end of its spring. Each maximum and minimum of the others is among
 /// them as well.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Passage {
     points: Vec<(f64, f64)>,
     /// The load at the start, in the middle and at the end.
@@ -30,6 +30,12 @@ pub(super) struct Passage {
 }
 
 impl Passage {
+    /// For steps of a run that is looked at so many times: no step allocates.
+    pub(super) fn new(samples: usize) -> Passage {
+        let most = samples + PARTS + 1;
+        Passage { points: Vec::with_capacity(2 * most), seen: Vec::with_capacity(most), marks: [0.0; 3] }
+    }
+
     /// Looks at the load within a step that begins with a load of this size, at equal parts of the
     /// step and where the run was sampled.
     pub(super) fn look(
@@ -42,6 +48,7 @@ impl Passage {
         let after = samples.partition_point(|sample| sample.0 <= now);
         let mut others = samples[after..].iter().take_while(|sample| sample.0 < end).peekable();
         self.seen.clear();
+        self.points.clear();
         self.seen.push((now, first));
         for k in 1..=PARTS {
             let time = if k == PARTS { end } else { now + (end - now) * k as f64 / PARTS as f64 };
@@ -56,7 +63,6 @@ impl Passage {
             }
         }
         [self.marks[0], self.marks[2]] = [first, self.seen[self.seen.len() - 1].1];
-        self.points.clear();
         self.points.push(self.seen[0]);
         for three in self.seen.windows(3) {
             let [a, b, c] = [three[0], three[1], three[2]];

@@ -533,7 +533,10 @@ fn histories_of_the_stress_follow_fields() {
         let times: Vec<f64> = (1..=120).map(|k| 2.0 * (f64::from(k) / 120.0).powi(2)).collect();
         let reduced = |stepping: Stepping, fields: bool| {
             let builder = builder_of(shape, Grid::square(24, 6.0e-3).unwrap(), material.clone());
-            let mut contact = builder.settings(Settings::default().with_tolerance(1e-8)).build().unwrap();
+            // a strict solver would serve the adaptive steps, too
+            let is_exact = stepping == Stepping::fixed(2e-3);
+            let settings = if is_exact { Settings::default().with_tolerance(1e-8) } else { Settings::default() };
+            let mut contact = builder.settings(settings).build().unwrap();
             let mut recorded = StressHistory::new(&contact).unwrap();
             let run = contact.follow(&history, stepping, 2.0).sample_at(&times[..]).unwrap();
             let mut run = if fields { run.fields_to(accuracy).unwrap() } else { run };
