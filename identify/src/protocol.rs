@@ -27,7 +27,7 @@ impl Protocol {
         for (field, values) in [("drive", &drive), ("time", &times)] {
             values.iter().try_for_each(|&value| within(field, value, true, "finite").map(drop))?;
         }
-        for (index, pair) in times.windows(2).enumerate().filter(|(_, pair)| pair[1] <= pair[0]) {
+        if let Some((index, pair)) = times.windows(2).enumerate().find(|(_, pair)| pair[1] <= pair[0]) {
             return Err(Error::TimesNotAscending { index: index + 1, value: pair[1], previous: pair[0] });
         }
         Ok(Protocol { times, drive })

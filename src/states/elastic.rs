@@ -30,7 +30,7 @@ pub(super) fn state_under(contact: &mut ViscoelasticContact, load: Load) -> Resu
         cells: contact.contact_cells(),
         patches: contact.patches()?.all.len(),
         // warnings of its own modulus and solver do not apply to the contacts that are made of it, those of its shape do
-        warnings: report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING
+        warnings: (report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING)
             | Warnings::of(&[(Warnings::ROUNDING, rounded)]),
         figures: Figures { modulus: None, ..report.figures },
     };

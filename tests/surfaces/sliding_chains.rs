@@ -47,7 +47,7 @@ impl Scene {
         let spacing = [draws.between(0.7, 1.4), draws.between(0.7, 1.4)];
         let creep = draw_creep(draws, periodic == [true; 2]);
         let base_alike = draws.chance(0.3);
-        let base = match draws.below(if number % 2 == 0 { 1 } else { 5 }) {
+        let base = match draws.below(if number.is_multiple_of(2) { 1 } else { 5 }) {
             0 => Base::None,
             1 => Base::Rigid,
             2 => Base::Frictionless,
@@ -233,8 +233,8 @@ fn errors(scene: &Scene, influence: &Influence, load: Load, sliding: &SteadySlid
     if let Some(force) = force {
         balance = (sum(&|_| area) / force - 1.0).abs();
     }
-    for axis in 0..2 {
-        if let Tilt::Free { at } = tilts[axis] {
+    for (axis, tilt) in tilts.iter().enumerate() {
+        if let Tilt::Free { at } = tilt {
             let [moment, size] = [sum(&|k| center(k)[axis] - at), sum(&|k| (center(k)[axis] - at).abs())];
             balance = balance.max(if size > 0.0 { (moment / size).abs() } else { 0.0 });
         }

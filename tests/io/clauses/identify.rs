@@ -53,8 +53,9 @@ pub fn rows(t: &mut Table) {
     assert!(first.is_ok());
     t.row("fit_each", second, Value, "curve 0: the force nowhere rises…: check the sign of the force…");
 
-    let bounds =
-        |of: &Identification, values: &[(&str, f64)], sigma: f64| of.bounds(&[experiment.clone()], values, sigma);
+    let bounds = |of: &Identification, values: &[(&str, f64)], sigma: f64| {
+        of.bounds(std::slice::from_ref(&experiment), values, sigma)
+    };
     for (values, says) in [
         (vec![("E0", -4.0e3), ZENER[1], ZENER[2]], "E0 = -4000.0 → finite and > 0"),
         (vec![("E0", 1.0e2), ZENER[1], ZENER[2]], "Einf = 500.0 → at most E0"),
