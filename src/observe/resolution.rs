@@ -12,6 +12,14 @@ const LEAST_ACROSS: f64 = 8.0;
 const LEAST_CELLS: f64 = 50.0;
 const LEAST_MEAN: f64 = 7.0;
 
+/// The interval that holds two others.
+fn joined(a: Option<[usize; 2]>, b: Option<[usize; 2]>) -> Option<[usize; 2]> {
+    match (a, b) {
+        (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
+        (one, other) => one.or(other),
+    }
+}
+
 /// How contact goes on beyond the first and the last cells of a field along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ends {
@@ -40,10 +48,38 @@ pub(crate) struct Resolution {
 impl Outline<'_> {
     /// Of all cells under pressure. A call of all ranks; the result does not depend on their number.
     pub(crate) fn resolution(&self) -> Resolution {
-        let Outline { rows, pressure, .. } = self;
-        let pressed = |k: usize| pressure[k] > 0.0;
-        let [cells, across, along] =
-            rows.sum_terms(|k| pressed(k).then(|| self.of_cell(k, rows.band_cells(), pressed)));
+        let Outline { rows, pressure, ends: [down, right], .. } = self;
+        let ([n1, n2], band, first) = (rows.cells(), rows.band_cells() / rows.cells()[1], rows.own().start);
+        let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).filter(|(a, b)| (**a > 0.0) != (**b > 0.0)).count();
+        // rows are read from their first pressed cell to the last
+        let bounds = |row: &[f64]| {
+            let low = row.iter().position(|p| *p > 0.0)?;
+            Some([low, row.iter().rposition(|p| *p > 0.0).map_or(n2, |last| last + 1)])
+        };
+        let ([mut cells, mut across, mut along], mut above) = ([0; 3], None);
+        for (i, row) in pressure.chunks_exact(n2).enumerate() {
+            let own = bounds(row);
+            if let Some([low, high]) = own {
+                let inner = &row[low..high];
+                let count = inner.iter().filter(|p| **p > 0.0).count();
+                let left = low > 0 || right.open[0] || right.joined && high < n2;
+                let after = high < n2 || right.open[1] || right.joined && low > 0;
+                cells += count;
+                along += differ(inner, &inner[1..]) + usize::from(left) + usize::from(after);
+                across += if first + i == 0 && down.open[0] { count } else { 0 };
+                across += if first + i + 1 == n1 && down.open[1] { count } else { 0 };
+            }
+            if i % band > 0
+                && let Some([low, high]) = joined(own, above)
+            {
+                across += differ(&row[low..high], &pressure[(i - 1) * n2..][low..high]);
+            }
+            above = own;
+        }
+        if down.joined && self.is_one_band() && !pressure.is_empty() {
+            across += differ(&pressure[..n2], &pressure[(n1 - 1) * n2..]);
+        }
+        let [cells, across, along] = [cells, across, along].map(|count| rows.count(count) as f64);
         // sides between bands, which ranks may not share, are as frequent as the others
         let ([n1, n2], seam) = (rows.cells(), usize::from(self.ends[0].joined));
         let counted = if self.is_one_band() { n1 } else { n1 - n1.div_ceil(rows.band_cells() / n2) };
@@ -63,7 +99,7 @@ impl Outline<'_> {
             let own = body(k);
             if let Some((Resolution { cells, sides }, extent)) = own.checked_sub(first).and_then(|n| found.get_mut(n)) {
                 let same = |other: usize| self.pressure[other] > 0.0 && body(other) == own;
-                let [one, across, along] = self.of_cell(k, usize::MAX, same);
+                let [one, across, along] = self.of_cell(k, same);
                 (*cells, *sides) = (*cells + one, sum::add(*sides, [across, along]));
                 let cell = Extent::of([k / n2, k % n2]);
                 *extent = Some(extent.map_or(cell, |extent: Extent| extent.with(cell)));
@@ -77,19 +113,19 @@ impl Outline<'_> {
     }
 
     /// Of a cell: 1, and the number of its sides along each axis beyond which there is no contact, which is `same`.
-    fn of_cell(&self, k: usize, band: usize, same: impl Fn(usize) -> bool) -> [f64; 3] {
+    fn of_cell(&self, k: usize, same: impl Fn(usize) -> bool) -> [f64; 3] {
         let [n1, n2] = self.rows.cells();
         let (i, j, [down, right]) = (self.rows.own().start + k / n2, k % n2, self.ends);
         let end = |is_end: bool| f64::from(u8::from(is_end));
         let before = match i {
-            0 if down.joined && (band == usize::MAX || self.is_one_band()) => !same(k + (n1 - 1) * n2),
+            0 if down.joined => !same(k + (n1 - 1) * n2),
             0 => down.open[0],
-            _ => k % band >= n2 && !same(k - n2),
+            _ => !same(k - n2),
         };
         let after = match n1 - i {
-            1 if down.joined && (band == usize::MAX || self.is_one_band()) => !same(k - i * n2),
+            1 if down.joined => !same(k - i * n2),
             1 => down.open[1],
-            _ => k % band + n2 < band && !same(k + n2),
+            _ => !same(k + n2),
         };
         let left = if j > 0 { !same(k - 1) } else { right.open[0] || right.joined && !same(k + n2 - 1) };
         let right = if j + 1 < n2 { !same(k + 1) } else { right.open[1] || right.joined && !same(k + 1 - n2) };
