@@ -143,7 +143,7 @@ enum Peak {
 }
 
 impl Pressed<'_> {
-    /// The greatest errors due to the mesh of the contacts of several bodies, `owner` being that of each cell. `None` if one of them has none.
+    /// The maximum errors due to the mesh of the contacts of several bodies, `owner` being that of each cell. `None` if one of them has none.
     pub(crate) fn mesh_error_of_bodies(&self, owner: &[u16], bodies: usize) -> Option<MeshError> {
         let n2 = self.grid.cells()[1];
         let of_body = |body: u16| {

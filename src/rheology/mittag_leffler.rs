@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-/// Spacing of nodes in ln z at which the trapezoidal rule errs by rounding: its error is
+/// Spacing of nodes in ln z at which the trapezoidal rule is accurate to rounding: its error is
 /// exp(−2π w/h) where the integrand is analytic within the distance w of the axis, here π/2
 /// (Trefethen & Weideman, SIAM Review 56, 385, 2014).
 const SPACING: f64 = 0.26;

@@ -52,7 +52,7 @@ pub(super) fn first_top_of_step(
     tops(&samples).find(counts)
 }
 
-/// The tops of the parabolas through each three samples whose middle one is the greatest.
+/// The tops of the parabolas through each three samples whose middle one is the maximum.
 fn tops(samples: &[(f64, f64)]) -> impl Iterator<Item = f64> {
     samples.windows(3).filter_map(|three| {
         let [(start, before), (time, load), (end, after)] = three else { return None };

@@ -261,7 +261,7 @@ impl ViscoelasticContact {
     }
 
     /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
-    /// the smallest rectangle that contains all pressed cells.
+    /// where it presses.
     pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Pressed> {
         // all exchanges with other ranks precede the change of the state
         let pressed = attempt.computation(&self.computation).pressed_under(&self.scene, &step.indenter);
