@@ -13,6 +13,20 @@ pub(crate) struct Meeting {
     pub(crate) give: f64,
 }
 
+impl Meeting {
+    /// Bodies that do not come back.
+    pub(crate) const NONE: Meeting = Meeting { depth: 0.0, stiffness: 0.0, give: f64::INFINITY };
+
+    /// The deepest and stiffest of two.
+    pub(crate) fn worst(self, other: Meeting) -> Meeting {
+        Meeting {
+            depth: self.depth.max(other.depth),
+            stiffness: self.stiffness.max(other.stiffness),
+            give: self.give.min(other.give),
+        }
+    }
+}
+
 /// Data of a run besides the step.
 #[derive(Debug, Clone, Copy, Educe)]
 #[educe(Default)]

@@ -46,8 +46,9 @@ pub(crate) struct Resolution {
 }
 
 impl Outline<'_> {
-    /// Of all cells under pressure. A call of all ranks; the result does not depend on their number.
-    pub(crate) fn resolution(&self) -> Resolution {
+    /// Of all cells under pressure, with their number among those of the rows of all ranks, and the rectangle of this rank's rows that
+    /// holds its own: one look at each row. A call of all ranks; the resolution does not depend on their number.
+    pub(crate) fn resolution(&self) -> (Resolution, usize, Option<Extent>) {
         let Outline { rows, pressure, ends: [down, right], .. } = self;
         let ([n1, n2], band, first) = (rows.cells(), rows.band_cells() / rows.cells()[1], rows.own().start);
         let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).filter(|(a, b)| (**a > 0.0) != (**b > 0.0)).count();
@@ -56,7 +57,7 @@ impl Outline<'_> {
             let low = row.iter().position(|p| *p > 0.0)?;
             Some([low, row.iter().rposition(|p| *p > 0.0).map_or(n2, |last| last + 1)])
         };
-        let ([mut cells, mut across, mut along], mut above) = ([0; 3], None);
+        let ([mut cells, mut across, mut along], mut above, mut extent) = ([0; 3], None, None);
         for (i, row) in pressure.chunks_exact(n2).enumerate() {
             let own = bounds(row);
             if let Some([low, high]) = own {
@@ -65,9 +66,13 @@ impl Outline<'_> {
                 let left = low > 0 || right.open[0] || right.joined && high < n2;
                 let after = high < n2 || right.open[1] || right.joined && low > 0;
                 cells += count;
-                along += differ(inner, &inner[1..]) + usize::from(left) + usize::from(after);
+                along += usize::from(left) + usize::from(after);
+                // a row without holes has no other sides
+                along += if count == high - low { 0 } else { differ(inner, &inner[1..]) };
                 across += if first + i == 0 && down.open[0] { count } else { 0 };
                 across += if first + i + 1 == n1 && down.open[1] { count } else { 0 };
+                let row = Extent { low: [i, low], high: [i, high - 1] };
+                extent = Some(extent.map_or(row, |extent: Extent| extent.with(row)));
             }
             if i % band > 0
                 && let Some([low, high]) = joined(own, above)
@@ -79,12 +84,13 @@ impl Outline<'_> {
         if down.joined && self.is_one_band() && !pressure.is_empty() {
             across += differ(&pressure[..n2], &pressure[(n1 - 1) * n2..]);
         }
-        let [cells, across, along] = [cells, across, along].map(|count| rows.count(count) as f64);
+        let [cells, across, along] = [cells, across, along].map(|count| rows.count(count));
         // sides between bands, which ranks may not share, are as frequent as the others
         let ([n1, n2], seam) = (rows.cells(), usize::from(self.ends[0].joined));
         let counted = if self.is_one_band() { n1 } else { n1 - n1.div_ceil(rows.band_cells() / n2) };
         let share = if self.is_one_band() { 1.0 } else { (n1 - 1 + seam) as f64 / counted as f64 };
-        Resolution { cells, sides: [across * share, along] }.imaged(self.images)
+        let resolution = Resolution { cells: cells as f64, sides: [across as f64 * share, along as f64] };
+        (resolution.imaged(self.images), cells, extent)
     }
 
     /// Of the cells under each of `N` bodies from `first` on, with the rectangles of the field that hold them. In one process.
@@ -160,6 +166,10 @@ mod tests {
     use super::*;
     use crate::parallel::Threads;
 
+    fn pressed_cells(pressure: &[f64], n2: usize) -> impl Iterator<Item = Extent> {
+        pressure.iter().enumerate().filter(|(_, p)| **p > 0.0).map(move |(k, _)| Extent::of([k / n2, k % n2]))
+    }
+
     /// Random spots on fields of one band and of several, on one rank and on three, against sides counted one by one.
     #[test]
     fn sides_are_counted_whatever_the_number_of_ranks() {
@@ -194,15 +204,17 @@ mod tests {
             let expected = [0, 1].map(|axis| (0..n1 * n2).filter(|&k| pressed(k)).map(|k| ended(k, axis)).sum::<f64>());
             let rows = Rows::all(cells);
             let outline = Outline { rows: &rows, pressure: &pressure, ends, images: 1 };
-            let found = outline.resolution();
+            let (found, pressed, own) = outline.resolution();
             assert_eq!((found.cells, found.sides[1]), (pressure.iter().sum(), expected[1]), "{scene}");
+            assert_eq!((pressed as f64, own.is_some()), (found.cells, pressed > 0), "{scene}");
+            assert_eq!(own, Extent::hull(pressed_cells(&pressure, n2)), "{scene}");
             let exact = if outline.is_one_band() { 1e-12 } else { 0.1 };
             in_bands += usize::from(!outline.is_one_band());
             assert!((found.sides[0] - expected[0]).abs() <= exact * expected[0], "{scene}: {found:?} {expected:?}");
             let on_ranks = Threads::run(3, |ranks| {
                 let rows = Rows::of_rank(cells, ranks);
                 let own = &pressure[rows.own().start * n2..rows.own().end * n2];
-                Outline { rows: &rows, pressure: own, ends, images: 1 }.resolution()
+                Outline { rows: &rows, pressure: own, ends, images: 1 }.resolution().0
             });
             assert!(on_ranks.unwrap().iter().all(|other| *other == found), "{scene}");
             let [(one, extent)] = outline.resolutions::<1>(0, |_| 0);

@@ -6,11 +6,12 @@ use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::hereditary::{StepContext, TimeError};
+use crate::load::Load;
 use crate::run::driven::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
 use crate::run::outlook::excess;
 use crate::run::step_control::{Proposal, StepControl};
-use crate::run::tops::approach;
+use crate::run::track::{Track, presses};
 
 /// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;
@@ -28,43 +29,44 @@ pub(super) fn adaptive_step(
     control: &mut StepControl,
     course: &Course<'_>,
 ) -> Result<(StepReport, TimeError)> {
-    let Course { history, until, .. } = *course;
+    let Course { histories, until, .. } = *course;
     let ViscoelasticContact { scene, computation, .. } = &*contact;
     let (state, now) = (&computation.state, computation.state.clock.time);
-    control.begin(scene, state, history, until)?;
+    control.begin(scene, state, histories, until)?;
     let tolerance = control.solver_tolerance(scene);
-    let touch =
-        if state.is_undisturbed() { control.scale.first_touch(history, now, course.stop) } else { f64::INFINITY };
+    let touch = if state.is_undisturbed() { control.first_touch(histories, now, course.stop) } else { f64::INFINITY };
     let (kink, mut stop) = (course.kink.min(touch), course.stop.min(touch));
-    let is_apart = !state.attracts && state.current.contact_cells == 0;
+    let mut loads = std::mem::take(&mut control.loads);
     let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
     loop {
         let ViscoelasticContact { scene, computation, .. } = &*contact;
         let state = &computation.state;
-        let mut proposal = control.propose(scene, state, history, until - now, stop, tried)?;
+        let mut proposal = control.propose(scene, state, histories, until - now, stop, tried)?;
         let Proposal { time, unresolved, .. } = proposal;
         tried = time;
-        let loads = [history.checked_before(time, scene.attraction.is_some())?];
+        histories.loads(&mut loads, |history| history.checked_before(time, scene.attraction.is_some()))?;
         let mut step = contact.request(time, time - now, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         let dt = step.interval.dt;
-        let is_driven = [history.at(now), loads[0]].iter().all(|load| approach(load).is_some());
-        let parted = is_apart && is_driven;
+        let ends = histories.each().map(|history| history.at(now)).zip(&loads);
+        control.tracks.iter_mut().zip(ends).for_each(|(track, (start, end))| track.look([&start, end]));
         // what happens at a top of the load within the step would not show at its end
-        if parted && let Some(top) = control.scale.first_top(history, now, time) {
+        if let Some(top) = control.first_top(histories, now, time, |_, track| track.is_parted()) {
             stop = top;
             continue;
         }
-        let straying = control.straying(scene, state, history, time)?;
-        if straying > control.tolerance && !parted {
+        let straying = control.straying(scene, state, histories, time, |track| !track.is_parted())?;
+        if straying > control.tolerance {
             control.judge(proposal, dt, straying);
             continue;
         }
+        // the path of bodies that stay apart does not matter
+        let apart = control.straying(scene, state, histories, time, Track::is_parted)?;
         let outlook = control.outlook(scene, state, &step, course, kink)?;
         step.interval.interpolant = scene.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, &step, &outlook);
         let Tried { attempt, mut error, excess, halves } =
-            match try_step(contact, control, &mut step, (course, &outlook), (straying, parted), &mut wasted) {
+            match try_step(contact, control, &mut step, (course, &outlook), [straying, apart], &mut wasted) {
                 Ok(tried) => tried,
                 Err(error) => {
                     let unsolved = matches!(
@@ -83,8 +85,10 @@ pub(super) fn adaptive_step(
                 }
             };
         let computed = attempt.computation(&contact.computation);
-        let parts = is_driven && !computed.state.attracts && !is_apart && !computed.presses();
-        if parts && let Some(top) = control.scale.first_top(history, now, time) {
+        let parts = |body: usize, track: &Track| {
+            track.is_driven && !track.is_apart && !computed.state.attracts && !presses(&contact.scene, computed, body)
+        };
+        if let Some(top) = control.first_top(histories, now, time, parts) {
             add_work(&mut wasted, computed);
             (stop, control.rejected) = (top, control.rejected + 1);
             continue;
@@ -118,13 +122,14 @@ pub(super) fn adaptive_step(
             }
             None => control.past.include(rule, dt, &error, motion_is_given),
         }
-        control.accept(step.interval.reduced, loads[0], dt, outlook.is_last, proposal);
+        control.accept(step.interval.reduced, &loads, dt, outlook.is_last, proposal);
         let mut report = contact.accept(attempt, step, error)?;
         if halves.is_some() {
             report.dt = time - now;
         }
         // bodies apart do not respond to a given approach before they touch
-        let apart = !loads[0].is_force() && report.contact_cells == 0 && time < touch;
+        let apart = !loads.iter().any(Load::is_force) && report.contact_cells == 0 && time < touch;
+        control.loads = loads;
         if jumps || outlook.is_last && !apart {
             contact.computation.state.history.reset_differences();
         }
@@ -144,13 +149,14 @@ struct Tried {
     halves: Option<[TimeError; 2]>,
 }
 
-/// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too much.
+/// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too much. The loads deviate
+/// by `straying` from what the step takes them for, and by `apart` those of bodies that are apart at its start.
 fn try_step(
     contact: &mut ViscoelasticContact,
     control: &mut StepControl,
     step: &mut Step<'_>,
     (course, outlook): (&Course<'_>, &StepContext),
-    (straying, parted): (f64, bool),
+    [straying, apart]: [f64; 2],
     wasted: &mut [usize; 2],
 ) -> Result<Tried> {
     let tried = contact.attempt(step);
@@ -159,10 +165,9 @@ fn try_step(
     let computed = attempt.computation(computation);
     let mut error = error_in_time(scene, computed, step, outlook);
     computed.state.region.rows().intact()?;
-    // the path of bodies that stay apart does not matter
-    if !parted || computed.presses() {
-        error.relative = error.relative.max(straying);
-    }
+    let meets = |(body, track): (usize, &Track)| track.is_parted() && presses(scene, computed, body);
+    let meets = apart > 0.0 && control.tracks.iter().enumerate().any(meets);
+    error.relative = error.relative.max(straying).max(if meets { apart } else { 0.0 });
     let excess = excess(scene, computed, step.interval.dt);
     error.relative *= excess;
     let resolved = step.interval.length > outlook.resolution;
@@ -170,7 +175,7 @@ fn try_step(
         return Ok(Tried { attempt, error, excess, halves: None });
     }
     let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
-    let divided = halves.divide(contact, step, course.history, outlook, wasted);
+    let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
     if divided.is_err() {
         add_work(wasted, &contact.computation);
         halves.undo(contact);

@@ -9,14 +9,15 @@ use crate::contact::{Contact, StepReport};
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
+use crate::run::histories::Histories;
 use crate::run::progress::{Progress, Stepping};
 
 /// What a run prescribes of its next step.
 #[derive(Debug, Clone, Copy)]
 pub struct Course<'a> {
-    pub history: &'a dyn LoadHistory,
-    /// End and load of a given step, a jump if it takes no time; none of a step as long as its error allows.
-    pub given: Option<(f64, Load)>,
+    pub histories: &'a Histories<'a>,
+    /// End and loads of a given step, a jump if it takes no time; none of a step as long as its error allows.
+    pub given: Option<(f64, &'a [Load])>,
     /// End of the run.
     pub until: f64,
     /// The next time at which a step has to end.
@@ -83,8 +84,8 @@ pub trait Driven: Contact + Debug {
     /// Progress and control of a run that begins here, or that continues from this saved contact.
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, Self::Control);
 
-    /// The load that acts; `None` if it is not known.
-    fn load(&self, control: &Self::Control) -> Option<Load>;
+    /// Whether these loads act; false if it is not known.
+    fn bears(&self, control: &Self::Control, loads: &[Load]) -> bool;
 
     fn temperature(&self) -> Option<&TemperatureHistory>;
 
@@ -97,8 +98,8 @@ pub trait Driven: Contact + Debug {
     /// Takes the next step. Differences of steps start anew where it ends at a corner.
     fn advance(&mut self, control: &mut Self::Control, course: &Course<'_>) -> Result<StepReport>;
 
-    /// The contact at a time within the last step, under the load of the history, and the report of the step to that time.
-    fn within(&self, control: &Self::Control, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)>;
+    /// The contact at a time within the last step, under the loads of the histories, and the report of the step to that time.
+    fn within(&self, control: &Self::Control, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)>;
 
     /// Lowers the tolerance of the adaptive steps.
     fn tighten(control: &mut Self::Control, tolerance: f64);

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::load::LoadHistory;
 use crate::run::RunContact;
 use crate::run::event::{Crossing, Event};
-use crate::run::follow::{Run, history_of};
+use crate::run::follow::Run;
+use crate::run::histories::Histories;
 use crate::run::progress::SAME_TIME;
 
 /// Looks within a step for the time of an event: bisection alone needs 20 to 1e-6 of the step.
@@ -125,7 +126,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Looks within the last step, from its start to its end.
     fn looks(&self, events: &[Event<C>], start: &C) -> Result<Vec<Look>> {
         let (mut looks, end) = (vec![Look::of(events, start)], Look::of(events, self.contact()));
-        for turn in turns(history_of(&self.history), start.time(), end.time) {
+        for turn in turns(&self.histories, start.time(), end.time) {
             let turn = Look::of(events, &self.sample_within_step(turn)?.0);
             self.look_until(events, &mut looks, turn, 0)?;
         }
@@ -158,8 +159,16 @@ fn hides_crossings([start, middle, end]: [f64; 3]) -> bool {
     if (start >= 0.0) == (end >= 0.0) { nearest < bend.max(0.25 * change) } else { 2.0 * bend > change }
 }
 
+/// Times within a step at which a load turns, ascending.
+fn turns(histories: &Histories<'_>, from: f64, to: f64) -> Vec<f64> {
+    let mut turns: Vec<f64> = histories.each().flat_map(|history| turns_of(history, from, to)).collect();
+    turns.sort_by(f64::total_cmp);
+    turns.dedup();
+    turns
+}
+
 /// Times within a step at which its load turns, as equal parts of the step show.
-fn turns(history: &dyn LoadHistory, from: f64, to: f64) -> Vec<f64> {
+fn turns_of(history: &dyn LoadHistory, from: f64, to: f64) -> Vec<f64> {
     let time = |k: u32| from + (to - from) * f64::from(k) / f64::from(PARTS);
     let load = |k: u32| if k < PARTS { history.at(time(k)) } else { history.before(to) };
     let loads: Vec<f64> = (0..=PARTS).map(|k| load(k).main()).collect();

@@ -3,16 +3,18 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::StepReport;
-use crate::error::{Result, within};
+use crate::error::{Result, count_within, within};
 use crate::run::RunContact;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::{MOST_FIELDS, RunFields};
-use crate::run::follow::{Run, history_of};
+use crate::run::follow::Run;
 use crate::run::progress::Stepping;
 
 impl<'a, C: RunContact> Run<'a, C> {
     /// Asks for fields to an accuracy.
     pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
+        let bodies = self.histories.count();
+        count_within("rigid bodies of a run with fields", bodies, bodies == 1, "1")?;
         let accuracy = within("accuracy of the fields", accuracy, (1e-5..=0.1).contains(&accuracy), "in [1e-5, 0.1]")?;
         self.fields = Some(RunFields { accuracy, finder, is_prepared: false, worst: Mutex::new(None) });
         Ok(self)
@@ -27,7 +29,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             times.push(next);
             time = next;
         }
-        let history = history_of(&self.history);
+        let history = self.histories.first();
         let (start, until) = (self.progress.start, self.until);
         let is_adaptive = matches!(self.stepping, Stepping::Adaptive { .. });
         let request = FieldRequest { history, accuracy: fields.accuracy, start, until, times: &times, is_adaptive };
@@ -40,13 +42,13 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Shows the step just taken, from `start` on, to what finds the fields.
     pub(super) fn show_step(&mut self, start: f64) {
         let Some(fields) = self.fields.as_mut() else { return };
-        fields.finder.follow(&self.contact, history_of(&self.history), start);
+        fields.finder.follow(&self.contact, self.histories.first(), start);
     }
 
     /// A contact of the last step with its field to the accuracy, where it does not have it itself.
     pub(super) fn with_field(&self, contact: &C, after: bool) -> Result<Option<(Option<C>, FieldReport)>> {
         let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok(None) };
-        let history = history_of(&self.history);
+        let history = self.histories.first();
         let (exact, report) = fields.finder.with_field(contact, history, after)?;
         if let Some(error) = report.error {
             let mut worst = fields.worst.lock().unwrap_or_else(PoisonError::into_inner);

@@ -5,26 +5,16 @@ use std::sync::atomic::AtomicBool;
 
 use crate::ascending::{Schedule, Times};
 use crate::contact::{StepReport, ViscoelasticContact, Warnings};
-use crate::error::{LoadError, Result, within};
-use crate::load::LoadHistory;
+use crate::error::{Error, Result, within};
+use crate::load::{Load, LoadHistory};
 #[cfg(feature = "checkpoint")]
 use crate::run::autosave::Autosave;
 use crate::run::driven::Course;
 use crate::run::event::Event;
 use crate::run::field::RunFields;
+use crate::run::histories::{Histories, RunHistory};
 use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
 use crate::run::{OwnedOrBorrowed, RunContact};
-
-/// The load history of a run. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
-/// the run is dropped.
-type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
-
-pub(super) fn history_of<'h>(history: &'h RunHistory<'_>) -> &'h dyn LoadHistory {
-    match history {
-        OwnedOrBorrowed::Borrowed(history) => *history,
-        OwnedOrBorrowed::Owned(history) => &**history,
-    }
-}
 
 /// Times up to here are the one at which a step has ended.
 fn covered_by(time: f64) -> f64 {
@@ -80,7 +70,9 @@ const COMPUTED: f64 = 1e-12;
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
-    pub(super) history: RunHistory<'a>,
+    pub(super) histories: Histories<'a>,
+    /// The loads at the end of the next step, or now.
+    loads: Vec<Load>,
     pub(super) stepping: Stepping,
     pub(super) until: f64,
     pub(super) progress: Progress,
@@ -133,12 +125,83 @@ impl ViscoelasticContact {
     pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static> {
         Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
+
+    /// Like [`ViscoelasticContact::follow`], for several rigid bodies ([`Builder::another_body`](crate::contact::Builder::another_body)):
+    /// each follows a history of its own, in their order. Steps end at the corners and jumps of all histories; adaptive ones are as
+    /// short as the body needs that needs the shortest, and their error is that of all bodies together.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// // a ball is held, and another one pressed beside it
+    /// let ball = |x1: f64| Shifted::new(Sphere::new(5.0e-3)?, [x1, 0.0]);
+    /// let mut contact = ViscoelasticContact::builder(Grid::new([64, 32], [6.0e-3, 3.0e-3])?)
+    ///     .geometry(&ball(-1.5e-3)?)
+    ///     .another_body(&ball(1.5e-3)?)
+    ///     .material(Material::incompressible(Zener::relaxing(4.0e6, 1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let held = StepLoad::new(Load::approach(20.0e-6))?;
+    /// let pressed = Ramp::new(Load::force(0.0), Load::force(0.5), 2.0)?;
+    /// let mut run = contact.follow_each(&[&held, &pressed], Stepping::adaptive(1.0e-2), 5.0)?;
+    /// while run.next_step()?.is_some() {}
+    /// assert!(contact.body(1).unwrap().force > 0.499);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there is not one history for each body.
+    pub fn follow_each<'a>(
+        &'a mut self,
+        histories: &[&'a dyn LoadHistory],
+        stepping: Stepping,
+        until: f64,
+    ) -> Result<Run<'a>> {
+        let histories = histories.iter().map(|&history| OwnedOrBorrowed::Borrowed(history)).collect();
+        Run::along_each(OwnedOrBorrowed::Borrowed(self), histories, stepping, until)
+    }
+
+    /// Like [`ViscoelasticContact::follow_each`], for a run that owns the contact and its histories.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::follow_each`].
+    pub fn into_follow_each(
+        self,
+        histories: Vec<Box<dyn LoadHistory>>,
+        stepping: Stepping,
+        until: f64,
+    ) -> Result<Run<'static>> {
+        let histories = histories.into_iter().map(OwnedOrBorrowed::Owned).collect();
+        Run::along_each(OwnedOrBorrowed::Owned(Box::new(self)), histories, stepping, until)
+    }
+}
+
+impl<'a> Run<'a> {
+    fn along_each(
+        contact: OwnedOrBorrowed<&'a mut ViscoelasticContact, Box<ViscoelasticContact>>,
+        histories: Vec<RunHistory<'a>>,
+        stepping: Stepping,
+        until: f64,
+    ) -> Result<Run<'a>> {
+        let (field, len, expected) = ("load histories of the rigid bodies", histories.len(), contact.bodies());
+        let histories = Histories::new(histories).filter(|_| len == expected);
+        let histories = histories.ok_or(Error::WrongLength { field, len, expected, exact: true })?;
+        Ok(Run::follows(contact, histories, stepping, until))
+    }
 }
 
 impl<'a, C: RunContact> Run<'a, C> {
     pub(crate) fn new(
-        mut contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
+        contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
         history: RunHistory<'a>,
+        stepping: Stepping,
+        until: f64,
+    ) -> Run<'a, C> {
+        Run::follows(contact, Histories::one(history), stepping, until)
+    }
+
+    fn follows(
+        mut contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
+        histories: Histories<'a>,
         stepping: Stepping,
         until: f64,
     ) -> Run<'a, C> {
@@ -146,7 +209,8 @@ impl<'a, C: RunContact> Run<'a, C> {
         let covered = if progress.is_new() { progress.start.next_down() } else { covered_by(progress.now) };
         Run {
             contact,
-            history,
+            loads: Vec::with_capacity(histories.count()),
+            histories,
             stepping,
             until,
             progress,
@@ -273,23 +337,20 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     pub(super) fn take_step(&mut self) -> Result<Option<StepReport>> {
         self.stepping.validate_run(self.progress.start, self.until)?;
-        let Run { contact, history, until, progress, control, cancelled, known, .. } = self;
-        let (now, until, history) = (contact.time(), *until, history_of(history));
+        let Run { contact, histories, loads, until, progress, control, cancelled, known, .. } = self;
+        let (now, until) = (contact.time(), *until);
         let attracts = contact.in_space().is_some_and(|contact| contact.scene.attraction.is_some());
-        let load = history.checked_at(now, attracts)?;
-        let jumps = contact.load(control) != Some(load);
+        histories.loads(loads, |history| history.checked_at(now, attracts))?;
+        let jumps = !contact.bears(control, loads);
         if !jumps && now >= until {
             return Ok(None);
         }
         // bodies that never touch have no loading time
-        if !*known && contact.untouched().is_none_or(|touch| load.presses(touch)) {
+        if !*known && contact.untouched().is_none_or(|touch| loads.iter().any(|load| load.presses(touch))) {
             contact.is_known_until(until)?;
             *known = true;
         }
-        let corner = if jumps { None } else { history.next_breakpoint(now) }.unwrap_or(f64::INFINITY);
-        if corner <= now || corner.is_nan() {
-            return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: corner }.into());
-        }
+        let corner = if jumps { f64::INFINITY } else { histories.next_breakpoint(now)? };
         let temperature = contact.temperature().and_then(|history| Some((history, history.next_corner(now)?)));
         let turn = temperature.map_or(f64::INFINITY, |(_, turn)| turn);
         let kink =
@@ -297,14 +358,16 @@ impl<'a, C: RunContact> Run<'a, C> {
         let corner = corner.min(turn);
         let stop = corner.min(until).min(self.stops.after(now).unwrap_or(f64::INFINITY));
         let given = match self.stepping {
-            _ if jumps => Some((now, load)),
+            _ if jumps => Some(now),
             Stepping::Fixed { dt } => {
                 let time = progress.next_time(now, dt, stop)?;
-                Some((time, history.checked_before(time, attracts)?))
+                histories.loads(loads, |history| history.checked_before(time, attracts))?;
+                Some(time)
             }
             Stepping::Adaptive { .. } => None,
         };
-        let course = Course { history, given, until, stop, corner, kink, cancelled: cancelled.as_deref() };
+        let given = given.map(|time| (time, &loads[..]));
+        let course = Course { histories, given, until, stop, corner, kink, cancelled: cancelled.as_deref() };
         contact.advance(control, &course).map(Some)
     }
 

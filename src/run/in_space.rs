@@ -6,13 +6,14 @@ use std::path::Path;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::Result;
 use crate::hereditary::{StepContext, TimeError};
-use crate::load::{Load, LoadHistory};
+use crate::load::Load;
 use crate::rheology::TemperatureHistory;
 use crate::run::Run;
 use crate::run::adaptive_step::adaptive_step;
 use crate::run::driven::{Course, Driven};
 use crate::run::error_budget::ErrorBudget;
 use crate::run::halves::Halves;
+use crate::run::histories::Histories;
 use crate::run::progress::{Progress, Stepping};
 use crate::run::step_control::StepControl;
 
@@ -21,14 +22,17 @@ impl Driven for ViscoelasticContact {
 
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StepControl) {
         let saved = self.saved_run.take().and_then(|saved| saved.downcast::<(Progress, StepControl)>().ok());
-        match saved.filter(|saved| saved.0.continues(self.time(), stepping, until)) {
+        let continues = |(progress, control): &(Progress, StepControl)| {
+            progress.continues(self.time(), stepping, until) && control.tracks.len() == self.bodies()
+        };
+        match saved.filter(|saved| continues(saved)) {
             Some(saved) => (*saved).clone(),
-            None => (Progress::begin(self.time(), stepping), StepControl::new(stepping)),
+            None => (Progress::begin(self.time(), stepping), StepControl::new(stepping, self.bodies())),
         }
     }
 
-    fn load(&self, _: &StepControl) -> Option<Load> {
-        Some(self.load())
+    fn bears(&self, _: &StepControl, loads: &[Load]) -> bool {
+        self.computation.state.loads == loads
     }
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
@@ -51,7 +55,7 @@ impl Driven for ViscoelasticContact {
         let rows = self.computation.state.region.rows();
         rows.unless_lost(|| {
             let (report, error) = match course.given {
-                Some((time, load)) => self.given_step(control, course, time, load)?,
+                Some((time, loads)) => self.given_step(control, course, time, loads)?,
                 None => adaptive_step(self, control, course)?,
             };
             control.include(&error, report.residual, self.mesh_error().unwrap_or_default());
@@ -59,8 +63,9 @@ impl Driven for ViscoelasticContact {
         })
     }
 
-    fn within(&self, control: &StepControl, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)> {
-        let loads = |_: &_| Ok(vec![history.checked_at(time, self.scene.attraction.is_some())?]);
+    fn within(&self, control: &StepControl, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)> {
+        let attracts = self.scene.attraction.is_some();
+        let loads = |_: &_| histories.each().map(|history| history.checked_at(time, attracts)).collect();
         let of_last = |halves: &&Halves| halves.middle == self.computation.state.start.clock.time;
         let before = control.halves.as_deref().filter(of_last).map(|halves| &halves.start);
         let (contact, pressed) =
@@ -95,16 +100,16 @@ impl ViscoelasticContact {
         control: &mut StepControl,
         course: &Course<'_>,
         time: f64,
-        load: Load,
+        loads: &[Load],
     ) -> Result<(StepReport, TimeError)> {
         let dt = time - self.time();
         if dt == 0.0 {
             control.jump();
         }
-        let (tolerance, loads) = (control.solver_tolerance(&self.scene), [load]);
-        let step = Step { cancelled: course.cancelled, ..self.request(time, dt, &loads, tolerance)? };
+        let tolerance = control.solver_tolerance(&self.scene);
+        let step = Step { cancelled: course.cancelled, ..self.request(time, dt, loads, tolerance)? };
         let state = &self.computation.state;
-        control.look_ahead(&self.scene, state, course.history, course.until)?;
+        control.look_ahead(&self.scene, state, course.histories, course.until)?;
         let (report, error) = self.take_expecting(step, &StepContext::default())?;
         if time == course.corner {
             self.computation.state.history.reset_differences();

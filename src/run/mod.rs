@@ -5,8 +5,8 @@
 
 // `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space (`in_space`)
 // `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it judged by its error, and accepts it or
-// tries again. The error depends on the load within the step (`load_within`) and on what lies ahead and behind (`outlook`): the greatest
-// loads and displacements of the run (`run_scale`), and what the steps so far leave (`past_steps`).
+// tries again. The error depends on the loads within the step (`track`, one for each body) and on what lies ahead and behind (`outlook`):
+// the greatest loads and displacements of the run (`run_scale`), and what the steps so far leave (`past_steps`).
 
 mod adaptive_step;
 #[cfg(feature = "checkpoint")]
@@ -15,12 +15,13 @@ pub(crate) mod driven;
 mod error_budget;
 mod event;
 mod events;
+mod extremes;
 pub(crate) mod field;
 mod fields;
 mod follow;
 mod halves;
+pub(crate) mod histories;
 mod in_space;
-mod load_within;
 mod outlook;
 mod past_steps;
 pub(crate) mod progress;
@@ -32,6 +33,7 @@ mod saving;
 mod steady;
 mod step_control;
 mod tops;
+mod track;
 
 pub use crate::ascending::Times;
 pub use driven::FieldReport;

@@ -1,5 +1,6 @@
 //! What the error of a step depends on, besides the step, and the tolerance of its solver.
 
+use crate::contact::step::Pressed;
 use crate::contact::step::error_in_time::SHORTEST_TOUCH;
 use crate::contact::{Computation, DEFAULT_TOLERANCE, Scene, State, Step};
 use crate::error::Result;
@@ -7,8 +8,8 @@ use crate::extent::Extent;
 use crate::hereditary::{Interval, Meeting, StepContext};
 use crate::load::Load;
 use crate::run::driven::Course;
-use crate::run::load_within::is_held;
 use crate::run::step_control::StepControl;
+use crate::run::track::is_held;
 use crate::solver::Freedom;
 
 /// Error of the solver relative to that in time.
@@ -42,7 +43,8 @@ impl StepControl {
     /// than in the steps that leave it.
     pub(super) fn solver_tolerance_before_meeting(&self, scene: &Scene, step: &Step<'_>, outlook: &StepContext) -> f64 {
         let Step { interval: Interval { time, dt, .. }, tolerance, .. } = *step;
-        let answer = SOLVER_ON_MEETING * self.scale.stiffness_after(time) * scene.material.contact_compliance(dt);
+        let stiffness = self.tracks.iter().map(|track| track.scale.stiffness_after(time)).fold(0.0, f64::max);
+        let answer = SOLVER_ON_MEETING * stiffness * scene.material.contact_compliance(dt);
         tolerance.min((tolerance / answer.max(outlook.on_switch[1])).max(LEAST_TOLERANCE))
     }
 
@@ -52,25 +54,31 @@ impl StepControl {
         scene: &Scene,
         State { clock, .. }: &State,
         step: &Step<'_>,
-        Course { history, until, .. }: &Course<'_>,
+        Course { histories, until, .. }: &Course<'_>,
         kink: f64,
     ) -> Result<StepContext> {
-        let (Interval { time, reduced, .. }, load) = (step.interval, &step.loads[0]);
+        let Interval { time, reduced, .. } = step.interval;
+        let bodies = || self.tracks.iter().zip(step.loads);
         let age = reduced - clock.undisturbed_until;
         let end = scene.reduced_time(clock, kink.min(*until))?;
         let span = end - self.since;
         let resolution = SHORTEST * self.tolerance * span;
         let on_switch = self.on_switch(scene, step.interval, age, SHORTEST_TOUCH * resolution)?;
         let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
-        let meeting = self.scale.coming_back(scene, load, age, time);
+        let meetings = bodies().map(|(track, load)| track.scale.coming_back(scene, load, age, time));
+        let meeting = meetings.reduce(Meeting::worst).unwrap_or(Meeting::NONE);
+        let expected = bodies().map(|(track, load)| track.scale.expected(scene, load, age));
+        let greatest = || bodies().map(|(track, _)| track.scale.greatest_potential()).fold(0.0, f64::max);
+        let jumps = step.loads.iter().zip(histories.each());
         Ok(StepContext {
-            expected: self.scale.expected(scene, load, age),
+            expected: expected.fold([0.0; 2], |[a, b], [c, d]| [f64::max(a, c), f64::max(b, d)]),
             meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
             lasting: self.past.lasting(),
             on_switch,
-            greatest_on_switch: if on_switch[1] > 0.0 { self.scale.greatest_potential() } else { 0.0 },
-            on_jump: stiffness_on_jump(scene, load, &history.at(time)),
-            is_last: time == kink && !is_held(*history, clock.time, time),
+            greatest_on_switch: if on_switch[1] > 0.0 { greatest() } else { 0.0 },
+            on_jump: jumps
+                .fold(0.0, |most, (load, history)| stiffness_on_jump(scene, load, &history.at(time)).max(most)),
+            is_last: time == kink && !histories.each().all(|history| is_held(history, clock.time, time)),
             tolerance: self.tolerance,
             agreement: self.past.agreement(),
             steps: self.past.count() + 1.0,
@@ -84,7 +92,8 @@ impl StepControl {
     /// approach, under which the error of u counts: by a defect in this step alone, and in all steps since the load acts, its `age`. Bodies
     /// without elastic response have the compliance of a `touch`.
     fn on_switch(&self, scene: &Scene, Interval { time, dt, .. }: Interval, age: f64, touch: f64) -> Result<[f64; 2]> {
-        let switch = self.scale.next_switch(time);
+        let switches = self.tracks.iter().map(|track| track.scale.next_switch(time));
+        let switch = switches.fold(f64::INFINITY, f64::min);
         if switch.is_infinite() {
             return Ok([0.0; 2]);
         }
@@ -118,7 +127,8 @@ pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let is_turn = clock.last_dt > 0.0 && corner == Some(clock.time);
     let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
     let tilts = tried.trial.free.iter().any(Freedom::tilts);
-    let (cells, reach) = if tilts { tried.pressed() } else { (0, None) };
+    let Pressed { cells, reach, .. } =
+        if tilts { tried.pressed(scene, &tried.state.indenter) } else { Pressed::default() };
     let leave = cells < tried.state.current.contact_cells;
     let lever = |Extent { low, high }: Extent| {
         let lever = |axis: usize| {

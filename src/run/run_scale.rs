@@ -55,16 +55,16 @@ pub(super) struct RunScale {
 }
 
 impl RunScale {
-    /// The scale of a run from `state` along a history to the time `until`. Rejects invalid loads of the history.
+    /// The scale of a run from `state` along the history of a body to the time `until`. Rejects invalid loads of the history.
     /// Finds how the bodies respond where they meet, to within such a tolerance of the steps.
     pub(super) fn new(
         scene: &Scene,
         state: &State,
-        history: &dyn LoadHistory,
+        (body, history): (usize, &dyn LoadHistory),
         until: f64,
         tolerance: f64,
     ) -> Result<RunScale> {
-        let touch = state.indenter.first_touch()[0].approach;
+        let touch = state.indenter.first_touch().get(body).map_or(0.0, |motion| motion.approach);
         let now = state.clock.time;
         let span = until - now;
         let compliance_at = |time: f64| {
@@ -94,7 +94,7 @@ impl RunScale {
                 loads.push((time, load));
             }
         }
-        scale.include_spring(scene, state, compliance, &loads);
+        scale.include_spring(scene, state, body, compliance, &loads);
         for (time, load) in loads.iter().filter(|(time, load)| !load.is_force() && *time > now) {
             let compliance = compliance_at(*time)? + SECANT * scale.give(load);
             scale.stress = scale.stress.max(scale.magnitude(load) / compliance);
@@ -104,7 +104,7 @@ impl RunScale {
         within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
         within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
         if scale.force > 0.0 && compliance > 0.0 {
-            scale.depth_over_compliance = resting_depth(scene, state, scale.force * compliance) / compliance;
+            scale.depth_over_compliance = resting_depth(scene, state, body, scale.force * compliance) / compliance;
         }
         let most = tolerance * scale.stress;
         scale.rises.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
@@ -145,7 +145,7 @@ impl RunScale {
     /// Includes the force of the spring that is driven deepest, by z, in bodies of this `compliance`. Under the force k z of a spring that stays
     /// compressed they would yield by h; spring and bodies in series yield about h z/(z + h). The force of a paraboloid grows with the power
     /// 3/2 of its depth, its width with the root.
-    fn include_spring(&mut self, scene: &Scene, state: &State, compliance: f64, loads: &[(f64, Load)]) {
+    fn include_spring(&mut self, scene: &Scene, state: &State, body: usize, compliance: f64, loads: &[(f64, Load)]) {
         let springs = loads.iter().filter_map(|(_, load)| match load {
             Load::Spring { stiffness, .. } => Some((self.magnitude(load), stiffness)),
             _ => None,
@@ -153,7 +153,7 @@ impl RunScale {
         let deepest = springs.max_by(|(one, _), (other, _)| one.total_cmp(other));
         if let Some((drive, stiffness)) = deepest.filter(|&(drive, _)| drive > 0.0 && compliance > 0.0) {
             let force = stiffness * drive;
-            let depth = 2.0 * resting_depth(scene, state, force * compliance);
+            let depth = 2.0 * resting_depth(scene, state, body, force * compliance);
             let part = drive / (drive + depth);
             self.width = force * compliance / (SECANT * depth) * part.sqrt();
             self.force = self.force.max(force * part.powf(1.5));
@@ -237,11 +237,9 @@ impl RunScale {
     /// are none.
     fn meeting_after(&self, now: f64, is_meant: impl Fn(&Rise) -> bool) -> Meeting {
         let rises = self.rises.iter().filter(|rise| rise.end >= now && is_meant(rise));
-        rises.fold(Meeting { depth: 0.0, stiffness: 0.0, give: f64::INFINITY }, |most, rise| Meeting {
-            depth: most.depth.max(rise.depth),
-            stiffness: most.stiffness.max(rise.stiffness),
-            give: most.give.min(self.width * rise.spring),
-        })
+        let meeting =
+            |&Rise { depth, stiffness, spring, .. }: &Rise| Meeting { depth, stiffness, give: self.width * spring };
+        rises.map(meeting).fold(Meeting::NONE, Meeting::worst)
     }
 
     /// The tops of the load between `now` and `time`.

@@ -6,7 +6,7 @@ use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
 use crate::run::FieldReport;
 use crate::run::RunContact;
-use crate::run::follow::{Run, history_of};
+use crate::run::follow::Run;
 use crate::run::progress::rounding;
 
 /// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
@@ -139,6 +139,6 @@ impl<C: RunContact> Run<'_, C> {
     }
 
     pub(super) fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
-        self.contact.within(&self.control, history_of(&self.history), time)
+        self.contact.within(&self.control, &self.histories, time)
     }
 }

@@ -3,13 +3,15 @@
 use crate::contact::{Scene, Settings, State};
 use crate::error::{Error, Result, StepError};
 use crate::hereditary::TimeError;
-use crate::load::{Load, LoadHistory};
+use crate::load::Load;
 use crate::observe::MeshError;
 use crate::run::error_budget::ErrorBudget;
 use crate::run::halves::Halves;
+use crate::run::histories::Histories;
 use crate::run::past_steps::PastSteps;
 use crate::run::progress::Stepping;
 use crate::run::run_scale::RunScale;
+use crate::run::track::Track;
 
 /// Controls the steps of a run in space: the one owner of their length. Adaptive steps keep their error below the tolerance. Two errors
 /// count: the error of the displacement within the step ([`History::time_error`](crate::hereditary::History::time_error)), and the
@@ -24,12 +26,11 @@ pub struct StepControl {
     next: Option<f64>,
     /// Error over tolerance of the last step accepted.
     last: f64,
-    /// Times and loads of the last nodes since the last jump or corner, newest first.
-    pub(super) nodes: Vec<(f64, Load)>,
-    /// Length of the last step before a corner, and the slope of the load over it, per second of reduced time.
-    corner: Option<(f64, f64)>,
-    /// Greatest loads and displacements of the run.
-    pub(super) scale: RunScale,
+    /// The loads of each rigid body.
+    pub(super) tracks: Vec<Track>,
+    /// The loads at the end of the step under way.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) loads: Vec<Load>,
     pub(super) past: PastSteps,
     /// The time of the last jump or corner.
     pub(super) since: f64,
@@ -52,8 +53,6 @@ const SAFETY: f64 = 0.9;
 /// *Solving Ordinary Differential Equations II*, IV.2).
 const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
-/// Nodes of the quadratic and its correction, besides the end of the step.
-pub(super) const NODES: usize = 3;
 /// Lengths per decade tried for the first step after a jump, which is chosen from the material alone, ...
 const LENGTHS_PER_DECADE: i32 = 4;
 /// ... and decades tried below the remaining time.
@@ -78,19 +77,16 @@ pub(super) struct Proposal {
 }
 
 impl StepControl {
-    pub(super) fn new(stepping: Stepping) -> StepControl {
+    pub(super) fn new(stepping: Stepping, bodies: usize) -> StepControl {
         let (_, tolerance) = stepping.lengths();
-        StepControl { tolerance, last: 1.0, nodes: Vec::with_capacity(NODES + 1), ..StepControl::default() }
+        let (tracks, loads) = ((0..bodies).map(|_| Track::new()).collect(), Vec::with_capacity(bodies));
+        StepControl { tolerance, last: 1.0, tracks, loads, ..StepControl::default() }
     }
 
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
-        self.nodes.len() <= NODES
-            && self.nodes.windows(2).all(|pair| pair[0].0 > pair[1].0)
-            && self.nodes.iter().all(|(time, load)| time.is_finite() && load.validate().is_ok())
-            && self.past.fits()
-            && self.scale.fits()
+        self.tracks.iter().all(Track::fits) && self.past.fits()
     }
 
     /// Looks at the whole history, once, for adaptive steps. Given steps look at no load but their own.
@@ -98,49 +94,55 @@ impl StepControl {
         &mut self,
         scene: &Scene,
         state: &State,
-        history: &dyn LoadHistory,
+        histories: &Histories<'_>,
         until: f64,
     ) -> Result<()> {
-        if self.tolerance > 0.0 && !self.scale.knows(until) {
-            let is_new = !self.scale.knows(f64::NEG_INFINITY);
-            let scale = RunScale::new(scene, state, history, until, self.tolerance)?;
-            self.scale = scale.after(&self.scale);
-            if is_new {
-                self.past = PastSteps::none(&scene.material)?;
-            }
+        if self.tolerance == 0.0 || self.know(until) {
+            return Ok(());
         }
+        let ahead = histories.each().enumerate();
+        let scale = |(body, history)| RunScale::new(scene, state, (body, history), until, self.tolerance);
+        let scales = ahead.map(scale).collect::<Result<Vec<_>>>()?;
+        if !self.know(f64::NEG_INFINITY) {
+            self.past = PastSteps::none(&scene.material)?;
+        }
+        self.tracks.iter_mut().zip(scales).for_each(|(track, scale)| track.scale = scale.after(&track.scale));
         Ok(())
     }
 
+    /// Whether all histories have been looked at up to a time.
+    fn know(&self, until: f64) -> bool {
+        self.tracks.iter().all(|track| track.scale.knows(until))
+    }
+
     /// Prepares a step from `state`: looks at the history where needed, and makes the present load a node.
-    pub(super) fn begin(&mut self, scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<()> {
+    pub(super) fn begin(&mut self, scene: &Scene, state: &State, histories: &Histories<'_>, until: f64) -> Result<()> {
         let (now, reduced) = (state.clock.time, state.clock.reduced_time);
-        if self.nodes.is_empty() {
-            self.nodes.push((reduced, history.checked_at(now, scene.attraction.is_some())?));
+        for (track, history) in self.tracks.iter_mut().zip(histories.each()).filter(|(track, _)| track.nodes.is_empty())
+        {
+            track.nodes.push((reduced, history.checked_at(now, scene.attraction.is_some())?));
             self.since = reduced;
         }
-        self.look_ahead(scene, state, history, until)?;
-        self.scale.include(&state.loads[0]);
+        self.look_ahead(scene, state, histories, until)?;
+        for (body, (track, load)) in self.tracks.iter_mut().zip(&state.loads).enumerate() {
+            track.scale.include(load);
+            let (cells, pressure) = (state.current.contact_cells, &state.current.solution.pressure);
+            let is_apart = cells == 0 || scene.bodies > 1 && !state.presses(scene, pressure, body);
+            track.is_apart = is_apart && !state.attracts;
+        }
         Ok(())
     }
 
     /// Starts anew at a jump of the load.
     pub(super) fn jump(&mut self) {
-        (self.next, self.last, self.corner) = (None, 1.0, None);
-        self.nodes.clear();
+        (self.next, self.last) = (None, 1.0);
+        self.tracks.iter_mut().for_each(Track::jump);
     }
 
     /// Starts anew at a corner of the load at the end of the last step.
     fn corner(&mut self) {
-        let slope = match self.nodes[..] {
-            [(end, load), (start, before), ..] => {
-                let change = self.scale.magnitude(&load) - self.scale.magnitude(&before);
-                Some((end - start, change / (end - start)))
-            }
-            _ => None,
-        };
-        self.jump();
-        self.corner = slope;
+        (self.next, self.last) = (None, 1.0);
+        self.tracks.iter_mut().for_each(Track::turn);
     }
 
     /// The next step to try, towards `stop`, shorter than the one `tried` before. An error if no step is short enough.
@@ -148,7 +150,7 @@ impl StepControl {
         &self,
         scene: &Scene,
         state: &State,
-        history: &dyn LoadHistory,
+        histories: &Histories<'_>,
         left: f64,
         stop: f64,
         tried: f64,
@@ -157,7 +159,7 @@ impl StepControl {
         let (length, wanted) = match self.next {
             Some(next) => (scene.length_of(clock, next, left)?, next),
             None => {
-                let first = self.first(scene, state, history, left)?.min(left);
+                let first = self.first(scene, state, histories, left)?.min(left);
                 (first, scene.reduced_length([now, now + first], first)?)
             }
         };
@@ -182,7 +184,7 @@ impl StepControl {
 
     /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
     /// tolerance. After a corner, only the departure of the load from its previous slope makes the bodies creep.
-    fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
+    fn first(&self, scene: &Scene, state: &State, histories: &Histories<'_>, left: f64) -> Result<f64> {
         let (clock, now, jumped) = (&state.clock, state.clock.time, state.clock.last_dt == 0.0);
         // the approach of a paraboloid is proportional to force and compliance to the power 2/3
         let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
@@ -190,24 +192,26 @@ impl StepControl {
         if glassy == 0.0 {
             return Ok(FIRST_FRACTION * left);
         }
-        let held = self.scale.magnitude(&state.loads[0]);
-        let (longest, slope) = match self.corner {
-            Some((before, slope)) if !jumped => (scene.length_of(clock, before, left)?, slope),
-            _ => (left, 0.0),
-        };
+        let turned = |track: &Track| track.corner.filter(|_| !jumped);
+        let before = self.tracks.iter().filter_map(turned).map(|(before, _)| before).reduce(f64::min);
+        let longest = before.map_or(Ok(left), |before| scene.length_of(clock, before, left))?;
         for k in 0..=LENGTHS_PER_DECADE * DECADES {
             let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
             let reduced = scene.reduced_length([now, now + dt], dt)?;
             let creep = compliance(reduced);
-            let deviation = if jumped {
-                (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
-            } else {
+            let mut deviation = if jumped { (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep } else { 0.0 };
+            let bodies = self.tracks.iter().zip(histories.each()).zip(&state.loads);
+            for ((track, history), start) in bodies.filter(|_| !jumped) {
                 let load = history.checked_before(now + dt, scene.attraction.is_some())?;
-                let change = (self.scale.magnitude(&load) - held - slope * reduced).abs();
-                let scale = self.scale.of_load(&state.loads[0], &load).max(held + change);
-                0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE)
-            };
-            if deviation.abs() <= self.tolerance && self.straying(scene, state, history, now + dt)? <= self.tolerance {
+                let (held, slope) = (track.scale.magnitude(start), turned(track).map_or(0.0, |(_, slope)| slope));
+                let change = (track.scale.magnitude(&load) - held - slope * reduced).abs();
+                let scale = track.scale.of_load(start, &load).max(held + change);
+                let own = 0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE);
+                deviation = deviation.max(own.abs());
+            }
+            if deviation.abs() <= self.tolerance
+                && self.straying(scene, state, histories, now + dt, |_| true)? <= self.tolerance
+            {
                 return Ok(dt);
             }
         }
@@ -240,14 +244,44 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Records an accepted step of length `dt` to `load` at `time`, as it was proposed.
-    pub(super) fn accept(&mut self, time: f64, load: Load, dt: f64, at_corner: bool, proposal: Proposal) {
+    /// Greatest deviation of the loads in a step to `time` from what the step takes them for, of the bodies that count
+    /// ([`Track::straying`]).
+    pub(super) fn straying(
+        &self,
+        scene: &Scene,
+        state: &State,
+        histories: &Histories<'_>,
+        time: f64,
+        counts: impl Fn(&Track) -> bool,
+    ) -> Result<f64> {
+        let bodies = self.tracks.iter().zip(histories.each()).filter(|(track, _)| counts(track));
+        let strays = bodies.map(|(track, history)| track.straying(scene, state, history, time, self.tolerance));
+        strays.fold(Ok(0.0), |most, own| Ok(most?.max(own?)))
+    }
+
+    /// The first time between `now` and `stop` at which undisturbed bodies touch, as [`RunScale::first_touch`].
+    pub(super) fn first_touch(&self, histories: &Histories<'_>, now: f64, stop: f64) -> f64 {
+        let bodies = self.tracks.iter().zip(histories.each());
+        bodies.fold(f64::INFINITY, |first, (track, history)| first.min(track.scale.first_touch(history, now, stop)))
+    }
+
+    /// The first top between `now` and `time`, as [`RunScale::first_top`], of the bodies that count.
+    pub(super) fn first_top(
+        &self,
+        histories: &Histories<'_>,
+        now: f64,
+        time: f64,
+        counts: impl Fn(usize, &Track) -> bool,
+    ) -> Option<f64> {
+        let bodies = self.tracks.iter().zip(histories.each()).enumerate();
+        let tops = bodies.filter(|(body, (track, _))| counts(*body, track));
+        tops.filter_map(|(_, (track, history))| track.scale.first_top(history, now, time)).reduce(f64::min)
+    }
+
+    /// Records an accepted step of length `dt` to `loads` at `time`, as it was proposed.
+    pub(super) fn accept(&mut self, time: f64, loads: &[Load], dt: f64, at_corner: bool, proposal: Proposal) {
         let Proposal { wanted, order, .. } = proposal;
-        if self.nodes.first().is_some_and(|(_, last)| !last.is_like(&load)) {
-            self.nodes.clear();
-        }
-        self.nodes.truncate(NODES - 1);
-        self.nodes.insert(0, (time, load));
+        self.tracks.iter_mut().zip(loads).for_each(|(track, load)| track.accept(time, *load));
         if at_corner {
             self.corner();
         } else if dt < 0.99 * wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {

@@ -152,9 +152,10 @@ impl StatesControl {
     pub(super) fn step(
         &mut self,
         contact: &mut StatesContact,
-        &Course { history, stop, corner, .. }: &Course<'_>,
+        &Course { histories, stop, corner, .. }: &Course<'_>,
     ) -> Result<StepReport> {
         let (now, is_first, tolerance) = (contact.time(), self.record.next == 0.0, self.record.tolerance);
+        let history = histories.first();
         if stop - now <= 2.0 * SHORTEST * stop {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
         }

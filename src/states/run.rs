@@ -10,6 +10,7 @@ use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::driven::{Course, Driven};
+use crate::run::histories::Histories;
 use crate::run::progress::Progress;
 use crate::run::{OwnedOrBorrowed, Run, Stepping};
 use crate::states::contact::StatesContact;
@@ -69,8 +70,8 @@ impl Driven for StatesContact {
         (Progress::begin(self.time, stepping), StatesControl::new(self, Record::new(until, tolerance)))
     }
 
-    fn load(&self, control: &StatesControl) -> Option<Load> {
-        control.record.load
+    fn bears(&self, control: &StatesControl, loads: &[Load]) -> bool {
+        control.record.load.as_ref() == loads.first()
     }
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
@@ -92,13 +93,13 @@ impl Driven for StatesContact {
         }
         control.before.copy_from(self);
         let report = match course.given {
-            Some((time, load)) => self.step_to(time, time - self.time(), load)?,
-            None => control.step(self, course)?,
+            Some((time, &[load, ..])) => self.step_to(time, time - self.time(), load)?,
+            _ => control.step(self, course)?,
         };
         control.halved = course.given.is_none();
         control.record.load = match course.given {
-            Some((_, load)) => Some(load),
-            None => Some(load_at(course.history, report.time)?),
+            Some((_, &[load, ..])) => Some(load),
+            _ => Some(load_at(course.histories.first(), report.time)?),
         };
         if report.time >= course.corner {
             self.reset_differences();
@@ -109,7 +110,8 @@ impl Driven for StatesContact {
         Ok(report)
     }
 
-    fn within(&self, control: &StatesControl, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)> {
+    fn within(&self, control: &StatesControl, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)> {
+        let history = histories.first();
         let (start, end) = (control.before.time(), self.time());
         within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
         let mut contact = if time == end { self.clone() } else { control.before.clone() };

@@ -10,6 +10,7 @@ mod protocols;
 mod protocols_run;
 mod returns;
 mod run;
+mod several_histories;
 mod springs;
 mod states;
 mod states_accuracy;

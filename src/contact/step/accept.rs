@@ -9,17 +9,6 @@ use crate::observe::resolution::{Outline, Resolution};
 use crate::solver::RigidMotion;
 
 impl Computation {
-    /// Number of cells of the region that are pressed in the trial, and the rectangle of the grid that holds them: of all ranks.
-    pub(crate) fn pressed(&self) -> (usize, Option<Extent>) {
-        let (region, pressure) = (&self.state.region, &self.trial.solution.pressure);
-        (region.rows().count(pressure.iter().filter(|&&p| p > 0.0).count()), region.reach(pressure))
-    }
-
-    /// Whether any cell is pressed in the trial, of all ranks.
-    pub(crate) fn presses(&self) -> bool {
-        self.state.region.is_positive_anywhere(&self.trial.solution.pressure)
-    }
-
     /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and `sizes` are the
     /// means of displacement and v in contact.
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {
@@ -68,30 +57,35 @@ pub(crate) struct Pressed {
 
 impl Computation {
     /// Where the trial of a step of this `indenter` presses. A call of all ranks.
-    pub(super) fn pressed_under(&self, scene: &Scene, indenter: &Indenter) -> Pressed {
-        let (cells, reach) = self.pressed();
-        Pressed { cells, reach, few: reach.and_then(|reach| self.few_cells(scene, indenter, reach)) }
-    }
-
-    /// Cells across the contact of the body with the fewest, if they are few; `reach` holds all pressed cells.
-    fn few_cells(&self, scene: &Scene, indenter: &Indenter, reach: Extent) -> Option<f64> {
+    pub(crate) fn pressed(&self, scene: &Scene, indenter: &Indenter) -> Pressed {
         let (Scene { grid, kernel, bodies, .. }, region) = (scene, &self.state.region);
-        let (rows, cells, periodic) = (region.rows(), grid.cells(), kernel.periodic_axes());
+        let (rows, periodic) = (region.rows(), kernel.periodic_axes());
         let (pressure, ends, images) = (&self.trial.solution.pressure, region.ends(periodic), region.images());
         let outline = Outline { rows: &rows, pressure, ends, images };
+        let (resolution, cells, own) = outline.resolution();
+        let few = |resolution: Resolution, extent: Extent| resolution.few(extent, grid.cells(), periodic);
+        let reach = region.reach_of(own);
         if *bodies == 1 {
-            return outline.resolution().few(reach, cells, periodic);
+            return Pressed { cells, reach, few: reach.and_then(|reach| few(resolution, reach)) };
         }
         let body = |k: usize| indenter.gap().owner(indenter.index(grid, region, k));
-        let found = (0..*bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
-        let few = |(resolution, extent): (Resolution, Option<Extent>)| {
-            resolution.few(region.shown_extent(extent?), cells, periodic)
-        };
-        found.filter_map(few).reduce(f64::min)
+        let each = (0..*bodies).step_by(TOGETHER).flat_map(|first| outline.resolutions::<TOGETHER>(first, body));
+        let each = each.filter_map(|(resolution, extent)| few(resolution, region.shown_extent(extent?)));
+        Pressed { cells, reach, few: each.reduce(f64::min) }
     }
 }
 
 impl State {
+    /// Whether a pressure on the region acts under a body. A call of all ranks.
+    pub(crate) fn presses(&self, scene: &Scene, pressure: &[f64], body: usize) -> bool {
+        let (region, indenter) = (&self.region, &self.indenter);
+        if scene.bodies == 1 {
+            return region.is_positive_anywhere(pressure);
+        }
+        let is_own = |k: usize| indenter.gap().owner(indenter.index(&scene.grid, region, k)) == body;
+        pressure.iter().enumerate().any(|(k, &p)| p > 0.0 && is_own(k))
+    }
+
     /// Whether the heights of the shapes are so far from 0 that their rounding counts, over the depth of the contact.
     pub(crate) fn heights_are_lost(&self, scene: &Scene) -> bool {
         let datum = self.indenter.gap().datum;

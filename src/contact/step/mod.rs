@@ -264,7 +264,7 @@ impl ViscoelasticContact {
     /// where it presses.
     pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Pressed> {
         // all exchanges with other ranks precede the change of the state
-        let pressed = attempt.computation(&self.computation).pressed_under(&self.scene, &step.indenter);
+        let pressed = attempt.computation(&self.computation).pressed(&self.scene, &step.indenter);
         self.computation.state.region.rows().intact()?;
         if let Some(larger) = attempt.larger {
             self.computation = *larger;

@@ -69,8 +69,12 @@ impl Region {
             let last = row.iter().rposition(|&value| value > 0.0)?;
             Some(Extent { low: [i, first], high: [i, last] })
         });
-        let own = Extent::hull(rows).map(|own| self.on_whole(own));
-        self.hull_of_all_ranks(own).map(|found| self.with_images(found))
+        self.reach_of(Extent::hull(rows))
+    }
+
+    /// The smallest rectangle of the whole grid that holds a rectangle of its cells on each rank, mirror images included.
+    pub(crate) fn reach_of(&self, own: Option<Extent>) -> Option<Extent> {
+        self.hull_of_all_ranks(own.map(|own| self.on_whole(own))).map(|found| self.with_images(found))
     }
 
     /// A rectangle of its cells, as cells of the whole grid.

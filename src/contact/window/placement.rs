@@ -74,10 +74,9 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
     touched.map(|touched| region_holding(&scene.grid, region.folded(), lowest.with(touched)))
 }
 
-/// The depth below first touch at which the first body about comes to rest, under the product of a force and a contact
-/// compliance.
-pub(crate) fn resting_depth(scene: &Scene, state: &State, force_times_compliance: f64) -> f64 {
-    level(scene, &state.region.of_gap(), &state.indenter, 0, force_times_compliance)[1]
+/// The depth below first touch at which a body about comes to rest, under the product of a force and a contact compliance.
+pub(crate) fn resting_depth(scene: &Scene, state: &State, body: usize, force_times_compliance: f64) -> f64 {
+    level(scene, &state.region.of_gap(), &state.indenter, body, force_times_compliance)[1]
 }
 
 /// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by a²/2R; `all`

@@ -1,0 +1,68 @@
+//! The load histories that a run follows.
+
+use crate::error::{LoadError, Result};
+use crate::load::{Load, LoadHistory};
+use crate::run::OwnedOrBorrowed;
+
+/// The load history of a body. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
+/// the run is dropped.
+pub(super) type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
+
+/// One load history for each rigid body, in their order.
+#[derive(Debug)]
+pub struct Histories<'a> {
+    first: RunHistory<'a>,
+    others: Vec<RunHistory<'a>>,
+}
+
+impl<'a> Histories<'a> {
+    pub(super) fn one(first: RunHistory<'a>) -> Histories<'a> {
+        Histories { first, others: Vec::new() }
+    }
+
+    /// `None` of no histories.
+    pub(super) fn new(histories: Vec<RunHistory<'a>>) -> Option<Histories<'a>> {
+        let mut histories = histories.into_iter();
+        Some(Histories { first: histories.next()?, others: histories.collect() })
+    }
+
+    /// That of the first body.
+    pub(crate) fn first(&self) -> &dyn LoadHistory {
+        borrowed(&self.first)
+    }
+
+    pub(super) fn each(&self) -> impl Iterator<Item = &dyn LoadHistory> {
+        std::iter::once(&self.first).chain(&self.others).map(borrowed)
+    }
+
+    pub(super) fn count(&self) -> usize {
+        1 + self.others.len()
+    }
+
+    /// Puts a load of each into `loads`.
+    pub(super) fn loads(&self, loads: &mut Vec<Load>, load: impl Fn(&dyn LoadHistory) -> Result<Load>) -> Result<()> {
+        loads.clear();
+        self.each().try_for_each(|history| {
+            loads.push(load(history)?);
+            Ok(())
+        })
+    }
+
+    /// The first breakpoint of any after `now`; infinite if there is none.
+    pub(super) fn next_breakpoint(&self, now: f64) -> Result<f64> {
+        self.each().try_fold(f64::INFINITY, |first, history| {
+            let next = history.next_breakpoint(now).unwrap_or(f64::INFINITY);
+            if next <= now || next.is_nan() {
+                return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: next }.into());
+            }
+            Ok(first.min(next))
+        })
+    }
+}
+
+fn borrowed<'h>(history: &'h RunHistory<'_>) -> &'h dyn LoadHistory {
+    match history {
+        OwnedOrBorrowed::Borrowed(history) => *history,
+        OwnedOrBorrowed::Owned(history) => &**history,
+    }
+}
