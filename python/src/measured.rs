@@ -258,7 +258,9 @@ impl MasterCurve {
                 )));
             }
             if vertical_shifts {
-                return Err(PyTypeError::new_err("give law or vertical_shifts: a known law shifts in time alone"));
+                return Err(PyTypeError::new_err(
+                    "give law or vertical_shifts: a known law has vertical factors of its own",
+                ));
             }
         }
         let curve = py.detach(|| match law {
@@ -308,17 +310,26 @@ impl MasterCurve {
             .collect()
     }
 
-    /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`.
+    /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`. It has the vertical factors
+    /// of the curve.
     fn wlf(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
         let law = self.0.wlf().or_raise()?;
         let [c1, c2] = law.wlf_constants().unwrap_or([f64::NAN; 2]);
-        TimeTemperature::wlf(py, c1, c2, law.reference())
+        self.with_vertical(py, &law, TimeTemperature::wlf(py, c1, c2, law.reference())?)
     }
 
-    /// The Arrhenius law through the shift factors.
+    /// The Arrhenius law through the shift factors. It has the vertical factors of the curve.
     fn arrhenius(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
         let law = self.0.arrhenius().or_raise()?;
-        TimeTemperature::arrhenius(py, law.activation_energy().unwrap_or(f64::NAN), law.reference())
+        let energy = law.activation_energy().unwrap_or(f64::NAN);
+        self.with_vertical(py, &law, TimeTemperature::arrhenius(py, energy, law.reference())?)
+    }
+
+    /// The law of the shift factors themselves, a table, with the vertical factors of the curve.
+    fn shift_table(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
+        let law = self.0.shift_table().or_raise()?;
+        let table = self.0.shift_factors().into_pyobject(py)?;
+        self.with_vertical(py, &law, TimeTemperature::table(py, table, law.reference())?)
     }
 
     /// The body at the reference temperature.
@@ -345,6 +356,23 @@ impl MasterCurve {
             rows.append((x, value))?;
         }
         Ok(all)
+    }
+}
+
+impl MasterCurve {
+    /// A law that was `made` anew, with the vertical factors of the `law` of the curve.
+    fn with_vertical(
+        &self,
+        py: Python<'_>,
+        law: &rh::TimeTemperature,
+        made: TimeTemperature,
+    ) -> PyResult<TimeTemperature> {
+        if !law.has_vertical_factors() {
+            return Ok(made);
+        }
+        let row = |(temperature, _)| Ok((temperature, law.vertical_factor(temperature)?));
+        let rows = self.0.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        TimeTemperature::with_vertical_factors(Bound::new(py, made)?, rows.into_pyobject(py)?)
     }
 }
 

@@ -10,7 +10,8 @@ use crate::errors::{OrRaise, raised_number};
 use crate::recipe::Recipe;
 use crate::rheology::Rheology;
 
-/// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K].
+/// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K]; and b_T, by which its
+/// moduli are, if the law has vertical factors.
 ///
 /// >>> law = TimeTemperature.wlf(17.44, 51.6, 373.15)
 /// >>> law.shift_factor(373.15)
@@ -58,6 +59,29 @@ impl TimeTemperature {
         let law = slf.get().law.clone().with_arrhenius_below(temperature, energy).or_raise()?;
         let recipe = Recipe::new(slf.py(), "with_arrhenius_below", (slf, temperature, energy))?;
         Ok(TimeTemperature { law, recipe })
+    }
+
+    /// The same with moduli that are b_T times those at the reference: rows of temperature [K] and vertical factor b_T.
+    pub fn with_vertical_factors(slf: Bound<'_, Self>, table: Bound<'_, PyAny>) -> PyResult<TimeTemperature> {
+        let law = slf.get().law.clone().with_vertical_factors(&pairs("table", &table)?).or_raise()?;
+        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "with_vertical_factors", (slf, table))? })
+    }
+
+    /// The same with moduli in proportion to the temperature, as of rubbers.
+    fn with_entropic_moduli(slf: Bound<'_, Self>) -> PyResult<TimeTemperature> {
+        let law = slf.get().law.clone().with_entropic_moduli();
+        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "with_entropic_moduli", (slf,))? })
+    }
+
+    /// The same with moduli that do not change with temperature, as a `TemperatureHistory` needs.
+    fn without_vertical_factors(slf: Bound<'_, Self>) -> PyResult<TimeTemperature> {
+        let law = slf.get().law.clone().without_vertical_factors();
+        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "without_vertical_factors", (slf,))? })
+    }
+
+    /// b_T at a temperature [K]: 1 without vertical factors.
+    fn vertical_factor(&self, temperature: f64) -> PyResult<f64> {
+        self.law.vertical_factor(temperature).or_raise()
     }
 
     /// a_T at a temperature [K].

@@ -358,6 +358,11 @@ def test_pickles(thing):
 MADE_OF = {
     "terms": (lambda a: vc.Rheology.prony(1e6, a), [[1e6, 0.1]], lambda of: of.creep_compliance(1.0)),
     "a table of shifts": (lambda a: vc.TimeTemperature.table(a, 300.0), [[290.0, 10.0], [300.0, 1.0]], lambda of: of.shift_factor(295.0)),
+    "vertical factors": (
+        lambda a: vc.TimeTemperature.arrhenius(1e5, 300.0).with_vertical_factors(a),
+        [[290.0, 0.9], [300.0, 1.0]],
+        lambda of: of.vertical_factor(295.0),
+    ),
     "forces": (lambda a: vc.LoadHistory.forces([0.0, 1.0], a), [0.0, 1.0], lambda of: repr(of.at(0.5))),
     "creep": (
         lambda a: vc.Measurements.creep([0.1, 1, 10, 100], a).fit(),

@@ -178,6 +178,15 @@ def test_measured_materials(tmp_path):
         isotherms.append((temperature, vc.Measurements.dynamic(omega, cold.real, cold.imag)))
     curve = vc.MasterCurve(300.0, isotherms)
     assert [row[1] for row in curve.shift_factors] == pytest.approx([law.shift_factor(T) for T, _ in isotherms], rel=0.05)
+    rubber = law.with_entropic_moduli()
+    moduli = [(T, rubber.at(truth, T).complex_modulus(omega)) for T, _ in isotherms]
+    stiffer = [(T, vc.Measurements.dynamic(omega, both.real, both.imag)) for T, both in moduli]
+    found = vc.MasterCurve(300.0, stiffer, vertical_shifts=True)
+    for own in (found.wlf(), found.shift_table(), pickle.loads(pickle.dumps(found.wlf()))):
+        assert own.vertical_factor(305.0) == pytest.approx(305.0 / 300.0, rel=0.01)
+    with pytest.raises(NotImplementedError, match="vertical factors b_T"):
+        vc.TemperatureHistory(rubber, 305.0)
+    assert vc.TemperatureHistory(rubber.without_vertical_factors(), 305.0).at(0.0) == 305.0
     rows = "\n".join(f"{t},{truth.creep_compliance(t)}" for t in (0.1, 0.3, 1.0, 3.0, 10.0, 100.0))
     (tmp_path / "creep.csv").write_text("t [s],J [1/Pa]\n" + rows)
     table = vc.Measurements.from_csv("creep", tmp_path / "creep.csv")
