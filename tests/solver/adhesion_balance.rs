@@ -192,3 +192,85 @@ fn energies_close_under_every_load() {
     println!("median and worst {coarse:?}, {fine:?} in a fourth of the steps; {snapped} with jumps");
     assert!(snapped > 0 && coarse[1] < 1e-2 && fine[1] < 1e-2 && fine[0] < coarse[0] / 8.0);
 }
+
+/// What a pull-off takes and shows: its work, what is lost and dissipated, the greatest pull, and the warning of the balance.
+struct PulledOff {
+    work: f64,
+    gone: f64,
+    greatest: f64,
+    warning: Option<String>,
+    steps: usize,
+}
+
+/// Drawn off from a dwell at this speed, at stops so far apart.
+fn pull_off(contact: &ViscoelasticContact, speed: f64, way: f64, tolerance: f64, every: Option<f64>) -> PulledOff {
+    let mut contact = contact.clone();
+    let mut balance = EnergyBalance::new(&contact).unwrap();
+    for dt in [0.0, 10.0] {
+        let report = contact.step(dt, Load::force(2.0e-3)).unwrap();
+        balance.record(&contact, &report).unwrap();
+    }
+    let (before, from, start) = (balance.energies(), contact.time(), contact.approach());
+    let load = FnHistory::new(move |t: f64| Load::approach(start - speed * (t - from).max(0.0)));
+    let run = contact.follow(&load, Stepping::adaptive(tolerance), from + way / speed);
+    let mut run = match every {
+        Some(every) => run.stop_at(Times::every(every / speed)).unwrap(),
+        None => run,
+    };
+    let (mut greatest, mut steps) = (0.0_f64, 0);
+    while run.next_step().unwrap().is_some_and(|report| {
+        balance.record(run.contact(), &report).unwrap();
+        steps += 1;
+        true
+    }) {
+        // the stops of the reference show the peak
+        let pull = |contact: &ViscoelasticContact| -contact.force();
+        let at_end = pull(run.contact());
+        let found = if every.is_some() { at_end } else { run.greatest_within_step(pull).unwrap().1 };
+        assert!(found >= at_end);
+        greatest = greatest.max(found);
+    }
+    let Energies { work, viscous, lost, .. } = balance.energies();
+    let gone = viscous + lost - before.viscous - before.lost;
+    PulledOff { work: work - before.work, gone, greatest, warning: balance.energies().warning(), steps }
+}
+
+/// Pull-offs that lie within a few adaptive steps: the work, what is gone and the greatest pull are those of many short steps, or the
+/// balance warns. `PULL_OFFS=40` draws more.
+#[test]
+fn fast_pull_offs_are_balanced_or_warn() {
+    let (mut warned, mut worst, mut crossed) = (0, [0.0_f64; 3], 0);
+    let count = from_environment("PULL_OFFS", 3);
+    for number in 0..count {
+        let mut draws = Draws::new(77_000 * from_environment("ADHESION_SEED", 1) + number);
+        let moduli = [(60.0e3 * draws.scale(0.3, 1.5), draws.scale(0.3, 3.0)), (20.0e3, draws.scale(0.03, 0.3))];
+        let body = GeneralizedMaxwell::new(20.0e3 * draws.scale(0.7, 1.5), &moduli).unwrap();
+        let law = ExponentialAttraction::new(0.2 * draws.scale(0.7, 1.4), 60.0e-6 * draws.scale(0.8, 1.3)).unwrap();
+        let (speed, tolerance) = (draws.scale(1e-3, 3e-2), draws.scale(1e-3, 1e-2));
+        let builder = ViscoelasticContact::builder(Grid::square(32, 5.0e-3).unwrap());
+        let builder = builder.geometry(&Sphere::new(5.0e-3).unwrap()).material(Material::incompressible(body));
+        let contact = builder.attraction(law).build().unwrap();
+        let way = 1.2e-3;
+        let [found, fine] = [None, Some(way / 600.0)].map(|every| pull_off(&contact, speed, way, tolerance, every));
+        let off = [
+            (found.work - fine.work).abs() / fine.work,
+            (found.gone - fine.gone).abs() / fine.gone,
+            (found.greatest - fine.greatest).abs() / fine.greatest,
+        ];
+        println!(
+            "{number}: {} steps at {speed:.1e} m/s to {tolerance:.1e}: work, gone, pull off by {off:.3?} of {:.2e} J, {:.2e} J, {:.2e} N; {:?}",
+            found.steps, fine.work, fine.gone, fine.greatest, found.warning
+        );
+        assert!(fine.warning.is_none() && fine.work > 0.0, "{number}: {:?}", fine.warning);
+        crossed += usize::from(found.steps < 20);
+        warned += u64::from(found.warning.is_some());
+        if found.warning.is_none() {
+            (0..3).for_each(|k| worst[k] = worst[k].max(off[k]));
+        }
+    }
+    println!("{warned} of {count} warned, {crossed} in fewer than 20 steps; the others off by at most {worst:.3?}");
+    assert!(
+        crossed > 0 && 4 * warned <= count && worst[0] < 0.05 && worst[1] < 0.1 && worst[2] < 0.01,
+        "{warned} {worst:?}"
+    );
+}

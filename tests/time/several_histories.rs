@@ -4,7 +4,7 @@
 //! others, `BODIES_STEPS=20000` finds the truth of more scenes.
 
 use crate::common::random_histories::{Control, RandomHistory, random_history};
-use crate::common::{Draws, RADIUS, Ratios, from_environment};
+use crate::common::{Draws, RADIUS, Ratios, Temporary, from_environment};
 use viscocontact::contact::{Builder, TimeRule};
 use viscocontact::prelude::*;
 use viscocontact::run::Crossing;
@@ -198,64 +198,67 @@ fn each_body_follows_its_own_history() {
     assert!(3 * unknown <= scenes, "{unknown} of {scenes} without a truth");
 }
 
-/// Given steps of a run are those that one takes oneself, bit by bit; events, samples and saved runs see all bodies.
+/// Given steps of a run are those that one takes oneself, bit by bit, and end at the corners of all histories; events and saved
+/// runs see all bodies.
 #[test]
 fn runs_of_several_bodies_have_what_others_have() {
     let scene = draw(3, 2);
-    let mut by_hand = scene.contact(TimeRule::Exponential, 1e-6);
-    let mut led = by_hand.clone();
-    let ramps = scene.controls.iter().enumerate();
-    let ramps: Vec<Ramp> =
-        ramps.map(|(k, own)| Ramp::new(own.load(0.0), own.load(1.0), 0.3 + 0.1 * k as f64).unwrap()).collect();
-    let histories: Vec<&dyn LoadHistory> = ramps.iter().map(|ramp| ramp as &dyn LoadHistory).collect();
-    let mut run = led.follow_each(&histories, Stepping::fixed(0.125), 1.0).unwrap();
-    let mut ends = Vec::new();
+    let start = || scene.contact(TimeRule::Exponential, 1e-6);
+    let ramps_to = |end: fn(usize) -> f64| {
+        let bodies = scene.controls.iter().enumerate();
+        bodies.map(|(k, own)| Ramp::new(own.load(0.0), own.load(1.0), end(k)).unwrap()).collect::<Vec<_>>()
+    };
+    let [smooth, ramps] = [ramps_to(|_| 2.0), ramps_to(|k| 0.3 + 0.1 * k as f64)];
+    let [smooth, histories] =
+        [&smooth, &ramps].map(|ramps| ramps.iter().map(|ramp| ramp as &dyn LoadHistory).collect::<Vec<_>>());
+    let (mut by_hand, mut led) = (start(), start());
+    let mut run = led.follow_each(&smooth, Stepping::fixed(0.125), 1.0).unwrap();
     while let Some(report) = run.next_step().unwrap() {
-        let loads: Vec<Load> = histories.iter().map(|history| history.before(report.time)).collect();
+        let loads: Vec<Load> = smooth.iter().map(|history| history.at(report.time)).collect();
         by_hand.step(report.time - by_hand.time(), loads).unwrap();
         assert_eq!(by_hand.pressure(), run.contact().pressure(), "at {}", report.time);
+    }
+    assert!(by_hand.time() == 1.0 && by_hand.contact_cells() > 0);
+
+    let (mut contact, mut ends) = (start(), Vec::new());
+    let mut run = contact.follow_each(&histories, Stepping::fixed(0.25), 1.0).unwrap();
+    while let Some(report) = run.next_step().unwrap() {
         ends.push(report.time);
     }
-    assert!(ramps.iter().enumerate().all(|(k, _)| ends.contains(&(0.3 + 0.1 * k as f64))), "{ends:?}");
+    assert!((0..ramps.len()).all(|k| ends.contains(&(0.3 + 0.1 * k as f64))), "{ends:?}");
 
-    // an event of the last body, and the same steps from a file
+    // an event of the last body
     let last = scene.places.len() - 1;
     let force = move |contact: &ViscoelasticContact| contact.body(last).unwrap().force;
-    let most = force(&by_hand);
-    let start = || scene.contact(TimeRule::Exponential, 1e-6);
+    let most = force(&contact);
     let mut contact = start();
     let run = contact.follow_each(&histories, Stepping::adaptive(1e-2), 1.0).unwrap();
     let mut run = run.stop_when(force, Crossing::Up(0.25 * most)).unwrap();
-    let file = std::env::temp_dir().join(format!("viscocontact-several-{}", std::process::id()));
     let mut met = None;
     while let Some(report) = run.next_step().unwrap() {
-        if run.events()[0].is_met() {
-            met = Some(report.time);
-        }
-        if report.time < 0.2 {
-            run.save(&file).unwrap();
-        }
+        met = met.or(run.events()[0].is_met().then_some(report.time));
     }
-    assert!(met.is_some(), "the last body was pressed to {most} N");
+    assert!(met.is_some_and(|time| time > 0.0 && time < 0.5), "{met:?}, pressed to {most} N");
+
+    // the same steps from a file
+    let file = Temporary::file("several-histories");
     let mut through = start();
     let mut run = through.follow_each(&histories, Stepping::adaptive(1e-2), 1.0).unwrap();
     while run.next_step().unwrap().is_some_and(|report| report.time < 0.2) {}
-    run.save(&file).unwrap();
+    run.save(&*file).unwrap();
     while run.next_step().unwrap().is_some() {}
     let mut resumed = start();
-    resumed.resume(&file).unwrap();
-    std::fs::remove_file(&file).unwrap();
-    assert!(resumed.time() < 1.0);
+    resumed.resume(&*file).unwrap();
+    assert!(resumed.time() > 0.0 && resumed.time() < 1.0);
     let mut run = resumed.follow_each(&histories, Stepping::adaptive(1e-2), 1.0).unwrap();
     while run.next_step().unwrap().is_some() {}
     assert_eq!(resumed.pressure(), through.pressure());
 
-    // one history for each body
+    // one history for each body, and fields to an accuracy of one body alone
+    let error = start().follow_each(&histories[1..], Stepping::fixed(0.1), 1.0).unwrap_err();
+    let expected = matches!(error, Error::WrongLength { len, expected, .. } if (len, expected) == (last, last + 1));
+    assert!(expected && error.to_string().contains("load histories"), "{error}");
     let mut contact = start();
-    let error = contact.follow_each(&histories[1..], Stepping::fixed(0.1), 1.0).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        format!("load histories of the rigid bodies: {last} values, expected {}", last + 1),
-        "{error}"
-    );
+    let run = contact.follow_each(&histories, Stepping::adaptive(1e-2), 1.0).unwrap();
+    assert!(run.fields_to(1e-2).unwrap_err().to_string().contains("rigid bodies of a run with fields"));
 }

@@ -32,7 +32,8 @@ const WRONG: f64 = 0.05;
 /// [`Warnings::JUMP`] lose [`PassReport::released`](crate::contact::PassReport::released). Beside a jump the force leaves every polynomial: where the forces at both ends
 /// of a step do not tell its work, the step is computed again in parts, in a copy of the contact, whose work and losses count.
 ///
-/// Two fields for each relaxation time and eight more are kept, 8 bytes a cell each; a step costs as many products, far less than the step of
+/// Two fields for each relaxation time and eight more are kept, 8 bytes a cell each, and where surfaces attract each other the contact at the
+/// end of the step before; a step costs as many products, far less than the step of
 /// the contact, and with [`Settings::window`](crate::contact::Settings::window) a convolution on the whole grid. Lateral forces of an indenter
 /// that moves along a path do work that is not counted.
 ///
@@ -70,6 +71,8 @@ pub struct EnergyBalance {
     gap: Vec<f64>,
     /// Whether the bodies have yet to come from far apart.
     far_apart: bool,
+    /// The contact at the end of the step recorded last, where surfaces attract each other: adaptive steps consist of two there.
+    last: Option<Box<ViscoelasticContact>>,
 }
 
 /// The work of a load since the bodies were undisturbed, and what became of it \[J\].
@@ -104,7 +107,9 @@ impl Energies {
         let (off, whole) = (self.imbalance(), self.size());
         let off_by = || {
             let [off, percent] = [off, 100.0 * off.abs() / whole].map(|number| rounded(number, 3));
-            format!("the energies are out of balance by {off} J, {percent} % of them: take shorter steps (Run::stop_at)")
+            format!(
+                "the energies are out of balance by {off} J, {percent} % of them: take shorter steps (Run::stop_at)"
+            )
         };
         (off.abs() > WRONG * whole).then(off_by)
     }
@@ -143,6 +148,7 @@ impl EnergyBalance {
             traction: vec![0.0; cells],
             gap: vec![0.0; cells],
             far_apart: contact.attraction().is_some(),
+            last: None,
         })
     }
 
@@ -152,12 +158,22 @@ impl EnergyBalance {
     /// If there is no memory for the fields on the whole grid.
     pub fn record(&mut self, contact: &ViscoelasticContact, report: &StepReport) -> Result<Energies> {
         let jumped = report.warnings.contains(Warnings::JUMP);
-        self.take_in(contact, report.dt, jumped, if jumped { HALVINGS } else { MOST_HALVINGS })
+        let (last, halvings) = (self.last.take(), if jumped { HALVINGS } else { MOST_HALVINGS });
+        self.take_in((last.as_deref(), contact), report.dt, jumped, halvings)?;
+        self.last = contact.attraction().is_some().then(|| Box::new(contact.clone()));
+        Ok(self.energies)
     }
 
     /// Takes in a step of length `dt`, if its work is not known in halves, and halves of halves, so many times.
-    fn take_in(&mut self, contact: &ViscoelasticContact, dt: f64, jumped: bool, halvings: u32) -> Result<Energies> {
-        if dt == 0.0 || halvings == 0 || !self.starts_with(contact) {
+    /// From the contact `before` it, which the contact itself may know.
+    fn take_in(
+        &mut self,
+        (before, contact): (Option<&ViscoelasticContact>, &ViscoelasticContact),
+        dt: f64,
+        jumped: bool,
+        halvings: u32,
+    ) -> Result<Energies> {
+        if dt == 0.0 || halvings == 0 || self.far_apart || !(before.is_some() || self.starts_with(contact)) {
             return self.take_in_whole(contact, dt, jumped);
         }
         let mut in_halves = self.clone();
@@ -167,12 +183,12 @@ impl EnergyBalance {
             if jumped || off.abs() <= UNBALANCED * self.energies.size() {
                 return Ok(self.energies);
             }
-            if in_halves.take_in_halves(contact, halvings - 1).is_ok_and(|same_end| same_end) {
+            if in_halves.take_in_halves((before, contact), halvings - 1).is_ok_and(|same_end| same_end) {
                 *self = in_halves;
             }
             return Ok(self.energies);
         }
-        if in_halves.take_in_halves(contact, halvings.min(HALVINGS) - 1).is_ok_and(|same_end| same_end) {
+        if in_halves.take_in_halves((before, contact), halvings.min(HALVINGS) - 1).is_ok_and(|same_end| same_end) {
             *self = in_halves;
             return Ok(self.energies);
         }
@@ -209,7 +225,7 @@ impl EnergyBalance {
     /// Whether the last step began where the balance is, and can be taken again.
     fn starts_with(&self, contact: &ViscoelasticContact) -> bool {
         let State { history, start, .. } = &contact.computation.state;
-        !self.far_apart && history.start_is_kept() && start.clock.reduced_time == self.reduced_time
+        history.start_is_kept() && start.clock.reduced_time == self.reduced_time
     }
 
     /// Whether the work of the last step is not known from the forces at its ends.
@@ -220,20 +236,29 @@ impl EnergyBalance {
     }
 
     /// Takes in the last step in two halves, each computed again; returns whether they end where the step did.
-    fn take_in_halves(&mut self, contact: &ViscoelasticContact, halvings: u32) -> Result<bool> {
-        let (end, loads) = (&contact.computation.state, [contact.load()]);
-        let half = 0.5 * (contact.time() - end.start.clock.time);
-        let mut part = contact.within_step(contact.time() - half)?;
-        self.take_in_half(&part, half, halvings)?;
-        part.take_part(contact.time(), &loads, contact.settings().tolerance(), end.start.interpolant)?;
-        self.take_in_half(&part, half, halvings)?;
+    fn take_in_halves(
+        &mut self,
+        (before, contact): (Option<&ViscoelasticContact>, &ViscoelasticContact),
+        halvings: u32,
+    ) -> Result<bool> {
+        let (end, load) = (&contact.computation.state, contact.load());
+        let mut part = match before {
+            Some(before) => before.clone(),
+            None => contact.within_step(end.start.clock.time)?,
+        };
+        let half = 0.5 * (contact.time() - part.time());
+        let (middle, tolerance) = (contact.time() - half, contact.settings().tolerance());
+        for (time, load) in [(middle, part.load_like(0, &load).towards(&load, 0.5)), (contact.time(), load)] {
+            part.take_part(time, &[load], tolerance, end.start.interpolant)?;
+            self.take_in_half(&part, half, halvings)?;
+        }
         Ok(!part.is_elsewhere(end))
     }
 
     fn take_in_half(&mut self, part: &ViscoelasticContact, dt: f64, halvings: u32) -> Result<Energies> {
         let may_jump = part.passes().is_some_and(|passes| passes.may_jump(0.0));
         let jumped = may_jump && self.starts_with(part) && self.is_inexact(part);
-        self.take_in(part, dt, jumped, halvings)
+        self.take_in((None, part), dt, jumped, halvings)
     }
 
     /// Force and moments at the beginning and at the end of the motion in a step with a jump, which is at its end: what is released belongs to
