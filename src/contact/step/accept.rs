@@ -68,7 +68,7 @@ pub(crate) struct Pressed {
 
 impl Computation {
     /// Where the trial of a step of this `indenter` presses. A call of all ranks.
-    pub(super) fn pressed_under(&self, scene: &Scene, indenter: &Indenter) -> Pressed {
+    pub(crate) fn pressed_under(&self, scene: &Scene, indenter: &Indenter) -> Pressed {
         let (cells, reach) = self.pressed();
         Pressed { cells, reach, few: reach.and_then(|reach| self.few_cells(scene, indenter, reach)) }
     }
