@@ -89,7 +89,8 @@ impl ViscoelasticContact {
         Some(contact)
     }
 
-    /// Takes over the state of a steady motion, of which it has the fields but not the past. Returns the warnings of a step to it.
+    /// Takes over the state of a steady motion, of which it has the fields but not the past.
+    /// Returns the warnings of a step to it.
     pub(crate) fn show_steady(
         &mut self,
         load: Load,

@@ -4,10 +4,14 @@ use crate::rounded::rounded;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SlidingError {
-    /// At a frequency that the motion meets, the bodies do not resist: their complex modulus E′ + i E″ has no positive real part, or a negative
-    /// imaginary one, as in the other convention, E′ − i E″.
-    #[error("at {} rad/s the complex modulus is {} + {} i Pa: in the convention E' + i E'' bodies have E' > 0 and E'' >= 0; check signs, units and frequencies of the moduli", rounded(*.omega, 5),
-        rounded(modulus(*.compliance)[0], 5), rounded(modulus(*.compliance)[1], 5))]
+    /// At a frequency that the motion meets, the bodies do not resist: their complex modulus E′ + i
+    /// E″ has no positive real part, or a negative imaginary one, as in the other convention, E′ −
+    /// i E″.
+    #[error(
+        "at {} rad/s the complex modulus is {} + {} i Pa: in the convention E' + i E'' bodies have E' > 0 and E'' >= 0; \
+        check signs, units and frequencies of the moduli",
+        rounded(*.omega, 5), rounded(modulus(*.compliance)[0], 5), rounded(modulus(*.compliance)[1], 5)
+    )]
     NotPassive {
         /// Frequency \[rad/s\].
         omega: f64,
@@ -29,8 +33,11 @@ pub enum SlidingError {
     },
 
     /// The bodies would drive the motion, which bodies that dissipate cannot.
-    #[error("at a velocity of ({}, {}) m/s the bodies drive with {} of the sizes of what they resist with: cells that are longer than a layer is thick do not resolve its losses; refine the mesh",
-        rounded(.velocity[0], 5), rounded(.velocity[1], 5), rounded(*.part, 3))]
+    #[error(
+        "at a velocity of ({}, {}) m/s the bodies would drive the motion, by {} of the sum of what their waves resist and drive \
+        with: cells longer than a layer is thick do not resolve its losses: refine the mesh",
+        rounded(.velocity[0], 5), rounded(.velocity[1], 5), rounded(*.part, 3)
+    )]
     Drives {
         /// Velocity \[m/s\].
         velocity: [f64; 2],
@@ -39,8 +46,11 @@ pub enum SlidingError {
     },
 
     /// A layer on a base of its own creep is too thin for the grid.
-    #[error("the grid is {} m long, {} times the thickness of a layer on a base that creeps otherwise, of which 64 are covered: shorten the grid to {} m, or take a body that is periodic along both axes",
-        rounded(*.length, 4), rounded(.length / .thickness, 3), rounded(*.longest, 4))]
+    #[error(
+        "the grid is {} m long, {} times the thickness of a layer on a base that creeps otherwise, of which 64 are covered: \
+        shorten the grid to {} m, or take a body that is periodic along both axes",
+        rounded(*.length, 4), rounded(.length / .thickness, 3), rounded(*.longest, 4)
+    )]
     ThinLayer {
         /// Length of the grid along an axis on which the bodies end \[m\].
         length: f64,

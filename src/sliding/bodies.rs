@@ -29,7 +29,8 @@ pub(super) struct Bodies {
     pub(super) layer: Option<LayerOnBase>,
     /// Influences along rows of a motion along either axis.
     pub(super) rows: [OnceLock<Vec<Row>>; 2],
-    /// The shortest and the longest time at which the materials of the moving pressure were measured \[s\].
+    /// The shortest and the longest time at which the materials of the moving pressure were
+    /// measured \[s\].
     pub(super) measured: [f64; 2],
     /// The part of the relaxed compliance that is extrapolated in a counter-body that slides.
     pub(super) unmeasured_at_rest: f64,

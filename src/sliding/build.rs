@@ -15,8 +15,9 @@ use crate::memory;
 use crate::motion::CounterMotion;
 use crate::rheology::{CreepSpectrum, Elastic, Material};
 
-/// Whether a gap changes at one place along a periodic axis by far more than anywhere else: a height map that does not repeat has a step
-/// where its end meets its beginning, wherever its origin lies. Rows that are not finite everywhere do not close.
+/// Whether a gap changes at one place along a periodic axis by far more than anywhere else: a
+/// height map that does not repeat has a step where its end meets its beginning, wherever its
+/// origin lies. Rows that are not finite everywhere do not close.
 fn jumps(gap: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> bool {
     (0..2).filter(|&axis| periodic[axis] && cells[axis] > 2).any(|axis| {
         let (n, [along, aside]) = (cells[axis], if axis == 0 { [cells[1], 1] } else { [1, cells[1]] });
@@ -39,7 +40,8 @@ const JUMP: f64 = 4.0;
 fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
     let [n1, n2] = cells.map(|n| n as u64);
     let padded = [0, 1].map(|axis| if periodic[axis] || cells[axis] == 1 { 1 } else { 2 } * cells[axis] as u64);
-    // factors, coefficients and losses of the response, with its symmetric part; of the inverses, and of both on coarser meshes
+    // factors, coefficients and losses of the response, with its symmetric part; of the inverses,
+    // and of both on coarser meshes
     let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 86 * n1 * (n2 / 2 + 1));
     // influences at about four nodes a cell, and the panels of these; tables of coefficients
     let nodes = if periodic == [true; 2] { 0 } else { 150 * n1 * n2 };
@@ -51,37 +53,47 @@ fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
 const SAME_RATIO: f64 = 1e-6;
 
 impl Builder {
-    /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of [`Builder::build`]. All fields take the whole grid.
+    /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of
+    /// [`Builder::build`]. All fields take the whole grid.
     ///
-    /// All bodies of the crate are covered but kernels of coefficients ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Bodies that are periodic along both
-    /// axes are passed in any direction, the others along x1 or x2. Where a body is periodic the shape must be periodic too: a height map that does not
-    /// repeat slides over an edge, and a shape with a single step in its period, at whatever place, is refused. A half-space may flow: the
-    /// pressure under a force is steady then. A counter-body that creeps slides or rolls: [`Builder::counter_motion`] says which.
+    /// All bodies of the crate are covered but kernels of coefficients
+    /// ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Bodies
+    /// that are periodic along both axes are passed in any direction, the others along x1 or x2.
+    /// Where a body is periodic the shape must be periodic too: a height map that does not repeat
+    /// slides over an edge, and a shape with a single step in its period, at whatever place, is
+    /// refused. A half-space may flow: the pressure under a force is steady then. A counter-body
+    /// that creeps slides or rolls: [`Builder::counter_motion`] says which.
     ///
     /// # Errors
-    /// As [`Builder::build`], and if the body is another one, or flows, the surfaces attract each other, there are several rigid bodies, ranks, or a history
-    /// of the temperature: scale the velocity by the shift factor instead.
+    /// As [`Builder::build`], and if the body is another one, or flows, the surfaces attract each
+    /// other, there are several rigid bodies, ranks, or a history of the temperature: scale the
+    /// velocity by the shift factor instead.
     pub fn build_sliding(self) -> Result<SteadySliding> {
         self.sliding(None, None)
     }
 
-    /// [`Builder::build_sliding`] on a layer whose base creeps otherwise, or not: a rubber sheet on steel. The kernel belongs to a layer that
+    /// [`Builder::build_sliding`] on a layer whose base creeps otherwise, or not: a rubber sheet on
+    /// steel. The kernel belongs to a layer that
     /// [`Layer::bonded_to_material`](crate::Layer::bonded_to_material) made.
     ///
     /// # Errors
-    /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no series, or flows; if the body is not periodic along both axes,
-    /// and a side of the grid is more than 64 times as long as the layer is thick ([`SlidingError::ThinLayer`](crate::sliding::SlidingError::ThinLayer)).
+    /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no
+    /// series, or flows; if the body is not periodic along both axes, and a side of the grid is
+    /// more than 64 times as long as the layer is thick
+    /// ([`SlidingError::ThinLayer`](crate::sliding::SlidingError::ThinLayer)).
     pub fn build_sliding_on(self, base: Material) -> Result<SteadySliding> {
         self.sliding(Some(base), None)
     }
 
-    /// [`Builder::build_sliding`] on a body of which the complex contact modulus E* = 1/C \[Pa\] is known as a function of the frequency ≥ 0 \[rad/s\], E′ + i E″,
-    /// without a series, with E″ ≥ 0 for bodies that dissipate. It takes the place of [`Builder::material`]; 4 G* if the body is incompressible. Only bodies that are
-    /// periodic along both axes are covered.
+    /// [`Builder::build_sliding`] on a body of which the complex contact modulus E* = 1/C \[Pa\] is
+    /// known as a function of the frequency ≥ 0 \[rad/s\], E′ + i E″, without a series, with E″ ≥ 0
+    /// for bodies that dissipate. It takes the place of [`Builder::material`]; 4 G* if the body is
+    /// incompressible. Only bodies that are periodic along both axes are covered.
     ///
     /// # Errors
-    /// As [`Builder::build_sliding`]; if the body is not periodic along both axes, or there is a counter-body. [`SteadySliding::at`] fails where E′ is not positive, or
-    /// E″ is negative ([`SlidingError::NotPassive`](crate::sliding::SlidingError::NotPassive)).
+    /// As [`Builder::build_sliding`]; if the body is not periodic along both axes, or there is a
+    /// counter-body. [`SteadySliding::at`] fails where E′ is not positive, or E″ is negative
+    /// ([`SlidingError::NotPassive`](crate::sliding::SlidingError::NotPassive)).
     pub fn build_sliding_by(
         mut self,
         modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,
@@ -91,8 +103,9 @@ impl Builder {
         self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
     }
 
-    /// Bytes of a contact in steady motion at most, with all cells in contact: of [`Builder::memory`], the factors of waves and the nodes of influences, and the
-    /// directions of the iteration, which are most. No field is allocated to find out.
+    /// Bytes of a contact in steady motion at most, with all cells in contact: of
+    /// [`Builder::memory`], the factors of waves and the nodes of influences, and the directions of
+    /// the iteration, which are most. No field is allocated to find out.
     ///
     /// # Errors
     /// As [`Builder::memory`].

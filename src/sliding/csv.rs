@@ -11,9 +11,10 @@ const COLUMNS: &str = "temperature [K],velocity 1 [m/s],velocity 2 [m/s],force [
     contact area [m2],mean gap [m],dissipation [W],contact cells,sets,transforms,residual,warnings";
 
 impl SlidingTable {
-    /// Writes the table as a CSV file, a row for each state: temperature \[K\], velocity along x1 and x2, force, approach, friction, lateral force along x1 and x2,
-    /// contact area, mean gap, dissipation \[SI\], cells in contact, sets, pairs of transforms, residual, and the warnings, in quotes. Numbers have enough digits to be read back
-    /// bitwise. An existing file is replaced.
+    /// Writes the table as a CSV file, a row for each state: temperature \[K\], velocity along x1
+    /// and x2, force, approach, friction, lateral force along x1 and x2, contact area, mean gap,
+    /// dissipation \[SI\], cells in contact, sets, pairs of transforms, residual, and the warnings,
+    /// in quotes. Numbers have enough digits to be read back bitwise. An existing file is replaced.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -67,15 +67,18 @@ pub struct SteadySliding {
     cancelled: Option<Arc<AtomicBool>>,
 }
 
-/// A state warns where waves that hold a greater part of its energy pass at frequencies at which the material was not measured.
+/// A state warns where waves that hold a greater part of its energy pass at frequencies at which
+/// the material was not measured.
 const UNMEASURED: f64 = 0.1;
 /// A drag that drives by less than this part of what it is summed from is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The drag along each axis of bodies that dissipate \[N/m²\], for a pressure with this `spectrum`: negative by rounding it is 0.
+/// The drag along each axis of bodies that dissipate \[N/m²\], for a pressure with this `spectrum`:
+/// negative by rounding it is 0.
 ///
 /// # Errors
-/// If the bodies drive by more than rounding: influences that are sampled at cells longer than what they resolve.
+/// If the bodies drive by more than rounding: influences that are sampled at cells longer than what
+/// they resolve.
 fn passive_drag(bodies: &MovingBodies, spectrum: &[f64], velocity: [f64; 2]) -> Result<[f64; 2]> {
     let drag = bodies.drag(spectrum, |loss| loss);
     let most = velocity[0].abs().max(velocity[1].abs()).max(f64::MIN_POSITIVE);
@@ -102,11 +105,13 @@ impl SteadySliding {
     /// ([`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor)).
     ///
     /// # Errors
-    /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a spring, cannot be balanced, tilts a periodic body, or is an approach
-    /// beyond full contact, or one in line contact whose datum is too near; if a modulus does not resist or gives energy away
-    /// ([`SlidingError::NotPassive`]), or the bodies drive the motion ([`SlidingError::Drives`]); if contact reaches the edge of the grid, or the
-    /// state is not found ([`SlidingError::NotConverged`]) or lost in rounding ([`SlidingError::Rounding`]), or another thread ends the search.
-    /// The state found last is then kept.
+    /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a
+    /// spring, cannot be balanced, tilts a periodic body, or is an approach beyond full contact, or
+    /// one in line contact whose datum is too near; if a modulus does not resist or gives energy
+    /// away ([`SlidingError::NotPassive`]), or the bodies drive the motion
+    /// ([`SlidingError::Drives`]); if contact reaches the edge of the grid, or the state is not
+    /// found ([`SlidingError::NotConverged`]) or lost in rounding ([`SlidingError::Rounding`]), or
+    /// another thread ends the search. The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;

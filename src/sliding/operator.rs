@@ -179,13 +179,15 @@ impl MovingBodies {
         coefficients.iter().enumerate().map(|(k, p)| count(k) * p.norm_sqr() / all).collect()
     }
 
-    /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies resist, of the `part` of each loss.
+    /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies
+    /// resist, of the `part` of each loss.
     pub(super) fn drag(&self, spectrum: &[f64], part: fn(f64) -> f64) -> [f64; 2] {
         self.loss.each_ref().map(|loss| spectrum.iter().zip(loss).map(|(own, loss)| own * part(*loss)).sum())
     }
 
-    /// The part of the elastic energy in waves whose period over 2π is longer than the last of the times that are `measured` \[s\], or of the part of it
-    /// that a wave can lose in a time, the energy times the frequency, in those where it is shorter than the first, whichever is more.
+    /// The part of the elastic energy in waves whose period over 2π is longer than the last of the
+    /// times that are `measured` \[s\], or of the part of it that a wave can lose in a time, the
+    /// energy times the frequency, in those where it is shorter than the first, whichever is more.
     pub(super) fn unmeasured(
         &self,
         spectrum: &[f64],

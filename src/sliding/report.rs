@@ -42,19 +42,22 @@ impl SlidingReport {
         self.lateral_force[0] * self.velocity[0] + self.lateral_force[1] * self.velocity[1]
     }
 
-    /// The coefficient of friction: the lateral force against the motion over the normal force; 0 at rest and without load.
+    /// The coefficient of friction: the lateral force against the motion over the normal force; 0
+    /// at rest and without load.
     pub fn friction(&self) -> f64 {
         let speed = self.velocity[0].hypot(self.velocity[1]);
         if speed > 0.0 && self.force != 0.0 { self.dissipation() / speed / self.force } else { 0.0 }
     }
 
-    /// What each warning says, with its number: one line each, as [`StepReport::messages`](crate::contact::StepReport::messages).
+    /// What each warning says, with its number: one line each, as
+    /// [`StepReport::messages`](crate::contact::StepReport::messages).
     ///
     /// ```
     /// use viscocontact::prelude::*;
     ///
     /// // a rubber that was measured from 0.1 to 100 rad/s, on waves of 1 mm that pass at 6000
-    /// let rows: Vec<_> = (-4..=8).map(|k| 10_f64.powf(0.25 * f64::from(k))).map(|w| (w, 1.0e6 * w.powf(0.2), 3.0e5 * w.powf(0.2))).collect();
+    /// let row = |w: f64| (w, 1.0e6 * w.powf(0.2), 3.0e5 * w.powf(0.2));
+    /// let rows: Vec<_> = (-4..=8).map(|k| row(10_f64.powf(0.25 * f64::from(k)))).collect();
     /// let rubber = Material::incompressible(Measurements::dynamic(&rows)?.fit()?);
     /// let grid = Grid::square(64, 1.0e-3)?;
     /// let shape = Wavy::new([1.0e-6; 2], [1.0e-3; 2])?;

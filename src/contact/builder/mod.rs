@@ -107,8 +107,9 @@ impl Builder {
         Builder { counter_body: Some(material), ..self }
     }
 
-    /// Whether a creeping counter-body slides or rolls in a steady motion: [`Builder::build_sliding`] needs to know. Steps do not, in which
-    /// bodies that both creep roll ([`motion`](crate::motion)).
+    /// Whether a creeping counter-body slides or rolls in a steady motion:
+    /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
+    /// ([`motion`](crate::motion)).
     pub fn counter_motion(self, motion: CounterMotion) -> Builder {
         Builder { counter_motion: Some(motion), ..self }
     }

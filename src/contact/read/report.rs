@@ -75,13 +75,15 @@ pub struct Figures {
     /// The approach at which the upright bodies touch \[m\], at the end of a run that never brought them into contact
     /// ([`Warnings::NO_CONTACT`]).
     pub touch: Option<f64>,
-    /// Part of the elastic energy of a steady motion, or of its part that can be lost, in waves that pass at frequencies at which the
-    /// material was not measured, if more than a tenth ([`Warnings::FREQUENCIES`]).
+    /// Part of the elastic energy of a steady motion, or of its part that can be lost, in waves
+    /// that pass at frequencies at which the material was not measured, if more than a tenth
+    /// ([`Warnings::FREQUENCIES`]).
     pub unmeasured: Option<f64>,
 }
 
 impl Figures {
-    /// What the number of a warning is, and the number; of a step that is too long its relative error.
+    /// What the number of a warning is, and the number; of a step that is too long its relative
+    /// error.
     fn of(&self, warning: Warnings, time_error: Option<f64>) -> Option<(&'static str, f64)> {
         let (name, figure) = match warning {
             Warnings::STEEP => ("greatest slope", self.max_slope),
