@@ -32,6 +32,8 @@ pub(super) struct Bodies {
     /// The shortest and the longest time at which the materials of the moving pressure were
     /// measured \[s\].
     pub(super) measured: [f64; 2],
+    /// Whether they have relaxed by the longest.
+    pub(super) relaxed: bool,
     /// The part of the relaxed compliance that is extrapolated in a counter-body that slides.
     pub(super) unmeasured_at_rest: f64,
     /// What warns whatever the motion.

@@ -142,11 +142,11 @@ impl Builder {
             (Some(modulus), _) => modulus,
             (None, Some(CounterMotion::Slides)) if pair => {
                 let [own, counter] = material.apart();
-                let relaxed = counter.spectrum_for("a motion")?;
-                coverage::FLOWING_COUNTER.unless(|_| relaxed.fluidity() > 0.0)?;
-                let (own_creep, relaxed) = (own.spectrum_for("a motion")?, relaxed.relaxed());
+                let (own_creep, resting) = (own.spectrum_for("a motion")?, counter.spectrum_for("a motion")?);
+                coverage::FLOWING_COUNTER.unless(|_| resting.fluidity() > 0.0)?;
                 // its points are at rest under the pressure
-                if counter.measured()[1].is_finite() {
+                let relaxed = resting.relaxed();
+                if !Creep::Series(resting).is_relaxed(counter.measured()[1]) {
                     unmeasured_at_rest = relaxed / (relaxed + own_creep.relaxed());
                 }
                 measured = own.measured();
@@ -181,8 +181,10 @@ impl Builder {
             warnings = Limits::of(base).warnings(0.0, 0.0);
         }
         let layer = base.map(on_base).transpose()?;
+        let is_relaxed = |own: &Creep| own.is_relaxed(measured[1]);
+        let relaxed = is_relaxed(&creep) && layer.as_ref().is_none_or(|layer| is_relaxed(&layer.base));
         let (kernel, rows) = (kernel.clone(), Default::default());
-        let bodies = Arc::new(Bodies { kernel, creep, layer, rows, measured, unmeasured_at_rest, warnings });
+        let bodies = Arc::new(Bodies { kernel, creep, layer, rows, measured, relaxed, unmeasured_at_rest, warnings });
         Ok(SteadySliding { contact, bodies, cancelled: None })
     }
 }

@@ -149,7 +149,8 @@ impl SteadySliding {
         let (cell_area, transforms) = (grid.cell_area(), bodies.transforms);
         let spectrum = bodies.spectrum(&pressure);
         let lateral_force = passive_drag(&bodies, &spectrum, velocity)?.map(|force| force * cell_area);
-        let unmeasured = bodies.unmeasured(&spectrum, velocity, grid.spacing(), self.bodies.measured);
+        let unmeasured =
+            bodies.unmeasured(&spectrum, velocity, grid.spacing(), (self.bodies.measured, self.bodies.relaxed));
         let excess = self.bodies.excess(velocity, cell_area * pressure.iter().sum::<f64>());
         displacement.iter_mut().for_each(|u| *u -= excess);
         motion.approach -= excess;

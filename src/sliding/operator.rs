@@ -188,25 +188,29 @@ impl MovingBodies {
     /// The part of the elastic energy in waves whose period over 2π is longer than the last of the
     /// times that are `measured` \[s\], or of the part of it that a wave can lose in a time, the
     /// energy times the frequency, in those where it is shorter than the first, whichever is more.
+    /// Waves at rest are known if the bodies have `relaxed` by the last time.
     pub(super) fn unmeasured(
         &self,
         spectrum: &[f64],
         velocity: [f64; 2],
         spacing: [f64; 2],
-        [from, until]: [f64; 2],
+        ([from, until], relaxed): ([f64; 2], bool),
     ) -> f64 {
         if (from, until) == (0.0, f64::INFINITY) {
             return 0.0;
         }
-        let [n1, n2] = self.response.plane.periods();
-        let unit = [n1, n2].map(|n| TAU / n as f64);
+        let (n @ [n1, _], cells) = (self.response.plane.periods(), self.response.cells);
+        let unit = [0, 1].map(|axis| TAU / (n[axis] as f64 * spacing[axis]));
+        // the first of the waves of a body that ends stands for those between it and none
+        let least = [0, 1].map(|axis| if n[axis] > cells[axis] { 0.25 } else { 0.0 });
+        let rate = |axis: usize, k: f64| unit[axis] * velocity[axis] * if k == 0.0 { least[axis] } else { k };
         let (mut slow, mut fast) = ([0.0; 2], [0.0; 2]);
         for (k, (own, factor)) in spectrum.iter().zip(&self.response.factors).enumerate().skip(1) {
             let k1 = (k % n1) as f64 - if 2 * (k % n1) > n1 { n1 as f64 } else { 0.0 };
-            let q = [unit[0] * k1 / spacing[0], unit[1] * (k / n1) as f64 / spacing[1]];
-            let (omega, energy) = ((q[0] * velocity[0] + q[1] * velocity[1]).abs(), own * factor.re.abs());
+            let omega = (rate(0, k1) + rate(1, (k / n1) as f64)).abs();
+            let (energy, rests) = (own * factor.re.abs(), omega == 0.0);
             slow[0] += energy;
-            slow[1] += if omega * until < 1.0 { energy } else { 0.0 };
+            slow[1] += if omega * until < 1.0 && !(rests && relaxed) { energy } else { 0.0 };
             fast[0] += omega * energy;
             fast[1] += if omega * from > 1.0 { omega * energy } else { 0.0 };
         }

@@ -150,11 +150,6 @@ fn frequencies_beyond_the_data_are_told() {
     let (mut wrong, mut told_of, mut silent) = (Ratios::default(), [0; 2], Ratios::default());
     for (number, mut draws) in scenes() {
         let periodic = number % 3 > 0;
-        let terms: Vec<_> = (-7..=7)
-            .map(|k| (1e6 * draws.scale(0.3, 3.0), 10f64.powf(f64::from(k) + draws.between(-0.3, 0.3))))
-            .collect();
-        let body = GeneralizedMaxwell::new(0.3e6, &terms).unwrap();
-        let spectrum = body.creep_spectrum().unwrap().relaxation();
         let of = bodies(periodic, [24, 24], Creep { glassy: 1e-8, terms: Vec::new() }, 0.5);
         let (shape, grid) = (FnGeometry::new(waves(&mut draws, &of)), of.grid());
         let speed = draws.power_of_ten(-2.0, 2.0);
@@ -162,10 +157,16 @@ fn frequencies_beyond_the_data_are_told() {
         let [slowest, fastest] = [TAU / of.lengths()[0], TAU / 2.0].map(|q| q * speed);
         let covers = number % 4 == 0;
         let [from, until] = match draws.below(2) {
-            _ if covers => [0.1 * slowest, 10.0 * fastest],
+            _ if covers => [1e-3 * slowest, 10.0 * fastest],
             0 => [1e-5 * slowest, slowest * draws.power_of_ten(-2.5, 1.5)],
             _ => [fastest * draws.power_of_ten(-1.5, 2.5), 1e5 * fastest],
         };
+        // all over the data and beyond, or relaxed by their end
+        let times = if covers { [1.0 / until, 1e-2 / from] } else { [1e-7, 1e7] };
+        let decades = (times[1] / times[0]).log10() as i32;
+        let mut term = |k: i32| (1e6 * draws.scale(0.3, 3.0), times[0] * 10f64.powi(k) * draws.scale(1.0, 3.0));
+        let body = GeneralizedMaxwell::new(0.3e6, &(0..=decades).map(&mut term).collect::<Vec<_>>()).unwrap();
+        let spectrum = body.creep_spectrum().unwrap().relaxation();
         let count = (8.0 * (until / from).log10()) as i32;
         let row = |w: f64| (w, spectrum.storage_modulus(w), spectrum.loss_modulus(w));
         let rows: Vec<_> = (0..=count).map(|k| row(from * 10f64.powf(f64::from(k) / 8.0))).collect();

@@ -100,7 +100,7 @@ const MOTIONS: &[Scene] = &[
 ("a modulus in MPa that slides",
     || slid(builder_on(grid(), Material::incompressible(Zener::relaxing(2.0, 1.0, 0.1)?)), 0.1, Load::approach(20.0e-6)), "moduli are in Pa"),
 ("a slide faster than the data", || slid(builder_on(grid(), Material::incompressible(table())), 0.1, Load::force(0.1)), "was not measured"),
-("a slide slower than the data", || slid(builder_on(grid(), Material::incompressible(table())), 1e-9, Load::approach(20.0e-6)), "was not measured"),
+("a slide slower than the data", || slid(builder_on(grid(), Material::incompressible(table())), 3e-7, Load::force(2.0e-5)), "was not measured"),
 ("a slide on three rows over six decades",
     || {
         let fit = Measurements::relaxation(&[(1e-3, 4.0e6), (1.0, 2.0e6), (30.0, 1.5e6), (1e3, 1.0e6)])?.fit()?;
@@ -150,7 +150,7 @@ fn motions_and_fits_inside_are_silent() {
         ("a wave", periodic(&waves().unwrap(), 48, Load::force(1.0e-2))),
         (
             "a slide within the data",
-            slid(builder_on(grid(), Material::incompressible(table())), 1e-4, Load::approach(40.0e-6)),
+            slid(builder_on(grid(), Material::incompressible(table())), 1e-4, Load::force(0.15)),
         ),
         ("a curve between its isotherms", {
             let material = curve().and_then(|curve| curve.fit_at(295.0)).map(Material::incompressible);
