@@ -1,6 +1,6 @@
 //! Steady motions, sweeps over patches, and fits that leave the model, each in one way: each is refused, or its messages say why.
 
-use super::silent::{SCENES, Scene, curve, far_from_zero, grid, judge, rubber, table, wlf};
+use super::silent::{Scene, curve, far_from_zero, grid, judge, rubber, table, wlf};
 use crate::common::{Draws, Temporary, builder_of, builder_on, zener};
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -138,7 +138,7 @@ const MOTIONS: &[Scene] = &[
 fn no_motion_sweep_or_fit_outside_the_model_is_silent() {
     let wrong: Vec<String> = MOTIONS.iter().filter_map(judge).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(MOTIONS.len() >= 25 && SCENES.len() + MOTIONS.len() >= 80);
+    assert!(MOTIONS.len() >= 25, "{}", MOTIONS.len());
 }
 
 /// The same, just inside: nothing is said of any of them.

@@ -164,7 +164,7 @@ fn states() -> Result<std::sync::Arc<ElasticStates>> {
 pub(super) type Scene = (&'static str, fn() -> Result<String>, &'static str);
 
 #[rustfmt::skip]
-pub(super) const SCENES: &[Scene] = &[
+const SCENES: &[Scene] = &[
 // cells
 ("a ball on two cells beside a heavy one", two_balls, "fewer than 8 cells across"),
 ("a rough surface on patches of two cells", || rough(32), "fewer than 8 cells across"),
