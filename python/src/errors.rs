@@ -86,12 +86,13 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 11] = [
+const NAMES: [(&str, &str); 12] = [
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
     ),
     ("Builder::times", "times="),
+    ("Builder::counter_motion", "counter_motion=\"slides\" or \"rolls\""),
     ("CreepSeries::extrapolated", "extrapolated=True of Measurements.fit"),
     (
         "choose the other Frame with Settings::with_frame",

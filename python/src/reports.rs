@@ -33,25 +33,30 @@ impl StepReport {
     }
 
     /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
-    /// "cells_in_zone", "modulus" [Pa] and "touch" [m].
+    /// "cells_in_zone", "modulus" [Pa], "touch" [m] and "unmeasured".
     #[getter]
     fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = &self.0.figures;
-        Ok(dict! { py;
-            "max_slope": of.max_slope,
-            "compression": of.compression,
-            "cells_across": of.cells_across,
-            "cells_in_wave": of.cells_in_wave,
-            "periods": of.periods,
-            "cells_in_zone": of.cells_in_zone,
-            "modulus": of.modulus,
-            "touch": of.touch,
-        })
+        figures(py, &self.0.figures)
     }
 
     fn __repr__(&self) -> String {
         self.0.to_string()
     }
+}
+
+/// The numbers behind warnings, by their names.
+pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, PyDict>> {
+    Ok(dict! { py;
+        "max_slope": of.max_slope,
+        "compression": of.compression,
+        "cells_across": of.cells_across,
+        "cells_in_wave": of.cells_in_wave,
+        "periods": of.periods,
+        "cells_in_zone": of.cells_in_zone,
+        "modulus": of.modulus,
+        "touch": of.touch,
+        "unmeasured": of.unmeasured,
+    })
 }
 
 getters! {StepReport, of:

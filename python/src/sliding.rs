@@ -12,13 +12,14 @@ use viscocontact::{self as vc, sliding as sl};
 
 use crate::arrays::{number, vectors};
 use crate::contact::ViscoelasticContact;
-use crate::errors::{Kept, OrRaise, choice};
+use crate::errors::{Kept, OrRaise, choice, in_python};
 use crate::grid::Grid;
 use crate::interrupt::{Listener, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
 use crate::recipe::Recipe;
+use crate::reports::figures;
 use crate::scene::builder;
 use crate::temperature::TimeTemperature;
 
@@ -51,6 +52,12 @@ impl SlidingReport {
             of.contact_area
         )
     }
+
+    /// The numbers behind the warnings, as those of a step.
+    #[getter]
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        figures(py, &self.0.figures)
+    }
 }
 
 getters! {SlidingReport, of:
@@ -76,18 +83,18 @@ getters! {SlidingReport, of:
     residual: f64 = of.residual;
     /// Sets of cells that were tried, and pairs of transforms.
     cost: (usize, usize) = (of.sets, of.transforms);
+    /// Reasons why the state may be less accurate than expected, a line each.
+    warnings: Vec<String> = of.messages().map(in_python).collect();
 }
 
 /// A contact that moves steadily over creeping bodies: the friction of rubber on a road, at any velocity, by one contact problem each.
 ///
 /// Takes the arguments of `ViscoelasticContact`, and
 ///
-/// Parameters
-/// ----------
-/// base : Material, optional
-///     The base of a layer (`Layer.bonded_to_material`), if it creeps otherwise.
-/// modulus : function, optional
-///     The complex contact modulus E* [Pa] at frequencies ≥ 0 [rad/s], in place of that of the material.
+/// Parameters ---------- base : Material, optional The base of a layer
+/// (`Layer.bonded_to_material`), if it creeps otherwise. modulus : function, optional The complex
+/// contact modulus E′ + i E″ [Pa] at frequencies ≥ 0 [rad/s], in place of that of the material.
+/// counter_motion : "slides" or "rolls", optional What a counter-body that creeps does.
 ///
 /// >>> grid = Grid(32, 1e-3)
 /// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
@@ -116,8 +123,8 @@ impl SteadySliding {
 impl SteadySliding {
     #[new]
     #[pyo3(
-        signature = (grid, geometry, material, *, base=None, modulus=None, **options),
-        text_signature = "(grid, geometry, material, *, base=None, modulus=None, **options)"
+        signature = (grid, geometry, material, *, base=None, modulus=None, counter_motion=None, **options),
+        text_signature = "(grid, geometry, material, *, base=None, modulus=None, counter_motion=None, **options)"
     )]
     fn new(
         py: Python<'_>,
@@ -126,9 +133,14 @@ impl SteadySliding {
         material: Bound<'_, Material>,
         base: Option<&Material>,
         modulus: Option<Py<PyAny>>,
+        counter_motion: Option<&str>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SteadySliding> {
-        let builder = builder(grid.get(), &geometry, material.get(), options)?;
+        let mut builder = builder(grid.get(), &geometry, material.get(), options)?;
+        if let Some(name) = counter_motion {
+            let motions = [("slides", sl::CounterMotion::Slides), ("rolls", sl::CounterMotion::Rolls)];
+            builder = builder.counter_motion(choice("counter_motion", name, &motions)?);
+        }
         let kept = Kept::default();
         let raised = kept.clone();
         let sliding = match (base, modulus) {

@@ -54,6 +54,12 @@ def test_steady_sliding():
     assert (sliding.gap[sliding.pressure > 0] < 1e-9).all()
     warm = sliding.sweep([1.0], vc.Load.force(0.02), law=vc.TimeTemperature.wlf(17.4, 51.6, 300.0), temperatures=[290.0, 300.0])
     assert list(warm.columns()["temperature"]) == [290.0, 300.0]
+    pair = {"kernel": kernel, "counter_body": vc.Material(rubber)}
+    of = lambda motion: vc.SteadySliding(grid, road, vc.Material(rubber), counter_motion=motion, **pair).at(1.0, vc.Load.force(0.02))
+    slides, rolls = of("slides"), of("rolls")
+    assert rolls.friction > slides.friction > 0 and isinstance(rolls.warnings, list) and "unmeasured" in rolls.figures
+    with pytest.raises(Exception, match="counter_motion="):
+        vc.SteadySliding(grid, road, vc.Material(rubber), **pair)
 
 
 def test_attraction():

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::sync::Arc;
 
 use crate::contact::read::view::View;
-use crate::contact::{Computation, Scene, State, StepReport};
+use crate::contact::{Computation, Figures, Scene, State, StepReport, Warnings};
 use crate::error::Result;
 use crate::geometry::{Gap, Missed};
 use crate::load::Load;
@@ -90,15 +90,26 @@ impl ViscoelasticContact {
     }
 
     /// Takes over the state of a steady motion, of which it has the fields but not the past.
-    pub(crate) fn show_steady(&mut self, load: Load, motion: RigidMotion, pressure: Vec<f64>, displacement: Vec<f64>) {
+    /// Returns the warnings of a step to it.
+    pub(crate) fn show_steady(
+        &mut self,
+        load: Load,
+        motion: RigidMotion,
+        pressure: Vec<f64>,
+        displacement: Vec<f64>,
+    ) -> (Warnings, Figures) {
         let state = &mut self.computation.state;
         state.loads[0] = load;
         state.current.motions[0] = motion;
-        state.current.contact_cells = pressure.iter().filter(|p| **p > 0.0).count();
+        self.computation.trial.solution.pressure.clone_from(&pressure);
         state.current.solution.pressure = pressure;
         state.history.show(displacement);
         state.sum_up();
         self.view.refresh(state);
+        let pressed = self.computation.pressed(&self.scene, &self.computation.state.indenter);
+        self.computation.state.current.contact_cells = pressed.cells;
+        let StepReport { warnings, figures, .. } = self.report(None, pressed);
+        (warnings | self.scene.limits.warnings(0.0, 0.0), figures)
     }
 
     /// Scales the pressure of a steady motion to that under `load`, of a body with moduli `factor` times as great.

@@ -46,13 +46,16 @@ impl Error {
             Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
             Error::Material(MaterialError::PoorFit { .. })
             | Error::Adhesion(AdhesionError::NotConverged { .. })
-            | Error::Sliding(SlidingError::NotConverged { .. } | SlidingError::Rounding { .. })
+            | Error::Sliding(
+                SlidingError::NotConverged { .. } | SlidingError::Rounding { .. } | SlidingError::Drives { .. },
+            )
             | Error::States(StatesError::OutOfOrder { .. })
             | Error::Step(
                 StepError::NotConverged { .. } | StepError::StepTooShort { .. } | StepError::NotSteady { .. },
             ) => ErrorKind::Convergence,
             Error::States(StatesError::Beyond { .. } | StatesError::Below { .. }) => ErrorKind::Value,
             Error::NotCovered { .. }
+            | Error::Sliding(SlidingError::ThinLayer { .. })
             | Error::Kernel(KernelError::NoStress { .. })
             | Error::Material(MaterialError::ChangingPoisson { .. } | MaterialError::VerticalFactors { .. })
             | Error::States(_)

@@ -4,9 +4,14 @@ use crate::rounded::rounded;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SlidingError {
-    /// At a frequency that the motion meets, the bodies do not resist: their complex compliance has no positive real part.
-    #[error("at {} rad/s the complex compliance is {} + {} i 1/Pa: its real part must be positive; check signs, units and frequencies of the moduli", rounded(*.omega, 5),
-        rounded(.compliance[0], 5), rounded(.compliance[1], 5))]
+    /// At a frequency that the motion meets, the bodies do not resist: their complex modulus E′ + i
+    /// E″ has no positive real part, or a negative imaginary one, as in the other convention, E′ −
+    /// i E″.
+    #[error(
+        "at {} rad/s the complex modulus is {} + {} i Pa: in the convention E' + i E'' bodies have E' > 0 and E'' >= 0; \
+        check signs, units and frequencies of the moduli",
+        rounded(*.omega, 5), rounded(modulus(*.compliance)[0], 5), rounded(modulus(*.compliance)[1], 5)
+    )]
     NotPassive {
         /// Frequency \[rad/s\].
         omega: f64,
@@ -27,6 +32,34 @@ pub enum SlidingError {
         tolerance: f64,
     },
 
+    /// The bodies would drive the motion, which bodies that dissipate cannot.
+    #[error(
+        "at a velocity of ({}, {}) m/s the bodies would drive the motion, by {} of the sum of what their waves resist and drive \
+        with: cells longer than a layer is thick do not resolve its losses: refine the mesh",
+        rounded(.velocity[0], 5), rounded(.velocity[1], 5), rounded(*.part, 3)
+    )]
+    Drives {
+        /// Velocity \[m/s\].
+        velocity: [f64; 2],
+        /// The power over the sum of its parts without signs.
+        part: f64,
+    },
+
+    /// A layer on a base of its own creep is too thin for the grid.
+    #[error(
+        "the grid is {} m long, {} times the thickness of a layer on a base that creeps otherwise, of which 64 are covered: \
+        shorten the grid to {} m, or take a body that is periodic along both axes",
+        rounded(*.length, 4), rounded(.length / .thickness, 3), rounded(*.longest, 4)
+    )]
+    ThinLayer {
+        /// Length of the grid along an axis on which the bodies end \[m\].
+        length: f64,
+        /// Thickness of the layer \[m\].
+        thickness: f64,
+        /// The longest grid that is covered \[m\].
+        longest: f64,
+    },
+
     /// The contact at a velocity was not found.
     #[error("at a velocity of ({}, {}) m/s {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
         rounded(.velocity[0], 5), rounded(.velocity[1], 5))]
@@ -40,4 +73,10 @@ pub enum SlidingError {
         /// The residual allowed.
         tolerance: f64,
     },
+}
+
+/// The modulus E′ + i E″ of the conjugate of a compliance.
+fn modulus([re, im]: [f64; 2]) -> [f64; 2] {
+    let square = re * re + im * im;
+    [re / square, im / square]
 }

@@ -11,17 +11,22 @@
 //! moves with it. Each asperity of a *rolling* indenter meets its own point of the track, so that its roughness is
 //! fixed to the track, as is the roughness of the creeping body ([`Travel::over`]).
 //!
-//! One body creeps in place. Where both bodies creep ([`Builder::counter_body`](crate::contact::Builder::counter_body))
-//! they must roll on each other: in rolling, the same points of both bodies stay opposite each other while in contact,
-//! in sliding they do not. An elastic counter-body may slide, since it has no history.
+//! One body creeps in place. Where both bodies creep
+//! ([`Builder::counter_body`](crate::contact::Builder::counter_body)) they must roll on each other:
+//! in rolling, the same points of both bodies stay opposite each other while in contact, in sliding
+//! they do not. An elastic counter-body may slide, since it has no history. In a steady motion
+//! without steps a creeping counter-body may slide, too: its own points are relaxed then
+//! ([`CounterMotion`]).
 //!
 //! In the frame of the bodies, paths and steps are arbitrary: a shape given by a formula is moved exactly, a periodic
 //! map by its Fourier series, any other map by bicubic interpolation. Long tracks need periodic bodies
 //! ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)) and a periodic shape
 //! ([`Repeated`](crate::geometry::Repeated)).
 
+mod counter;
 mod path;
 mod travel;
 
+pub use counter::CounterMotion;
 pub use path::{FnPath, Path, Straight};
 pub use travel::Travel;

@@ -339,6 +339,19 @@ impl Material {
         Err(self.failure().map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
     }
 
+    /// Whether the body on the other side than the creeping one creeps, too.
+    pub(crate) fn counter_creeps(&self) -> Result<bool> {
+        let creeps = |own: &CreepSpectrum| own.fluidity() > 0.0 || !own.terms().is_empty();
+        let mut others = self.bodies.iter().skip(1).map(Body::contact_spectrum);
+        others.try_fold(false, |any, own| Ok(any | own?.as_ref().is_none_or(creeps)))
+    }
+
+    /// The same without the other body, and the other one alone.
+    pub(crate) fn apart(&self) -> [Material; 2] {
+        let (own, others) = self.bodies.split_at(1.min(self.bodies.len()));
+        [own, others].map(|bodies| Material { bodies: bodies.to_vec() })
+    }
+
     /// [`Material::contact_spectrum`], which `what` needs.
     pub(crate) fn spectrum_for(&self, what: &'static str) -> Result<CreepSpectrum> {
         self.contact_spectrum()?.ok_or_else(|| {

@@ -107,6 +107,11 @@ impl CreepSpectrum {
         self.glassy
     }
 
+    /// Compliance without the flow after a long time \[1/Pa\].
+    pub(crate) fn relaxed(&self) -> f64 {
+        self.glassy + self.terms.iter().map(|(compliance, _)| compliance).sum::<f64>()
+    }
+
     /// Rate of steady flow under unit stress, 0 for a solid \[1/(Pa·s)\].
     pub fn fluidity(&self) -> f64 {
         self.fluidity

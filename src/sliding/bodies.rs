@@ -10,11 +10,14 @@ use super::coefficients::{Row, Rules};
 use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
+use crate::contact::Warnings;
 use crate::error::{Result, SlidingError, coverage};
 use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
 use crate::numeric::EULER;
 
+/// A modulus that gains energy by a smaller part of itself is rounded.
+const ROUNDING: f64 = 1e-12;
 /// A free dashpot acts as a term with a reach of so many lengths of the grid.
 const ENDLESS: f64 = 1e12;
 
@@ -26,6 +29,15 @@ pub(super) struct Bodies {
     pub(super) layer: Option<LayerOnBase>,
     /// Influences along rows of a motion along either axis.
     pub(super) rows: [OnceLock<Vec<Row>>; 2],
+    /// The shortest and the longest time at which the materials of the moving pressure were
+    /// measured \[s\].
+    pub(super) measured: [f64; 2],
+    /// Whether they have relaxed by the longest.
+    pub(super) relaxed: bool,
+    /// The part of the relaxed compliance that is extrapolated in a counter-body that slides.
+    pub(super) unmeasured_at_rest: f64,
+    /// What warns whatever the motion.
+    pub(super) warnings: Warnings,
 }
 
 debug_by!(self: Bodies => kernel: self.kernel);
@@ -69,7 +81,8 @@ impl Bodies {
                     Some(layer) if k != [0, 0] => layer.compliance(q[0].hypot(q[1]), omega),
                     _ => self.kernel.of_wave(k) * self.creep.at(omega),
                 } / (signs[0].len() * signs[1].len()) as f64;
-                if !(own.re > 0.0 && own.im.is_finite() || own == Complex64::ZERO) {
+                let gains = own.im * omega.signum() < -ROUNDING * own.norm();
+                if !(own.re > 0.0 && own.im.is_finite() && !gains || own == Complex64::ZERO) {
                     let Complex64 { re, im } = self.creep.at(omega.abs());
                     return Err(SlidingError::NotPassive { omega: omega.abs(), compliance: [re, im] }.into());
                 }

@@ -17,6 +17,9 @@ pub(super) enum Creep {
 /// Beyond this ωλ a term has only its imaginary part left, and squares overflow.
 const FAST: f64 = 1e100;
 
+/// A body of a smaller loss factor yields by less than 15 % in a decade, 2/π ln 10 of it.
+const RELAXED: f64 = 0.1;
+
 impl Creep {
     /// C(0) + Σ C_k/(1 − iω λ_k) \[1/Pa\].
     pub(super) fn at(&self, omega: f64) -> Complex64 {
@@ -41,6 +44,12 @@ impl Creep {
         let Creep::Series(series) = self else { return Vec::new() };
         let terms = series.terms().iter().map(|&(compliance, time)| (compliance, speed * time));
         std::iter::once((series.glassy(), 0.0)).chain(terms).collect()
+    }
+
+    /// Whether a body hardly creeps any more `after` a time.
+    pub(super) fn is_relaxed(&self, after: f64) -> bool {
+        let own = self.at(1.0 / after);
+        self.fluidity() == 0.0 && own.im <= RELAXED * own.re
     }
 
     pub(super) fn fluidity(&self) -> f64 {

@@ -59,14 +59,13 @@ fn at_rest(material: &Material) -> Result<(f64, f64)> {
     let ratios: Vec<_> = material.poisson_ratios().collect();
     let [Some(nu)] = ratios[..] else { return Err(coverage::CHANGING_RATIO.error()) };
     let creep = material.spectrum_for("a layer on a base")?;
-    let relaxed = creep.glassy() + creep.terms().iter().map(|(compliance, _)| compliance).sum::<f64>();
     within(
         "fluidity of a layer or its base",
         creep.fluidity(),
         creep.fluidity() == 0.0,
         "0: give it an equilibrium modulus",
     )?;
-    Ok((nu, relaxed))
+    Ok((nu, creep.relaxed()))
 }
 
 /// The mean of a wave over a cell, cos(qx) over |x| < side/2.

@@ -1,5 +1,7 @@
 //! The displacement under a steady pressure that moves, in the frame of the pressure.
 
+use std::f64::consts::TAU;
+
 use num_complex::Complex64;
 
 use super::coefficients::{Row, Rules};
@@ -166,16 +168,53 @@ impl MovingBodies {
         all.filter(|own| *own > 0.0).fold(f64::INFINITY, f64::min)
     }
 
-    /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies resist.
-    pub(super) fn drag(&mut self, pressure: &[f64]) -> [f64; 2] {
+    /// |p|² of each wave of a pressure, together with the conjugate one, over the number of waves.
+    pub(super) fn spectrum(&mut self, pressure: &[f64]) -> Vec<f64> {
         let Multiplier { plane, coefficients, cells, .. } = &mut self.response;
         plane.forward(pressure.chunks_exact(cells[1]), coefficients);
         let [n1, n2] = plane.periods();
         // the other half of the waves is conjugate to this one
         let count = |k: usize| if k < n1 || 2 * (k / n1) == n2 { 1.0 } else { 2.0 };
-        let each = coefficients.iter().enumerate().map(|(k, p)| count(k) * p.norm_sqr());
-        let sum = |loss: &Vec<f64>| each.clone().zip(loss).map(|(energy, loss)| energy * loss).sum::<f64>();
-        self.loss.each_ref().map(|loss| sum(loss) / (n1 * n2) as f64)
+        let all = (n1 * n2) as f64;
+        coefficients.iter().enumerate().map(|(k, p)| count(k) * p.norm_sqr() / all).collect()
+    }
+
+    /// −∬ p ∇u over the area of a cell \[N/m²\]: the force along each axis with which the bodies
+    /// resist, of the `part` of each loss.
+    pub(super) fn drag(&self, spectrum: &[f64], part: fn(f64) -> f64) -> [f64; 2] {
+        self.loss.each_ref().map(|loss| spectrum.iter().zip(loss).map(|(own, loss)| own * part(*loss)).sum())
+    }
+
+    /// The part of the elastic energy in waves whose period over 2π is longer than the last of the
+    /// times that are `measured` \[s\], or of the part of it that a wave can lose in a time, the
+    /// energy times the frequency, in those where it is shorter than the first, whichever is more.
+    /// Waves at rest are known if the bodies have `relaxed` by the last time.
+    pub(super) fn unmeasured(
+        &self,
+        spectrum: &[f64],
+        velocity: [f64; 2],
+        spacing: [f64; 2],
+        ([from, until], relaxed): ([f64; 2], bool),
+    ) -> f64 {
+        if (from, until) == (0.0, f64::INFINITY) {
+            return 0.0;
+        }
+        let (n @ [n1, _], cells) = (self.response.plane.periods(), self.response.cells);
+        let unit = [0, 1].map(|axis| TAU / (n[axis] as f64 * spacing[axis]));
+        // the first of the waves of a body that ends stands for those between it and none
+        let least = [0, 1].map(|axis| if n[axis] > cells[axis] { 0.25 } else { 0.0 });
+        let rate = |axis: usize, k: f64| unit[axis] * velocity[axis] * if k == 0.0 { least[axis] } else { k };
+        let (mut slow, mut fast) = ([0.0; 2], [0.0; 2]);
+        for (k, (own, factor)) in spectrum.iter().zip(&self.response.factors).enumerate().skip(1) {
+            let k1 = (k % n1) as f64 - if 2 * (k % n1) > n1 { n1 as f64 } else { 0.0 };
+            let omega = (rate(0, k1) + rate(1, (k / n1) as f64)).abs();
+            let (energy, rests) = (own * factor.re.abs(), omega == 0.0);
+            slow[0] += energy;
+            slow[1] += if omega * until < 1.0 && !(rests && relaxed) { energy } else { 0.0 };
+            fast[0] += omega * energy;
+            fast[1] += if omega * from > 1.0 { omega * energy } else { 0.0 };
+        }
+        [slow, fast].map(|[all, beyond]| if all > 0.0 { beyond / all } else { 0.0 }).into_iter().fold(0.0, f64::max)
     }
 
     /// The displacement under a pressure.

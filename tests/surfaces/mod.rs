@@ -3,6 +3,7 @@
 mod motion;
 mod rough;
 mod sliding;
+mod sliding_asked;
 mod sliding_bodies;
 mod sliding_chains;
 mod sliding_cost;

@@ -4,6 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::common::gauss::points;
+use crate::common::moving_bodies::{Base, Bodies, Creep};
 use crate::common::steady_sliding::{Below, SteadySliding as Dense};
 use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::Layer;
@@ -13,51 +14,15 @@ use viscocontact::sliding::{SlidingError, SlidingReport};
 
 const GLASSY: f64 = 0.25e-6;
 
-/// C(0) + Σ C_k/(1 − iql), compliances relative to [`GLASSY`].
-#[derive(Debug, Clone)]
-struct Creep {
-    glassy: f64,
-    terms: Vec<(f64, f64)>,
+/// Compliances relative to [`GLASSY`].
+fn creep(glassy: f64, terms: Vec<(f64, f64)>) -> Creep {
+    Creep { glassy, terms }.times(GLASSY)
 }
 
-impl Creep {
-    fn draw(draws: &mut Draws, length: f64) -> Creep {
-        let count = 1 + draws.below(2);
-        let terms = (0..count).map(|_| (draws.scale(0.2, 30.0), draws.scale(0.3, 3.0 * length))).collect();
-        Creep { glassy: draws.scale(0.5, 2.0), terms }
-    }
-
-    fn times(&self, factor: f64) -> Creep {
-        Creep { glassy: factor * self.glassy, terms: self.terms.iter().map(|(c, l)| (factor * c, *l)).collect() }
-    }
-
-    /// The conjugate of the complex compliance at q v.
-    fn at(&self, q: f64) -> Complex64 {
-        GLASSY * (self.glassy + self.terms.iter().map(|(c, l)| c / Complex64::new(1.0, -q * l)).sum::<Complex64>())
-    }
-
-    fn relaxed(&self) -> f64 {
-        self.at(0.0).re
-    }
-
-    /// Of an incompressible body that is passed at 1 m/s: C is a quarter of J; (1 − ν)/2 of J else.
-    fn material(&self, nu: f64) -> Material {
-        let share = 0.5 * (1.0 - nu);
-        let scale = GLASSY / share;
-        let terms: Vec<_> = self.terms.iter().map(|(c, l)| (scale * c, *l)).collect();
-        Material::constant_poisson(GeneralizedKelvin::new(scale * self.glassy, 0.0, &terms).unwrap(), nu).unwrap()
-    }
-}
-
-/// What lies below the layer.
-#[derive(Debug, Clone)]
-enum Base {
-    /// More of the same.
-    None,
-    Rigid,
-    Frictionless,
-    /// The creep of the base.
-    Body(Creep),
+fn draw_creep(draws: &mut Draws, length: f64) -> Creep {
+    let count = 1 + draws.below(2);
+    let terms = (0..count).map(|_| (draws.scale(0.2, 30.0), draws.scale(0.3, 3.0 * length))).collect();
+    creep(draws.scale(0.5, 2.0), terms)
 }
 
 #[derive(Debug, Clone)]
@@ -88,7 +53,7 @@ impl Scene {
         let cells = [[20, 24, 30][draws.below(3)], if plane { 1 } else { [10, 12][draws.below(2)] }];
         let spacing = [draws.between(0.7, 1.4), if plane { 1.0 } else { draws.between(0.7, 1.4) }];
         let length = cells[0] as f64 * spacing[0];
-        let creep = Creep::draw(draws, length);
+        let creep = draw_creep(draws, length);
         let thickness = draws.scale(2.0, 30.0);
         let alike = draws.chance(0.3);
         let base = match if number % 8 < 4 { draws.below(3) } else { 3 } {
@@ -96,7 +61,7 @@ impl Scene {
             1 => Base::Rigid,
             2 => Base::Frictionless,
             _ if alike => Base::Body(creep.times(draws.scale(0.05, 5.0))),
-            _ => Base::Body(Creep::draw(draws, length).times(draws.scale(0.05, 5.0))),
+            _ => Base::Body(draw_creep(draws, length).times(draws.scale(0.05, 5.0))),
         };
         let wave = |draws: &mut Draws| {
             let number = |draws: &mut Draws, axis: usize| if cells[axis] == 1 { 0.0 } else { draws.below(4) as f64 };
@@ -199,222 +164,15 @@ impl Scene {
         .unwrap()
     }
 
-    /// L of the wave q that passes at this wave number along the motion (D. M. Burmister, 1945; Lebedev & Ufliand, 1958).
-    fn response(&self, q: f64, along: f64) -> Complex64 {
-        let t = q * self.thickness;
-        let one = Complex64::ONE;
-        let bonded = |mu: Complex64| {
-            let [k1, k2] = [3.0 - 4.0 * self.nu, 3.0 - 4.0 * self.base_nu];
-            let (kappa, lambda) = ((mu - 1.0) / (mu + k1), (mu * k2 - k1) / (one + mu * k2));
-            let theta = (-2.0 * t).exp();
-            (one + 4.0 * t * theta * kappa - lambda * kappa * theta * theta)
-                / (one - (lambda + kappa * (1.0 + 4.0 * t * t)) * theta + lambda * kappa * theta * theta)
-        };
-        match &self.base {
-            _ if t > 60.0 => one,
-            Base::None => one,
-            Base::Rigid => {
-                let k = 3.0 - 4.0 * self.nu;
-                let sinh = 2.0 * k * (2.0 * t).sinh() - 4.0 * t;
-                (sinh / (2.0 * k * (2.0 * t).cosh() + k * k + 1.0 + 4.0 * t * t)).into()
-            }
-            Base::Frictionless => (2.0 * t.sinh() * t.sinh() / ((2.0 * t).sinh() + 2.0 * t)).into(),
-            Base::Body(base) => {
-                let ratio = base.at(along) / self.creep.at(along);
-                bonded(ratio * ((1.0 - self.nu) / (1.0 - self.base_nu)))
-            }
-        }
-    }
-
-    /// (2/q) C₁ (L − 1).
-    fn added(&self, q: f64, along: f64) -> Complex64 {
-        2.0 / q * self.creep.at(along) * (self.response(q, along) - 1.0)
-    }
-
     /// Coefficients at the distances −(n − 1) to n − 1 along the motion, in rows aside.
     fn table(&self) -> Vec<Vec<f64>> {
-        let [n, m] = self.cells;
-        match self.periodic {
-            [true, true] => self.of_waves(),
-            [false, false] => {
-                let dense = self.dense(Below::HalfSpace);
-                let mut table = dense.coefficients();
-                if !matches!(self.base, Base::None) {
-                    self.add_rings(&mut table);
-                }
-                table
-            }
-            [false, true] => {
-                let rows: Vec<Vec<f64>> = (0..=m / 2).map(|k| self.row(k)).collect();
-                (0..m).map(|j| (0..2 * n - 1).map(|i| mean(&rows, m, j, i)).collect()).collect()
-            }
-            [true, false] => {
-                let unit = TAU / (n as f64 * self.spacing[0]);
-                let of = |j: usize| {
-                    let waves: Vec<Complex64> = (0..=n / 2).map(|k| self.aside(j, unit * k as f64)).collect();
-                    let at = |i: usize| {
-                        let phase = |k: usize| TAU * (k * (i + 1) % n) as f64 / n as f64;
-                        let part = |k: usize, own: &Complex64| {
-                            let both = k > 0 && 2 * k < n;
-                            let wave = own * Complex64::from_polar(1.0, phase(k));
-                            if both { 2.0 * wave.re } else { own.re * phase(k).cos() }
-                        };
-                        waves.iter().enumerate().map(|(k, own)| part(k, own)).sum::<f64>() / n as f64
-                    };
-                    (0..2 * n - 1).map(at).collect()
-                };
-                (0..m).map(of).collect()
-            }
-        }
+        let Scene { periodic, cells, spacing, nu, base_nu, thickness, .. } = *self;
+        let (creep, base, datum) = (self.creep.clone(), self.base.clone(), self.datum());
+        let bodies = Bodies { periodic, cells, spacing, creep, nu, base, base_nu, thickness, datum };
+        bodies.influence([1.0, 0.0]).rows()
     }
 
-    fn of_waves(&self) -> Vec<Vec<f64>> {
-        let [n, m] = self.cells;
-        let unit = [0, 1].map(|k| TAU / (self.cells[k] as f64 * self.spacing[k]));
-        let number = |k: usize, n: usize| if 2 * k > n { k as f64 - n as f64 } else { k as f64 };
-        let mut table = vec![vec![0.0; 2 * n - 1]; m];
-        for k in 0..n {
-            for l in 0..m {
-                let along = unit[0] * number(k, n);
-                let q = along.hypot(unit[1] * number(l, m));
-                let mut own = if q > 0.0 {
-                    2.0 / q * self.creep.at(along) * self.response(q, along)
-                } else {
-                    let rigid = matches!(self.base, Base::Rigid | Base::Frictionless);
-                    let mean = self.thickness * (1.0 - 2.0 * self.nu) / (1.0 - self.nu).powi(2);
-                    self.creep.at(0.0) * if rigid { mean } else { 0.0 }
-                };
-                if 2 * k == n {
-                    own.im = 0.0;
-                }
-                for (j, row) in table.iter_mut().enumerate() {
-                    for (i, value) in row.iter_mut().enumerate() {
-                        let phase = TAU * (k * (i + 1) % n) as f64 / n as f64 + TAU * (l * j % m) as f64 / m as f64;
-                        *value += (own * Complex64::from_polar(1.0, phase)).re / (n * m) as f64;
-                    }
-                }
-            }
-        }
-        table
-    }
-
-    /// The integral over rings of waves: bounded at their middle.
-    fn add_rings(&self, table: &mut [Vec<f64>]) {
-        let [n, m] = self.cells;
-        let [d, side] = self.spacing;
-        let reach = self.longest();
-        let last = 20.0 / self.thickness;
-        let mut rings: Vec<(f64, f64)> = Vec::new();
-        let mut end = 1e-3 / reach;
-        rings.extend(points(0.0, end, 1));
-        while end < last {
-            let next = (2.0 * end).min(end + 6.0 / (n as f64 * d)).min(last);
-            rings.extend(points(end, next, 1));
-            end = next;
-        }
-        let mut waves = vec![0.0; 2 * n - 1];
-        for (q, weight) in rings {
-            // finer where waves pass slowly
-            let mut angles: Vec<(f64, f64)> = Vec::new();
-            let mut from = 0.0;
-            let mut end = (1e-3 / (q * reach)).min(0.1);
-            while from < PI / 2.0 {
-                angles.extend(points(from, end, 1));
-                (from, end) = (end, (2.0 * end).min(end + 0.2).min(PI / 2.0));
-            }
-            for (angle, part) in angles {
-                let [along, aside] = [q * angle.sin(), q * angle.cos()];
-                let cell = |q: f64, side: f64| {
-                    let half = 0.5 * q * side;
-                    if half < 1e-5 { 1.0 } else { half.sin() / half }
-                };
-                let own = self.added(q, along)
-                    * (q * weight * part / (PI * PI) * d * side)
-                    * (cell(along, d) * cell(aside, side));
-                for (i, wave) in waves.iter_mut().enumerate() {
-                    let (sin, cos) = (along * (i as f64 - (n - 1) as f64) * d).sin_cos();
-                    *wave = own.re * cos - own.im * sin;
-                }
-                for (j, row) in table.iter_mut().enumerate().take(m) {
-                    let cos = (aside * side * j as f64).cos();
-                    row.iter_mut().zip(&waves).for_each(|(value, wave)| *value += cos * wave);
-                }
-            }
-        }
-    }
-
-    fn longest(&self) -> f64 {
-        let base = if let Base::Body(base) = &self.base { &base.terms[..] } else { &[] };
-        let reaches = self.creep.terms.iter().chain(base).map(|(_, l)| *l);
-        reaches.fold(self.thickness.max(self.cells[0] as f64 * self.spacing[0]), f64::max)
-    }
-
-    /// (1/π) ∫ over q > 0 of what a wave adds to the half-space, times `wave` of q.
-    fn integral(&self, x: f64, kappa: f64, d: f64, moves: bool) -> Complex64 {
-        if matches!(self.base, Base::None) {
-            return Complex64::ZERO;
-        }
-        let h = self.thickness;
-        // of the mean, the buried load of the relaxed bodies is taken out, at another depth than the crate's
-        let relaxed = if kappa > 0.0 { 0.0 } else { self.base_relaxed() - self.creep.relaxed() };
-        let mut sum = Complex64::ZERO;
-        let last = 20.0 / h;
-        let (mut from, mut end) = (0.0, 1e-4 / self.longest().max(300.0));
-        while from < last {
-            for (q, weight) in points(from, end, 1) {
-                let total = q.hypot(kappa);
-                let along = if moves { q } else { kappa };
-                let half = 0.5 * q * d;
-                let cell = if half < 1e-5 { 1.0 } else { half.sin() / half };
-                let own = self.added(total, along) - 2.0 / total * relaxed * (-1.3 * total * h).exp();
-                let wave = if moves { Complex64::from_polar(1.0, q * x) } else { Complex64::from((q * x).cos()) };
-                sum += own * wave * (weight * cell * d / PI);
-            }
-            (from, end) = (end, (2.0 * end).min(end + 3.0 / (x.abs() + 1.0)).min(last));
-        }
-        sum + relaxed * buried(x, 1.3 * h, d, self.datum())
-    }
-
-    fn base_relaxed(&self) -> f64 {
-        if let Base::Body(base) = &self.base { base.relaxed() } else { 0.0 }
-    }
-
-    /// What is taken from the mean so that the relaxed bodies displace nothing at the datum; on a rigid base nothing.
-    fn at_datum(&self, d: f64) -> f64 {
-        let Base::Body(_) = self.base else { return 0.0 };
-        // −(2/π) ln is zero there, and so is the half-space; as of a line, at the datum
-        let mut still = self.clone();
-        still.creep.terms = vec![(1.0, 0.0)];
-        still.creep.glassy = self.creep.relaxed() / GLASSY - 1.0;
-        if let Base::Body(base) = &mut still.base {
-            *base = Creep { glassy: base.relaxed() / GLASSY - 1.0, terms: vec![(1.0, 0.0)] };
-        }
-        still.integral(self.datum(), 0.0, 1e-3, true).re / 1e-3 * d
-    }
-
-    /// The coefficients of the wave k aside.
-    fn row(&self, k: usize) -> Vec<f64> {
-        let ([n, m], [d, side]) = (self.cells, self.spacing);
-        let kappa = TAU * k as f64 / (m as f64 * side);
-        let datum = self.datum();
-        let dense = self.dense(Below::Line(datum));
-        let own = dense.coefficients_of(&|x| strip(x, d, kappa, datum));
-        let at_datum = if k == 0 { self.at_datum(d) } else { 0.0 };
-        let x = |i: usize| (i as f64 - (n - 1) as f64) * d;
-        let rest = |i: usize| self.integral(x(i), kappa, d, true).re;
-        own.iter().enumerate().map(|(i, own)| own + rest(i) - at_datum).collect()
-    }
-
-    /// The displacement j cells aside under a wave along the motion.
-    fn aside(&self, j: usize, kappa: f64) -> Complex64 {
-        let side = self.spacing[1];
-        let x = j as f64 * side;
-        let at_datum = if kappa == 0.0 { self.at_datum(side) } else { 0.0 };
-        let own = self.creep.at(kappa) * strip(x, side, kappa, self.datum());
-        own + self.integral(x, kappa, side, false) - at_datum
-    }
-
-    fn dense(&self, below: Below) -> Dense {
+    fn dense(&self) -> Dense {
         let [n, m] = self.cells;
         let at = |k: usize, shift: f64| {
             let x = |k: usize, axis: usize| (k as f64 + 0.5 - 0.5 * self.cells[axis] as f64) * self.spacing[axis];
@@ -422,47 +180,16 @@ impl Scene {
         };
         let half = 0.5 * self.spacing[0];
         Dense {
-            below,
+            below: Below::HalfSpace,
             cells: self.cells,
             spacing: self.spacing,
-            glassy: GLASSY * self.creep.glassy,
-            terms: self.creep.terms.iter().map(|&(c, l)| (GLASSY * c, l)).collect(),
+            glassy: self.creep.glassy,
+            terms: self.creep.terms.clone(),
             gap: (0..n * m).map(|k| at(k, 0.0)).collect(),
             rise: (0..n * m).map(|k| at(k, half) - at(k, -half)).collect(),
             force: self.force(),
         }
     }
-}
-
-/// The coefficient at a distance of j cells from rows of the waves of a period of m.
-fn mean(rows: &[Vec<f64>], m: usize, j: usize, i: usize) -> f64 {
-    let part = |k: usize| {
-        let count = if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
-        count * (TAU * (k * j % m) as f64 / m as f64).cos() * rows[k][i]
-    };
-    (0..rows.len()).map(part).sum::<f64>() / m as f64
-}
-
-/// −(1/π) ∫ ln((s² + z²)/D²) ds over a side.
-fn buried(x: f64, z: f64, side: f64, datum: f64) -> f64 {
-    let own = |s: f64| -((x + s).hypot(z) / datum).ln() * 2.0 / PI;
-    points(-0.5 * side, 0.5 * side, 4).map(|(s, w)| w * own(s)).sum()
-}
-
-/// (2/π) ∫ K0(κ |x − s|) ds over a side, or of −ln(|x − s|/D): K0(z) = ∫ e^(−z cosh t) dt.
-fn strip(x: f64, side: f64, kappa: f64, datum: f64) -> f64 {
-    let (x, half) = (x.abs(), 0.5 * side);
-    if kappa == 0.0 {
-        let primitive = |x: f64| if x == 0.0 { 0.0 } else { x * ((x.abs() / datum).ln() - 1.0) };
-        return -2.0 / PI * (primitive(x + half) - primitive(x - half));
-    }
-    // ∫ from 0 to s of K0(κ s)
-    let from_zero = |s: f64| {
-        let integrand = |t: f64| -(-kappa * s * t.cosh()).exp_m1() / t.cosh() / kappa;
-        points(0.0, 40.0, 40).map(|(t, w)| w * integrand(t)).sum::<f64>()
-    };
-    let signed = |s: f64| s.signum() * from_zero(s.abs());
-    2.0 / PI * (signed(x + half) - signed(x - half))
 }
 
 /// Random scenes against dense problems; under the approach that a force finds, the same state.
@@ -479,7 +206,7 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
             Err(Error::Step(StepError::ContactAtEdge { .. })) => continue,
             Err(error) => panic!("{number} {scene:?}: {error}"),
         };
-        let exact = scene.dense(Below::HalfSpace).solve_by(&scene.table()).expect("the dense problem has a solution");
+        let exact = scene.dense().solve_by(&scene.table()).expect("the dense problem has a solution");
         let contact = sliding.contact();
         let [_, n2] = contact.grid().cells();
         let ([n, m], pressure) = (scene.cells, contact.pressure());
@@ -537,7 +264,7 @@ fn pressed(kernel: impl Fn(&Grid) -> viscocontact::Result<InfluenceKernel>, grid
 }
 
 fn body(factor: f64, nu: f64) -> Material {
-    Creep { glassy: factor, terms: vec![(2.0 * factor, 0.05), (4.0 * factor, 1.0)] }.material(nu)
+    creep(factor, vec![(2.0 * factor, 0.05), (4.0 * factor, 1.0)]).material(nu)
 }
 
 /// The kernels of a body, without a layer and with one.

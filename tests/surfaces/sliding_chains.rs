@@ -322,8 +322,8 @@ fn states_are_those_of_their_problem_whatever_came_before() {
             let limits = [3.0, 3.0, 3.0, 1.0, 3.0, f64::INFINITY];
             if measures.iter().zip(limits).any(|(measure, limit)| *measure > limit) {
                 println!(
-                    "FAIL {name}: {measures:?} fold {fold:.1e} {velocity:?} {load} {report} residual {:e} tol {:e} | anew {fresh}",
-                    report.residual, scene.tolerance
+                    "FAIL {name}: {measures:?} fold {fold:.1e} flat {} {:?} {velocity:?} {load} {report} residual {:e} tol {:e} | anew {fresh}",
+                    scene.flat, scene.bodies.base, report.residual, scene.tolerance
                 );
                 failures.push(name);
             }

@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Waves, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
+use crate::motion::CounterMotion;
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::{Material, TemperatureHistory};
 
@@ -34,6 +35,8 @@ pub struct Builder {
     pub(super) waves: Vec<Waves>,
     pub(super) material: Option<Material>,
     pub(super) counter_body: Option<Material>,
+    /// What a creeping counter-body does in a steady motion.
+    pub(crate) counter_motion: Option<CounterMotion>,
     pub(super) times: Option<Times>,
     pub(crate) temperature: Option<TemperatureHistory>,
     pub(crate) attraction: Option<Arc<dyn Attraction>>,
@@ -58,6 +61,7 @@ impl ViscoelasticContact {
             waves: Vec::new(),
             material: None,
             counter_body: None,
+            counter_motion: None,
             times: None,
             temperature: None,
             attraction: None,
@@ -101,6 +105,13 @@ impl Builder {
     /// deform: u is the sum of their displacements, and C(t) the sum of their compliances.
     pub fn counter_body(self, material: Material) -> Builder {
         Builder { counter_body: Some(material), ..self }
+    }
+
+    /// Whether a creeping counter-body slides or rolls in a steady motion:
+    /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
+    /// ([`motion`](crate::motion)).
+    pub fn counter_motion(self, motion: CounterMotion) -> Builder {
+        Builder { counter_motion: Some(motion), ..self }
     }
 
     /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the scene,

@@ -12,8 +12,8 @@ use crate::rounded::rounded;
 const INEXACT: f64 = 1e-3;
 const CELLS: f64 = 10.0;
 const HALVINGS: u32 = 4;
-/// A step whose balance is off by more than this part of the energies is divided, as far as to a 256th of it: a pull-off within one step
-/// takes about as many parts.
+/// A step whose balance is off by more than this part of the energies is divided, and its parts are by their share of it, as far as to a 256th
+/// of the step: a pull-off within one takes about as many.
 const UNBALANCED: f64 = 5e-3;
 const MOST_HALVINGS: u32 = 8;
 /// A balance that is off by more than this part of the energies warns.
@@ -180,7 +180,8 @@ impl EnergyBalance {
         if !self.is_inexact(contact) {
             self.take_in_whole(contact, dt, jumped)?;
             let off = self.energies.imbalance() - in_halves.energies.imbalance();
-            if jumped || off.abs() <= UNBALANCED * self.energies.size() {
+            let share = 0.5_f64.powi((MOST_HALVINGS - halvings) as i32);
+            if jumped || off.abs() <= UNBALANCED * share * self.energies.size() {
                 return Ok(self.energies);
             }
             if in_halves.take_in_halves((before, contact), halvings - 1).is_ok_and(|same_end| same_end) {
@@ -242,6 +243,7 @@ impl EnergyBalance {
         halvings: u32,
     ) -> Result<bool> {
         let (end, load) = (&contact.computation.state, contact.load());
+        let start = before.map_or(&end.previous, |before| &before.computation.state.current);
         let mut part = match before {
             Some(before) => before.clone(),
             None => contact.within_step(end.start.clock.time)?,
@@ -252,7 +254,7 @@ impl EnergyBalance {
             part.take_part(time, &[load], tolerance, end.start.interpolant)?;
             self.take_in_half(&part, half, halvings)?;
         }
-        Ok(!part.is_elsewhere(end))
+        Ok(!part.is_elsewhere([start, &end.current]))
     }
 
     fn take_in_half(&mut self, part: &ViscoelasticContact, dt: f64, halvings: u32) -> Result<Energies> {

@@ -75,6 +75,40 @@ pub struct Figures {
     /// The approach at which the upright bodies touch \[m\], at the end of a run that never brought them into contact
     /// ([`Warnings::NO_CONTACT`]).
     pub touch: Option<f64>,
+    /// Part of the elastic energy of a steady motion, or of its part that can be lost, in waves
+    /// that pass at frequencies at which the material was not measured, if more than a tenth
+    /// ([`Warnings::FREQUENCIES`]).
+    pub unmeasured: Option<f64>,
+}
+
+impl Figures {
+    /// What the number of a warning is, and the number; of a step that is too long its relative
+    /// error.
+    fn of(&self, warning: Warnings, time_error: Option<f64>) -> Option<(&'static str, f64)> {
+        let (name, figure) = match warning {
+            Warnings::STEEP => ("greatest slope", self.max_slope),
+            Warnings::DEEP => ("depth over thickness", self.compression),
+            Warnings::FEW_CELLS => ("cells across:", self.cells_across),
+            Warnings::SHORT_WAVES => ("cells in a wave:", self.cells_in_wave),
+            Warnings::OTHER_PERIOD => ("periods:", self.periods),
+            Warnings::COARSE_ZONE => ("cells in the zone:", self.cells_in_zone),
+            Warnings::BEYOND_EDGE => ("part of the force:", self.beyond_edge),
+            Warnings::MODULUS => ("E* in Pa:", self.modulus),
+            Warnings::NO_CONTACT => ("they touch at an approach in m of", self.touch),
+            Warnings::FREQUENCIES => ("part of the energy:", self.unmeasured),
+            Warnings::LONG_STEP => ("relative error", time_error),
+            _ => ("", None),
+        };
+        figure.map(|figure| (name, figure))
+    }
+
+    /// What each warning says, with its number.
+    pub(crate) fn messages(self, warnings: Warnings, time_error: Option<f64>) -> impl Iterator<Item = String> {
+        warnings.iter().map(move |warning| match self.of(warning, time_error) {
+            Some((name, figure)) => format!("{warning} ({name} {})", rounded(figure, 3)),
+            None => warning.to_string(),
+        })
+    }
 }
 
 /// The quantity of which an error is estimated: the one that the load leaves free.
@@ -135,10 +169,7 @@ impl StepReport {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn messages(&self) -> impl Iterator<Item = String> + '_ {
-        self.warnings.iter().map(|warning| match self.figure(warning) {
-            Some((name, figure)) => format!("{warning} ({name} {})", rounded(figure, 3)),
-            None => warning.to_string(),
-        })
+        self.figures.messages(self.warnings, self.time_error)
     }
 
     /// Warns at the end of a run that never brought the bodies into contact; upright they touch at the approach `touch`.
@@ -147,35 +178,6 @@ impl StepReport {
             self.warnings |= Warnings::NO_CONTACT;
             self.figures.touch = Some(touch);
         }
-    }
-
-    /// What the number of a warning is, and the number.
-    fn figure(&self, warning: Warnings) -> Option<(&'static str, f64)> {
-        let Figures {
-            max_slope,
-            compression,
-            cells_across,
-            cells_in_wave,
-            periods,
-            cells_in_zone,
-            beyond_edge,
-            modulus,
-            touch,
-        } = self.figures;
-        let (name, figure) = match warning {
-            Warnings::STEEP => ("greatest slope", max_slope),
-            Warnings::DEEP => ("depth over thickness", compression),
-            Warnings::SHORT_WAVES => ("cells in a wave:", cells_in_wave),
-            Warnings::OTHER_PERIOD => ("periods:", periods),
-            Warnings::COARSE_ZONE => ("cells in the zone:", cells_in_zone),
-            Warnings::BEYOND_EDGE => ("part of the force:", beyond_edge),
-            Warnings::MODULUS => ("E* in Pa:", modulus),
-            Warnings::LONG_STEP => ("relative error", self.time_error),
-            Warnings::FEW_CELLS => ("cells across:", cells_across),
-            Warnings::NO_CONTACT => ("they touch at an approach in m of", touch),
-            _ => ("", None),
-        };
-        figure.map(|figure| (name, figure))
     }
 
     /// Emits the event of an accepted step, with the feature `tracing`.

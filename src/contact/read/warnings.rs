@@ -99,6 +99,12 @@ bitflags! {
         /// ([`Figures::beyond_edge`](crate::contact::Figures::beyond_edge)), or than [`Settings::tolerance`](crate::contact::Settings::tolerance): enlarge the grid.
         /// From 5 % on a step fails with [`AdhesionError::BeyondEdge`](crate::adhesion::AdhesionError::BeyondEdge). Only with [`Edge::Refuse`](crate::contact::Edge::Refuse).
         const BEYOND_EDGE = 1 << 19;
+        /// Waves that hold more than a tenth of the elastic energy of a steady motion, or of its
+        /// part that can be lost, pass the bodies at frequencies at which the material was not
+        /// measured ([`Figures::unmeasured`](crate::contact::Figures::unmeasured)): the series of a
+        /// table is elastic beyond its data, and resists too little. Measure at the frequencies q·v
+        /// of the waves in contact.
+        const FREQUENCIES = 1 << 20;
     }
 }
 
@@ -119,7 +125,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// What each warning says, and its cure.
-const MESSAGES: [(Warnings, &str); 20] = [
+const MESSAGES: [(Warnings, &str); 21] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, of a body or of patches on average: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data: measure it longer, or end earlier"),
@@ -151,6 +157,10 @@ const MESSAGES: [(Warnings, &str); 20] = [
     ),
     (Warnings::LONG_STEP, "the step is too long, its error in time over 5 %: take shorter or adaptive steps"),
     (Warnings::BEYOND_EDGE, "attraction beyond the edge of the grid is left out: enlarge the grid"),
+    (
+        Warnings::FREQUENCIES,
+        "waves in contact pass at frequencies at which the material was not measured: measure there, or change the speed",
+    ),
     (Warnings::NO_CONTACT, "the bodies never touched in the run: raise the approach, or check its sign and unit"),
 ];
 

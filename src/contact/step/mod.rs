@@ -240,6 +240,7 @@ impl ViscoelasticContact {
             beyond_edge: beyond_edge.filter(|share| *share > least_beyond(scene)),
             modulus: scene.limits.modulus,
             touch: None,
+            unmeasured: None,
         };
         StepReport {
             time: state.clock.time,

@@ -1,6 +1,7 @@
 //! Scenes outside the model: each is refused, or warns with its number, and says the cure. Scenes inside warn of nothing.
 
 mod limits;
+mod motions;
 mod others;
 mod silent;
 mod surfaces;

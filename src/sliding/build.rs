@@ -1,0 +1,190 @@
+//! The contact in steady motion that a builder makes.
+
+use std::sync::Arc;
+
+use num_complex::Complex64;
+
+use super::bodies::Bodies;
+use super::creep::Creep;
+use super::layer_on_base::{LayerOnBase, THINNEST};
+use super::{SteadySliding, gmres};
+use crate::contact::{Builder, Frame, Limits, Warnings};
+use crate::error::{Error, Result, SlidingError, Special, coverage};
+use crate::kernel::HalfSpace;
+use crate::memory;
+use crate::motion::CounterMotion;
+use crate::rheology::{CreepSpectrum, Elastic, Material};
+
+/// Whether a gap changes at one place along a periodic axis by far more than anywhere else: a
+/// height map that does not repeat has a step where its end meets its beginning, wherever its
+/// origin lies. Rows that are not finite everywhere do not close.
+fn jumps(gap: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> bool {
+    (0..2).filter(|&axis| periodic[axis] && cells[axis] > 2).any(|axis| {
+        let (n, [along, aside]) = (cells[axis], if axis == 0 { [cells[1], 1] } else { [1, cells[1]] });
+        let mut rises = vec![0.0_f64; n];
+        for row in 0..gap.len() / n {
+            let height = |i: usize| gap[row * aside + i % n * along];
+            if (0..n).all(|i| height(i).is_finite()) {
+                rises.iter_mut().enumerate().for_each(|(i, rise)| *rise = rise.max((height(i + 1) - height(i)).abs()));
+            }
+        }
+        rises.sort_by(f64::total_cmp);
+        rises[n - 1] > JUMP * rises[n - 2]
+    })
+}
+
+/// A shape that changes at one place by so many times as much as at any other one jumps there.
+const JUMP: f64 = 4.0;
+
+/// Bytes of a problem in steady motion beside its contact, at most.
+fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
+    let [n1, n2] = cells.map(|n| n as u64);
+    let padded = [0, 1].map(|axis| if periodic[axis] || cells[axis] == 1 { 1 } else { 2 } * cells[axis] as u64);
+    // factors, coefficients and losses of the response, with its symmetric part; of the inverses,
+    // and of both on coarser meshes
+    let (response, inverse) = (80 * padded[0] * (padded[1] / 2 + 1), 86 * n1 * (n2 / 2 + 1));
+    // influences at about four nodes a cell, and the panels of these; tables of coefficients
+    let nodes = if periodic == [true; 2] { 0 } else { 150 * n1 * n2 };
+    // two fields for each direction, and a dozen others
+    response + inverse + nodes + 8 * (2 * gmres::MOST as u64 + 12) * n1 * n2
+}
+
+/// Relative difference of ratios that is rounding.
+const SAME_RATIO: f64 = 1e-6;
+
+impl Builder {
+    /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of
+    /// [`Builder::build`]. All fields take the whole grid.
+    ///
+    /// All bodies of the crate are covered but kernels of coefficients
+    /// ([`InfluenceKernel::from_coefficients`](crate::InfluenceKernel::from_coefficients)). Bodies
+    /// that are periodic along both axes are passed in any direction, the others along x1 or x2.
+    /// Where a body is periodic the shape must be periodic too: a height map that does not repeat
+    /// slides over an edge, and a shape with a single step in its period, at whatever place, is
+    /// refused. A half-space may flow: the pressure under a force is steady then. A counter-body
+    /// that creeps slides or rolls: [`Builder::counter_motion`] says which.
+    ///
+    /// # Errors
+    /// As [`Builder::build`], and if the body is another one, or flows, the surfaces attract each
+    /// other, there are several rigid bodies, ranks, or a history of the temperature: scale the
+    /// velocity by the shift factor instead.
+    pub fn build_sliding(self) -> Result<SteadySliding> {
+        self.sliding(None, None)
+    }
+
+    /// [`Builder::build_sliding`] on a layer whose base creeps otherwise, or not: a rubber sheet on
+    /// steel. The kernel belongs to a layer that
+    /// [`Layer::bonded_to_material`](crate::Layer::bonded_to_material) made.
+    ///
+    /// # Errors
+    /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no
+    /// series, or flows; if the body is not periodic along both axes, and a side of the grid is
+    /// more than 64 times as long as the layer is thick
+    /// ([`SlidingError::ThinLayer`](crate::sliding::SlidingError::ThinLayer)).
+    pub fn build_sliding_on(self, base: Material) -> Result<SteadySliding> {
+        self.sliding(Some(base), None)
+    }
+
+    /// [`Builder::build_sliding`] on a body of which the complex contact modulus E* = 1/C \[Pa\] is
+    /// known as a function of the frequency ≥ 0 \[rad/s\], E′ + i E″, without a series, with E″ ≥ 0
+    /// for bodies that dissipate. It takes the place of [`Builder::material`]; 4 G* if the body is
+    /// incompressible. Only bodies that are periodic along both axes are covered.
+    ///
+    /// # Errors
+    /// As [`Builder::build_sliding`]; if the body is not periodic along both axes, or there is a
+    /// counter-body. [`SteadySliding::at`] fails where E′ is not positive, or E″ is negative
+    /// ([`SlidingError::NotPassive`](crate::sliding::SlidingError::NotPassive)).
+    pub fn build_sliding_by(
+        mut self,
+        modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,
+    ) -> Result<SteadySliding> {
+        // the contact shows the state on an elastic body
+        self = self.material(Material::incompressible(Elastic::new(0.25 * modulus(0.0).re)?));
+        self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
+    }
+
+    /// Bytes of a contact in steady motion at most, with all cells in contact: of
+    /// [`Builder::memory`], the factors of waves and the nodes of influences, and the directions of
+    /// the iteration, which are most. No field is allocated to find out.
+    ///
+    /// # Errors
+    /// As [`Builder::memory`].
+    pub fn sliding_memory(&self) -> Result<u64> {
+        let own = self.memory()?;
+        // neither symmetry nor a window counts
+        let times = (self.grid.len() as u64).div_ceil(own.computed_cells.max(1) as u64);
+        let periodic = self.kernel.as_ref().map_or([false; 2], |kernel| kernel.periodic_axes());
+        Ok(own.total().saturating_mul(times).saturating_add(bytes(self.grid.cells(), periodic)))
+    }
+
+    fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
+        self.is_covered(Special::SteadyMotion)?;
+        let motion = self.counter_motion;
+        self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
+        self.steady = true;
+        memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
+        let contact = self.build()?;
+        let (kernel, grid) = (contact.kernel(), contact.grid());
+        let periodic = kernel.periodic_axes();
+        let ends = || (0..2).filter(|&axis| !periodic[axis]);
+        let has_rows = periodic == [true; 2] || ends().any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
+        let jumps = jumps(&contact.initial_gap().above, grid.cells(), periodic);
+        let material = contact.material();
+        let (by_modulus, pair) = (modulus.is_some(), material.poisson_ratios().count() > 1);
+        coverage::COEFFICIENTS.unless(|_| !has_rows)?;
+        coverage::JUMPING_SHAPE.unless(|_| jumps)?;
+        coverage::MODULUS.unless(|_| by_modulus && periodic != [true; 2])?;
+        coverage::MODULUS_OF_TWO.unless(|_| by_modulus && pair)?;
+        let series = |material: &Material| material.spectrum_for("a motion").map(Creep::Series);
+        let mut unmeasured_at_rest = 0.0;
+        let mut measured = material.measured();
+        let creep = match (modulus, motion) {
+            (Some(modulus), _) => modulus,
+            (None, Some(CounterMotion::Slides)) if pair => {
+                let [own, counter] = material.apart();
+                let (own_creep, resting) = (own.spectrum_for("a motion")?, counter.spectrum_for("a motion")?);
+                coverage::FLOWING_COUNTER.unless(|_| resting.fluidity() > 0.0)?;
+                // its points are at rest under the pressure
+                let relaxed = resting.relaxed();
+                if !Creep::Series(resting).is_relaxed(counter.measured()[1]) {
+                    unmeasured_at_rest = relaxed / (relaxed + own_creep.relaxed());
+                }
+                measured = own.measured();
+                let glassy = own_creep.glassy() + relaxed;
+                Creep::Series(CreepSpectrum::new(glassy, own_creep.fluidity(), own_creep.terms())?)
+            }
+            (None, motion) => {
+                let unknown = motion.is_none() && material.counter_creeps()?;
+                coverage::COUNTER_BODY.unless(|_| unknown)?;
+                series(material)?
+            }
+        };
+        let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
+        coverage::FLOW.unless(|_| flows)?;
+        let on_base = |base: Material| {
+            let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
+            let layer = layer.ok_or(coverage::BASE_OF_NO_LAYER.error())?;
+            let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
+            let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
+            let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
+            coverage::OTHER_BASE.unless(|_| other)?;
+            let (thickness, length) = (layer.thickness(), ends().map(|axis| grid.lengths()[axis]).fold(0.0, f64::max));
+            if length > THINNEST * thickness {
+                return Err(SlidingError::ThinLayer { length, thickness, longest: THINNEST * thickness }.into());
+            }
+            Ok::<_, Error>(LayerOnBase { layer, own: creep.clone(), base: series(&base)?, kernel: kernel.clone() })
+        };
+        let mut warnings = Warnings::empty();
+        if let Some(base) = &base {
+            let [from, until] = base.measured();
+            measured = [measured[0].max(from), measured[1].min(until)];
+            warnings = Limits::of(base).warnings(0.0, 0.0);
+        }
+        let layer = base.map(on_base).transpose()?;
+        let is_relaxed = |own: &Creep| own.is_relaxed(measured[1]);
+        let relaxed = is_relaxed(&creep) && layer.as_ref().is_none_or(|layer| is_relaxed(&layer.base));
+        let (kernel, rows) = (kernel.clone(), Default::default());
+        let bodies = Arc::new(Bodies { kernel, creep, layer, rows, measured, relaxed, unmeasured_at_rest, warnings });
+        Ok(SteadySliding { contact, bodies, cancelled: None })
+    }
+}
