@@ -5,7 +5,7 @@
 //! halved again, as far as to a quarter of the step.
 
 use super::{PassReport, add};
-use crate::contact::{Equilibrium, Step, ViscoelasticContact};
+use crate::contact::{Equilibrium, State, Step, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::solver::{Counts, Solution};
