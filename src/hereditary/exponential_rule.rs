@@ -165,7 +165,7 @@ impl ExponentialRule {
     }
 
     /// E∞.
-    pub(super) fn equilibrium(&self) -> f64 {
+    pub(crate) fn equilibrium(&self) -> f64 {
         self.relaxation.equilibrium()
     }
 
@@ -197,7 +197,7 @@ impl ExponentialRule {
     }
 
     /// η/Δ of the step predicted last.
-    pub(super) fn viscous(&self) -> f64 {
+    pub(crate) fn viscous(&self) -> f64 {
         if self.has_dashpot() { self.relaxation.viscosity() / self.tried.dt } else { 0.0 }
     }
 
@@ -227,7 +227,7 @@ impl ExponentialRule {
 
     /// The response of the relaxation times, at the end of such a `share` of the step predicted last, to a u that has grown at the
     /// rate 1/Δ since its start: Σ E_i (1 − e^(−share z_i))/z_i.
-    pub(super) fn relaxing(&self, share: f64) -> f64 {
+    pub(crate) fn relaxing(&self, share: f64) -> f64 {
         let dt = self.tried.dt;
         let response = |&(modulus, tau): &(f64, f64)| -modulus * tau / dt * (-share * dt / tau).exp_m1();
         self.relaxation.terms().iter().map(response).sum()

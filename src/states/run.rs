@@ -91,9 +91,10 @@ impl Driven for StatesContact {
             return Err(Error::Cancelled { what: "a step" });
         }
         control.before.copy_from(self);
+        let rounded = control.rounded(self, course.history)?;
         let report = match course.given {
-            Some((time, load)) => self.step_to(time, time - self.time(), load)?,
-            None => control.step(self, course)?,
+            Some((time, load)) => self.step_to(time, time - self.time(), rounded.round(load))?,
+            None => control.step(self, &Course { history: &rounded, ..*course })?,
         };
         control.halved = course.given.is_none();
         control.record.load = match course.given {
@@ -111,6 +112,7 @@ impl Driven for StatesContact {
 
     fn within(&self, control: &StatesControl, history: &dyn LoadHistory, time: f64) -> Result<(Self, StepReport)> {
         let (start, end) = (control.before.time(), self.time());
+        let history: &dyn LoadHistory = &control.of_record(self, history);
         within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
         let mut contact = if time == end { self.clone() } else { control.before.clone() };
         // an adaptive step is taken in two halves

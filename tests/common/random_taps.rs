@@ -40,8 +40,9 @@ pub struct Taps {
 
 /// A run of the foundation.
 pub struct Marched {
-    /// Force and approach at the times asked for, and the maximum of each in contact.
-    pub found: Vec<[f64; 2]>,
+    /// Force and approach at the times asked for, `None` where steps to them are too short to be rounded well, and the maximum of
+    /// each in contact.
+    pub found: Vec<Option<[f64; 2]>>,
     pub greatest: [f64; 2],
     /// The part of the elements that were touched.
     reached: f64,
@@ -209,7 +210,8 @@ impl Taps {
         }
         for (end, is_asked_for) in ends {
             // changes in shorter steps are rounded
-            if end - now > 1e-9 * self.until {
+            let is_long = end - now > 1e-9 * self.until;
+            if is_long {
                 let value = (self.part)(end);
                 foundation.step(end - now, self.drive(end, value, before));
                 (now, before) = (end, value);
@@ -218,7 +220,7 @@ impl Taps {
                 greatest = [greatest[0].max(foundation.force), greatest[1].max(foundation.depth.abs())];
             }
             if is_asked_for {
-                found.push([foundation.force, foundation.depth]);
+                found.push((is_long || end == now).then_some([foundation.force, foundation.depth]));
             }
         }
         Marched { found, greatest, reached: foundation.reached() }
@@ -233,7 +235,8 @@ impl Taps {
         Drive::Approach(value, 0.5 * (3.0 * value - 4.0 * one + two) / short)
     }
 
-    fn apart(&self, a: &[f64; 2], b: &[f64; 2], greatest: [f64; 2]) -> f64 {
+    fn apart(&self, a: &Option<[f64; 2]>, b: &Option<[f64; 2]>, greatest: [f64; 2]) -> f64 {
+        let (Some(a), Some(b)) = (a, b) else { return 0.0 };
         let relative = |k: usize| if greatest[k] > 0.0 { (a[k] - b[k]).abs() / greatest[k] } else { 0.0 };
         relative(0).max(relative(1)) / self.tolerance
     }
@@ -246,12 +249,14 @@ impl Taps {
         let times: Vec<f64> = points.iter().map(|point| point.0).collect();
         let fineness = |k: i32| [0, 1].map(|axis| (FIRST[axis] * FINER[axis].powi(k)) as usize);
         let mut coarse = self.marched(&times, fineness(0));
+        let known = coarse.found.iter().flatten().count();
+        assert!(2 * known > times.len(), "{}: {known} of {} times are judged", self.name, times.len());
         for k in 1..FINENESSES {
             let fine = self.marched(&times, fineness(k));
             let doubt = coarse.found.iter().zip(&fine.found).map(|(a, b)| self.apart(a, b, fine.greatest));
             if doubt.fold(0.0, f64::max) <= DOUBT {
                 let off =
-                    points.iter().zip(&fine.found).map(|(point, right)| self.apart(&point.1, right, fine.greatest));
+                    points.iter().zip(&fine.found).map(|(point, right)| self.apart(&Some(point.1), right, fine.greatest));
                 return Some(off.collect());
             }
             coarse = fine;
