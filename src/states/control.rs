@@ -31,6 +31,8 @@ const AIM: f64 = 0.15;
 const AIM_OF_FORCE: f64 = 0.1;
 /// Further part of the aim for bodies without elastic response: nothing brings their level back.
 const AIM_OF_RATES: f64 = 0.25;
+/// Errors of the depth that add up over a spell of the load count so many times at most: the many short steps of an onset add little.
+const MOST_ADDED: f64 = 10.0;
 /// A step may have so many times the error that it aims at.
 const ALLOWED: f64 = 3.0;
 /// Order of a corrected step, by which its length is chosen.
@@ -151,6 +153,8 @@ impl Record {
         let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
         let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
         self.pressed = lengths.fold(length / f64::from(PARTS_OF_RUN), f64::max);
+        let lost = self.loads.iter_mut().filter(|load| 0.0 < load.1 && load.1 < self.least_load);
+        lost.for_each(|load| load.1 = 0.0);
         // it resists by the rate of its level, about the square of the load
         let rises = self.loads.windows(2).filter(|pair| pair[1].1 > pair[0].1.max(0.0)).map(|pair| {
             let [(start, before), (end, load)] = [pair[0], pair[1]];
@@ -226,25 +230,29 @@ impl StatesControl {
             }
             let event = self.event(contact, history, end)?;
             end = event.unwrap_or(end);
-            let (report, difference) = self.compare(contact, history, Span { now, end })?;
+            let (report, [of_depth, difference]) = self.compare(contact, history, Span { now, end })?;
             let parts = report.force == 0.0 && contact.level() > 0.0;
-            let error = if is_first || self.record.touches || parts { WITHOUT_ORDER } else { OF_HALVES } * difference;
-            // errors of the depth last, and add up to the tolerance while the load presses
-            let is_shared = resists_rates_alone && !matches!(load_at(history, end)?, Load::Approach { .. });
-            let lasting = self.halves.levels.rates_last().min(2.0 * self.record.pressed / (end - now));
-            let shared = if is_shared { tolerance * 2.0 / lasting } else { f64::INFINITY };
+            let lacks_order = is_first || self.record.touches || parts;
+            let of_halves = if lacks_order { WITHOUT_ORDER } else { OF_HALVES };
+            // rates of a prescribed approach leave nothing behind; else errors of the depth last, and add up while the load presses
+            let is_approach = matches!(load_at(history, end)?, Load::Approach { .. });
+            let lasting = match resists_rates_alone && !is_approach {
+                true => self.halves.levels.rates_last().min(2.0 * self.record.pressed / (end - now)),
+                false => 0.0,
+            };
+            let added = (0.5 * lasting * aim / tolerance).clamp(1.0, MOST_ADDED) * of_depth;
+            let [error, controlled] = [difference, added.max(difference)].map(|difference| of_halves * difference);
             let order = match last {
                 _ if is_first => 1.0,
-                Some((length, before)) if 0.0 < error && error < before => {
-                    ((before / error).ln() / (length / (end - now)).ln()).clamp(1.0, ORDER)
+                Some((length, before)) if 0.0 < controlled && controlled < before => {
+                    ((before / controlled).ln() / (length / (end - now)).ln()).clamp(1.0, ORDER)
                 }
                 Some(_) => 1.0,
                 None => ORDER,
             };
-            let (aim, order) = if shared < aim { (shared, f64::max(order - 1.0, 1.0)) } else { (aim, order) };
-            let most = if error > 0.0 { longest } else { MAX_GROWTH };
-            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
-            if error <= ALLOWED * aim || is_late && length <= shortest {
+            let most = if controlled > 0.0 { longest } else { MAX_GROWTH };
+            let growth = (aim / controlled).powf(1.0 / order).clamp(MIN_GROWTH, most);
+            if controlled <= ALLOWED * aim || is_late && length <= shortest {
                 self.record.next = match event {
                     Some(_) => growth.clamp(0.5, 1.0) * length,
                     None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
@@ -256,7 +264,7 @@ impl StatesControl {
                 return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
             }
             self.record.rejected += 1;
-            last = Some((end - now, error));
+            last = Some((end - now, controlled));
             length = growth.min(0.5) * (end - now);
         }
     }
@@ -282,14 +290,14 @@ impl StatesControl {
         )
     }
 
-    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth and force, relative to values that
-    /// are not small in this run.
+    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth alone and in depth and force,
+    /// relative to values that are not small in this run.
     fn compare(
         &mut self,
         contact: &StatesContact,
         history: &dyn LoadHistory,
         Span { now, end }: Span,
-    ) -> Result<(StepReport, f64)> {
+    ) -> Result<(StepReport, [f64; 2])> {
         let StatesControl { whole, halves, middle, .. } = self;
         let to = |contact: &mut StatesContact, time: f64| {
             contact.advance(time, time - contact.time(), load_at(history, time)?)
@@ -326,11 +334,10 @@ impl StatesControl {
         let is_local = halves.levels.has_dashpot() && matches!(load_at(history, end)?, Load::Approach { .. });
         let small = [SMALL, if is_local { 1.0 } else { SMALL }];
         let scales = [0, 1].map(|k| f64::abs(ended[1][k]).max(small[k] * greatest[k]));
-        let mut worst = 0.0f64;
+        let mut worst = [0.0f64; 2];
         let mut see = |differences: [f64; 2], scales: [f64; 2]| {
-            for (difference, scale) in differences.into_iter().zip(scales).filter(|(_, scale)| *scale > 0.0) {
-                worst = worst.max(difference.abs() / scale);
-            }
+            let relative = [0, 1].map(|k| if scales[k] > 0.0 { differences[k].abs() / scales[k] } else { 0.0 });
+            worst = [worst[0].max(relative[0]), worst[1].max(relative[0]).max(relative[1])];
         };
         see(of_surface, greatest);
         if whole.level() > 0.0 || halves.level() > 0.0 {

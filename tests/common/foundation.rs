@@ -130,12 +130,41 @@ impl Foundation {
             }
             force += self.weights[k] * stress.max(0.0);
         }
-        if let Drive::Spring(spring, [stop, _]) = drive
+        if let Drive::Approach(_, rate) = drive
+            && viscous
+        {
+            force = self.resisting(depth, rate);
+        } else if let Drive::Spring(spring, [stop, _]) = drive
             && viscous
         {
             force = if force > 0.0 { (spring * (stop - depth)).max(0.0) } else { 0.0 };
         }
         (self.depth, self.force) = (depth, force);
+    }
+
+    /// The force of elements with a dashpot at a depth that changes at this rate: linear between elements, up to the edges of the
+    /// contact between them.
+    fn resisting(&self, depth: f64, rate: f64) -> f64 {
+        // overlap and stress of an element, if it touches
+        let at = |k: usize| {
+            let touched = if k < self.reached { self.touched[k] } else { self.gaps[k] };
+            [depth - touched, self.body.equilibrium * (depth - self.gaps[k]) + self.body.viscosity * rate]
+        };
+        let presses = |element: [f64; 2]| element[0] > 0.0 && element[1] > 0.0;
+        let first = at(0);
+        let mut force = if presses(first) { 0.5 * self.weights[0] * first[1] } else { 0.0 };
+        for k in 0..self.reached.min(self.gaps.len() - 1) {
+            let [mut inner, mut outer] = [at(k), at(k + 1)];
+            if !presses(inner) {
+                (inner, outer) = (outer, inner);
+            }
+            if presses(inner) {
+                let to = |j: usize| if outer[j] <= 0.0 { inner[j] / (inner[j] - outer[j]) } else { 1.0 };
+                let part = to(0).min(to(1));
+                force += self.weights[k] * part * (inner[1] + 0.5 * part * (outer[1] - inner[1]));
+            }
+        }
+        force
     }
 
     /// The sum of what presses at a depth, over the stiffness of an element, and its slope.

@@ -220,7 +220,7 @@ impl Taps {
                 greatest = [greatest[0].max(foundation.force), greatest[1].max(foundation.depth.abs())];
             }
             if is_asked_for {
-                found.push((is_long || end == now).then_some([foundation.force, foundation.depth]));
+                found.push((is_long || end - now <= 1e-13 * self.until).then_some([foundation.force, foundation.depth]));
             }
         }
         Marched { found, greatest, reached: foundation.reached() }

@@ -6,9 +6,9 @@
 //! `STATES_TAPS_LINES=1` prints every run.
 
 use crate::common::random_taps::{Point, Taps};
-use crate::common::{Ratios, from_environment};
+use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::prelude::*;
-use viscocontact::states::StatesContact;
+use viscocontact::states::{ElasticStates, StatesContact, Sweep};
 
 /// Runs longer than this fail.
 const MOST_STEPS: usize = 50_000;
@@ -85,4 +85,91 @@ fn taps_on_states_are_honest() {
     assert!(failed.is_empty(), "{failed:?}");
     assert!(ratios.quantile(0.99) <= 2.0 && ratios.greatest() <= 4.0, "beyond what was asked: {ratios:?}");
     assert!(5 * unknown <= count, "{unknown} of {count} without a truth");
+}
+
+/// Smooth pulses that begin at 1e-300 of their maximum are followed in few steps: what comes before the first load that matters is
+/// no load. Forces at times of the run are those of fixed steps.
+#[test]
+fn pulses_that_begin_at_next_to_nothing_are_followed() {
+    let (scenes, tolerance, mut compared) = (from_environment("STATES_PULSES", 24), 1e-3, 0);
+    for number in 0..scenes {
+        let draws = &mut Draws::new(number.wrapping_add(71_400_000));
+        let (at, width) = (draws.between(0.4, 0.7), draws.power_of_ten(-1.8, -1.0));
+        let states = match number % 3 {
+            0 => ElasticStates::sphere(0.01),
+            1 => ElasticStates::cone(0.1),
+            _ => ElasticStates::power(5.0, 4.0),
+        };
+        let (kind, states) = (draws.below(3), states.unwrap());
+        let load = move |t: f64| {
+            let size = (-((t - at) / width).powi(2)).exp();
+            match kind {
+                0 => Load::force(size),
+                1 => Load::approach(1e-4 * size),
+                _ => Load::spring(1e4, 2e-4 * size),
+            }
+        };
+        let history = FnHistory::new(load);
+        let left = draws.power_of_ten(-3.0, 0.0);
+        let material =
+            Material::incompressible(GeneralizedMaxwell::new(1e6 * left, &[(1e6, draws.power_of_ten(-2.0, 0.0))]).unwrap());
+        let [mut contact, mut fine] = [(); 2].map(|()| StatesContact::new(&states, &material).unwrap());
+        let times: Vec<f64> = (1..50).map(|k| f64::from(k) / 50.0).collect();
+        let mut run = contact.follow(&history, Stepping::adaptive(tolerance), 1.0).sample_at(&times[..]).unwrap();
+        let (mut found, mut steps) = (Vec::new(), 0);
+        while run.next_step().unwrap_or_else(|error| panic!("{number}: {error}")).is_some() {
+            steps += 1;
+            let samples = run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for());
+            found.extend(samples.map(|sample| [sample.report().time, sample.report().force]));
+        }
+        assert!(steps < 600 && found.len() == times.len(), "{number}: {steps} steps, {} samples", found.len());
+        // the load is nothing before
+        let start = (at - 6.0 * width).max(0.0);
+        fine.step(start, Load::force(0.0)).unwrap();
+        let (mut forces, mut most) = (Vec::new(), 0.0f64);
+        for [time, force] in found.into_iter().filter(|found| found[0] > start) {
+            let now = fine.time();
+            for k in 1..=100 {
+                let next = if k == 100 { time } else { now + (time - now) * f64::from(k) / 100.0 };
+                fine.step(next - fine.time(), load(next)).unwrap();
+                most = most.max(fine.force());
+            }
+            forces.push([force, fine.force()]);
+        }
+        compared += forces.len() as u64;
+        let off = forces.iter().fold(0.0f64, |off, force| off.max((force[0] - force[1]).abs()));
+        assert!(off <= 2.0 * tolerance * most, "{number}: forces differ by {:.1e} of the maximum", off / most);
+    }
+    assert!(compared > 10 * scenes);
+}
+
+/// A contact returns the approach that was prescribed, so that a crossing of the very top of a table is met.
+#[test]
+fn prescribed_approaches_are_returned_as_they_are() {
+    let grid = Grid::square(16, 1.0e-3).unwrap();
+    let swept = Sweep::new(grid, &Sphere::new(10.0e-3).unwrap()).accuracy(1e-2).run(Reach::Approach(2.0e-5)).unwrap();
+    let closed = ElasticStates::sphere(10.0e-3).unwrap();
+    let material = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+    for number in 0..40 {
+        let draws = &mut Draws::new(number + 71_500_000);
+        let states = if number % 4 == 0 { &swept } else { &closed };
+        let top = draws.between(0.5e-5, 1.5e-5);
+        let mut rows = vec![(0.0, Load::approach(0.0))];
+        let tops = 3;
+        for k in 0..tops {
+            let time = 2.0 * f64::from(k) + draws.between(0.8, 1.2);
+            let low = draws.between(-0.5, 0.9) * top;
+            rows.extend([(time, Load::approach(top)), (time + 0.7, Load::approach(low))]);
+        }
+        let history = PiecewiseLinear::new(&rows).unwrap();
+        let stepping = if draws.chance(0.5) { Stepping::adaptive(1e-3) } else { Stepping::fixed(0.05) };
+        let mut contact = StatesContact::new(states, &material).unwrap();
+        let run = contact.follow(&history, stepping, 6.0);
+        let mut run = run.stop_when(|contact| contact.approach(), Crossing::Up(top)).unwrap();
+        while let Some(report) = run.next_step().unwrap() {
+            assert_eq!(Load::approach(report.approach), history.before(report.time), "{number}");
+            assert_eq!(run.contact().approach().to_bits(), report.approach.to_bits());
+        }
+        assert_eq!(run.events()[0].times().len(), tops as usize, "{number}");
+    }
 }
