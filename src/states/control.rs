@@ -131,7 +131,8 @@ impl Record {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         let [[load, rise], [depth, force]] = [self.rise, self.greatest];
-        let sizes = [self.until, self.next, depth, force, self.greatest_load, self.least_load, self.pressed, load, rise];
+        let sizes =
+            [self.until, self.next, depth, force, self.greatest_load, self.least_load, self.pressed, load, rise];
         let times = self.loads.iter().flat_map(|(time, load)| [*time, *load]);
         sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }

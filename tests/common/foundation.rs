@@ -45,14 +45,17 @@ pub enum Drive {
 }
 
 impl Foundation {
-    /// So many elements within a radius, with the gap `gap` at each place.
+    /// So many elements within a radius, with the gap `gap` at each place; the first of a body with a dashpot is at the centre.
     pub fn new(body: &Relaxation, radius: f64, count: usize, gap: impl Fn(f64) -> f64) -> Foundation {
         let width = radius / count as f64;
-        let gaps = (0..count).map(|k| gap((k as f64 + 0.5) * width)).collect();
+        let first = if body.viscosity > 0.0 { 0.0 } else { 0.5 };
+        let gaps = (0..count).map(|k| gap((k as f64 + first) * width)).collect();
+        let mut weights = vec![2.0 * width; count];
+        weights[0] *= if count > 1 { 0.5 + first } else { 1.0 };
         Foundation {
             body: body.clone(),
             gaps,
-            weights: vec![2.0 * width; count],
+            weights,
             moved: vec![0.0; count],
             touched: vec![0.0; count],
             stresses: vec![vec![0.0; count]; body.terms.len()],
@@ -151,8 +154,9 @@ impl Foundation {
             [depth - touched, self.body.equilibrium * (depth - self.gaps[k]) + self.body.viscosity * rate]
         };
         let presses = |element: [f64; 2]| element[0] > 0.0 && element[1] > 0.0;
-        let first = at(0);
-        let mut force = if presses(first) { 0.5 * self.weights[0] * first[1] } else { 0.0 };
+        let mut force = 0.0;
+        // the gap is a power of the radius
+        let power = (self.gaps[2] / self.gaps[1]).log2();
         for k in 0..self.reached.min(self.gaps.len() - 1) {
             let [mut inner, mut outer] = [at(k), at(k + 1)];
             if !presses(inner) {
@@ -160,8 +164,9 @@ impl Foundation {
             }
             if presses(inner) {
                 let to = |j: usize| if outer[j] <= 0.0 { inner[j] / (inner[j] - outer[j]) } else { 1.0 };
-                let part = to(0).min(to(1));
-                force += self.weights[k] * part * (inner[1] + 0.5 * part * (outer[1] - inner[1]));
+                let of_overlap = if k == 0 { to(0).powf(1.0 / power) } else { to(0) };
+                let part = of_overlap.min(to(1));
+                force += self.weights[1] * part * (inner[1] + 0.5 * part * (outer[1] - inner[1]));
             }
         }
         force

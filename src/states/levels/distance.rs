@@ -10,9 +10,9 @@ const LASTING: i32 = 8;
 
 impl Levels {
     /// Depth and force of an undisturbed contact under the maximum load of a run, of the kind of the demand: under a force the depth
-    /// as soon as it acts or, without elastic response, under half of it when it has pressed for its spell; under an approach the
-    /// force at the end of the run or, without elastic response, that of the steepest load, which rises from nothing in a time of
-    /// its own. Times, of the run, the spell and the rise, are in steps like the last one.
+    /// as soon as it acts or, without elastic response, under half of it when it has pressed for its spell; under an approach
+    /// or a spring the force at the end of the run, or that of the steepest load where a body without elastic response is approached,
+    /// which rises from nothing in a time of its own. Times, of the run, the spell and the rise, are in steps like the last one.
     pub(in crate::states) fn expected(
         &self,
         states: &ElasticStates,
@@ -33,7 +33,7 @@ impl Levels {
                     [states.depth(level), stiffness * level]
                 };
                 let [depth, force] = pressed(most, run);
-                let at_rise = if rule.has_dashpot() { pressed(steepest, rise)[1] } else { 0.0 };
+                let at_rise = if rule.has_dashpot() && give == 0.0 { pressed(steepest, rise)[1] } else { 0.0 };
                 [depth, force.max(at_rise)]
             }
         }
