@@ -31,7 +31,8 @@ const AIM: f64 = 0.15;
 const AIM_OF_FORCE: f64 = 0.1;
 /// Further part of the aim for bodies without elastic response: nothing brings their level back.
 const AIM_OF_RATES: f64 = 0.25;
-/// Errors of the depth that add up over a spell of the load count so many times at most: the many short steps of an onset add little.
+/// Errors of the depth that add up over a spell of the load count so many times at most: the many
+/// short steps of an onset add little.
 const MOST_ADDED: f64 = 10.0;
 /// A step may have so many times the error that it aims at.
 const ALLOWED: f64 = 3.0;
@@ -99,8 +100,8 @@ pub(super) struct Record {
     least_load: f64,
     /// The longest time for which at least half of the greatest load acts.
     pressed: f64,
-    /// A load, and the time that it takes from nothing to there at its rate then, where a body without elastic response that is
-    /// approached resists most.
+    /// A load, and the time that it takes from nothing to there at its rate then, where a body
+    /// without elastic response that is approached resists most.
     rise: [f64; 2],
     pub(super) rejected: u64,
 }
@@ -235,7 +236,8 @@ impl StatesControl {
             let parts = report.force == 0.0 && contact.level() > 0.0;
             let lacks_order = is_first || self.record.touches || parts;
             let of_halves = if lacks_order { WITHOUT_ORDER } else { OF_HALVES };
-            // rates of a prescribed approach leave nothing behind; else errors of the depth last, and add up while the load presses
+            // rates of a prescribed approach leave nothing behind; else errors of the depth last,
+            // and add up while the load presses
             let is_approach = matches!(load_at(history, end)?, Load::Approach { .. });
             let lasting = match resists_rates_alone && !is_approach {
                 true => self.halves.levels.rates_last().min(2.0 * self.record.pressed / (end - now)),
@@ -291,8 +293,8 @@ impl StatesControl {
         )
     }
 
-    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth alone and in depth and force,
-    /// relative to values that are not small in this run.
+    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in
+    /// depth alone and in depth and force, relative to values that are not small in this run.
     fn compare(
         &mut self,
         contact: &StatesContact,

@@ -3,8 +3,8 @@
 use crate::error::UserError;
 use crate::load::{Load, LoadHistory};
 
-/// A history in which the bodies just touch where a load is positive, but below `least`: levels are powers of loads, and those of a
-/// pulse that begins at 1e-250 of its maximum underflow.
+/// A history in which the bodies just touch where a load is positive, but below `least`: levels are
+/// powers of loads, and those of a pulse that begins at 1e-250 of its maximum underflow.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rounded<'a> {
     pub(super) history: &'a dyn LoadHistory,

@@ -45,7 +45,8 @@ pub enum Drive {
 }
 
 impl Foundation {
-    /// So many elements within a radius, with the gap `gap` at each place; the first of a body with a dashpot is at the centre.
+    /// So many elements within a radius, with the gap `gap` at each place; the first of a body with
+    /// a dashpot is at the centre.
     pub fn new(body: &Relaxation, radius: f64, count: usize, gap: impl Fn(f64) -> f64) -> Foundation {
         let width = radius / count as f64;
         let first = if body.viscosity > 0.0 { 0.0 } else { 0.5 };
@@ -145,8 +146,8 @@ impl Foundation {
         (self.depth, self.force) = (depth, force);
     }
 
-    /// The force of elements with a dashpot at a depth that changes at this rate: linear between elements, up to the edges of the
-    /// contact between them.
+    /// The force of elements with a dashpot at a depth that changes at this rate: linear between
+    /// elements, up to the edges of the contact between them.
     fn resisting(&self, depth: f64, rate: f64) -> f64 {
         // overlap and stress of an element, if it touches
         let at = |k: usize| {

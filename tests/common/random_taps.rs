@@ -44,8 +44,8 @@ pub struct Taps {
 
 /// A run of the foundation.
 pub struct Marched {
-    /// Force and approach at the times asked for, `None` where steps to them are too short to be rounded well, and the maximum of
-    /// each in contact.
+    /// Force and approach at the times asked for, `None` where steps to them are too short to be
+    /// rounded well, and the maximum of each in contact.
     pub found: Vec<Option<[f64; 2]>>,
     pub greatest: [f64; 2],
     /// The part of the elements that were touched.
@@ -249,8 +249,9 @@ impl Taps {
         relative(0).max(relative(1)) / self.tolerance
     }
 
-    /// Errors of a run at some times in ascending order, in force and depth over the maximum of each, in tolerances; `None` where the
-    /// finest foundations still differ by half a tolerance at more than a few times.
+    /// Errors of a run at some times in ascending order, in force and depth over the maximum of
+    /// each, in tolerances; `None` where the finest foundations still differ by half a tolerance at
+    /// more than a few times.
     pub fn errors(&self, points: &[Point]) -> Option<Vec<f64>> {
         assert!(points.len() > 100 && points.is_sorted_by(|a, b| a.0 <= b.0), "{}: not a run", self.name);
         let times: Vec<f64> = points.iter().map(|point| point.0).collect();

@@ -89,8 +89,8 @@ fn taps_on_states_are_honest() {
     assert!(5 * unknown <= count, "{unknown} of {count} without a truth");
 }
 
-/// Smooth pulses that begin at 1e-300 of their maximum are followed in few steps: what comes before the first load that matters is
-/// no load. Forces at times of the run are those of fixed steps.
+/// Smooth pulses that begin at 1e-300 of their maximum are followed in few steps: what comes before
+/// the first load that matters is no load. Forces at times of the run are those of fixed steps.
 #[test]
 fn pulses_that_begin_at_next_to_nothing_are_followed() {
     let (scenes, tolerance, mut compared) = (from_environment("STATES_PULSES", 24), 1e-3, 0);

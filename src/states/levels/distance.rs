@@ -9,10 +9,12 @@ const SWEPT: f64 = 0.05;
 const LASTING: i32 = 8;
 
 impl Levels {
-    /// Depth and force of an undisturbed contact under the maximum load of a run, of the kind of the demand: under a force the depth
-    /// as soon as it acts or, without elastic response, under half of it when it has pressed for its spell; under an approach
-    /// or a spring the force at the end of the run, or that of the steepest load where a body without elastic response is approached,
-    /// which rises from nothing in a time of its own. Times, of the run, the spell and the rise, are in steps like the last one.
+    /// Depth and force of an undisturbed contact under the maximum load of a run, of the kind of
+    /// the demand: under a force the depth as soon as it acts or, without elastic response, under
+    /// half of it when it has pressed for its spell; under an approach or a spring the force at the
+    /// end of the run, or that of the steepest load where a body without elastic response is
+    /// approached, which rises from nothing in a time of its own. Times, of the run, the spell and
+    /// the rise, are in steps like the last one.
     pub(in crate::states) fn expected(
         &self,
         states: &ElasticStates,
