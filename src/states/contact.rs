@@ -115,13 +115,12 @@ impl StatesContact {
         self
     }
 
-    /// With groups of levels that merge where this changes force and depth by at most about
-    /// `error`, relative to what they are: 1e-6 unless set. The contact area errs ten times as
-    /// much. A long run on a solid has at most about 2.5/√`error` groups, whatever the number of
-    /// its steps and relaxation times: a contact law in a loop is faster with 1e-4. Fluids keep the
-    /// imprints of all loads: up to 6 times as many groups were counted on them. Runs with
-    /// [`Stepping::adaptive`](crate::run::Stepping::adaptive) take a hundredth of their tolerance
-    /// instead; 0 merges only groups with the same past.
+    /// With groups of levels that merge where this changes force and depth by at most about `error`, relative to what
+    /// they are: 1e-6 unless set. The contact area errs ten times as much. A long run on a solid has at most about
+    /// 2.5/√`error` groups, whatever the number of its steps and relaxation times, and a contact law in a loop is
+    /// faster with 1e-4; on fluids, which keep all imprints, up to 6 times as many were counted. Runs with
+    /// [`Stepping::adaptive`](crate::run::Stepping::adaptive) take a hundredth of their tolerance instead; 0 merges
+    /// only groups with the same past.
     ///
     /// ```
     /// use viscocontact::prelude::*;
