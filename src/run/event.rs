@@ -1,6 +1,6 @@
 //! A quantity of the contact that crosses a value.
 
-use crate::error::{Result, finite};
+use crate::error::{Error, Result, finite};
 
 /// Differences to the value below this part of the greatest one so far count as none, just after an event.
 const NOISE: f64 = 1e-6;
@@ -82,8 +82,13 @@ impl<C> Event<C> {
     }
 
     /// How far the quantity of a contact is beyond the value.
-    pub(super) fn beyond(&self, contact: &C) -> f64 {
-        self.crossing.beyond((self.quantity)(contact))
+    pub(super) fn beyond(&self, contact: &C) -> Result<f64> {
+        let quantity = (self.quantity)(contact);
+        if quantity.is_nan() {
+            let allowed = "a number in every state of the run, so return one for bodies that are apart as well";
+            return Err(Error::OutOfRange { field: "quantity of Run::stop_when", value: quantity, allowed });
+        }
+        Ok(self.crossing.beyond(quantity))
     }
 
     /// Begins a step.
@@ -94,7 +99,8 @@ impl<C> Event<C> {
     /// Follows the quantity through a step, looked at so many times, from its start to its end. Returns the number of the first look at
     /// which it has crossed.
     pub(super) fn follow(&mut self, beyond: &[f64]) -> Option<usize> {
-        self.greatest = beyond.iter().fold(self.greatest, |most, beyond| most.max(beyond.abs()));
+        let finite = beyond.iter().map(|beyond| beyond.abs()).filter(|beyond| beyond.is_finite());
+        self.greatest = finite.fold(self.greatest, f64::max);
         self.next = self.side.or_else(|| self.side_after(None, 0.0, beyond[0]));
         (1..beyond.len()).find(|&k| {
             self.next = self.side_after(self.next, beyond[k - 1], beyond[k]);

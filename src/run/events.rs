@@ -28,8 +28,9 @@ struct Look {
 }
 
 impl Look {
-    fn of<C: RunContact>(events: &[Event<C>], contact: &C) -> Look {
-        Look { time: contact.time(), beyond: events.iter().map(|event| event.beyond(contact)).collect() }
+    fn of<C: RunContact>(events: &[Event<C>], contact: &C) -> Result<Look> {
+        let beyond = events.iter().map(|event| event.beyond(contact)).collect::<Result<_>>()?;
+        Ok(Look { time: contact.time(), beyond })
     }
 }
 
@@ -65,7 +66,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// quantity must be the same on all of them.
     ///
     /// # Errors
-    /// If the value is not finite.
+    /// If the value is not finite. [`Run::next_step`] fails, and takes no step, where the quantity is not a number.
     pub fn stop_when(
         mut self,
         quantity: impl Fn(&C) -> f64 + Send + Sync + 'static,
@@ -115,7 +116,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             let beyond: Vec<f64> = looks.iter().map(|look| look.beyond[k]).collect();
             let Some(after) = event.follow(&beyond).filter(|_| searches) else { continue };
             let ends = [after - 1, after].map(|look| (looks[look].time, beyond[look]));
-            let time = crossing_within(ends, same, |time| Ok(event.beyond(&self.sample_within_step(time)?.0)))?;
+            let time = crossing_within(ends, same, |time| event.beyond(&self.sample_within_step(time)?.0))?;
             if time <= to - same && first.is_none_or(|(_, earlier)| time < earlier) {
                 first = Some((k, time));
             }
@@ -125,9 +126,9 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Looks within the last step, from its start to its end.
     fn looks(&self, events: &[Event<C>], start: &C) -> Result<Vec<Look>> {
-        let (mut looks, end) = (vec![Look::of(events, start)], Look::of(events, self.contact()));
+        let (mut looks, end) = (vec![Look::of(events, start)?], Look::of(events, self.contact())?);
         for turn in turns(&self.histories, start.time(), end.time) {
-            let turn = Look::of(events, &self.sample_within_step(turn)?.0);
+            let turn = Look::of(events, &self.sample_within_step(turn)?.0)?;
             self.look_until(events, &mut looks, turn, 0)?;
         }
         self.look_until(events, &mut looks, end, 0)?;
@@ -141,7 +142,7 @@ impl<'a, C: RunContact> Run<'a, C> {
             looks.push(end);
             return Ok(());
         }
-        let middle = Look::of(events, &self.sample_within_step(time)?.0);
+        let middle = Look::of(events, &self.sample_within_step(time)?.0)?;
         let ends = [&looks[looks.len() - 1], &middle, &end];
         let hides = (0..events.len()).any(|k| hides_crossings(ends.map(|look| look.beyond[k])));
         let halved = if hides { halved + 1 } else { HALVINGS };

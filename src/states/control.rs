@@ -12,6 +12,7 @@ use crate::run::driven::Course;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
 use crate::states::passage::{Passage, Span};
+use crate::states::rounded::Rounded;
 
 /// First step after a jump or a corner, over the time to the next one.
 const FIRST_STEP: f64 = 1e-4;
@@ -50,6 +51,8 @@ const OVERSHOOT: f64 = 0.01;
 const SHALLOW: f64 = 0.3;
 /// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run will make of them.
 const EXPECTED: f64 = 0.1;
+/// Depths and forces below this part of their maximum count as if they were as large.
+const SMALL: f64 = 0.1;
 /// Groups of levels merge with this share of the tolerance.
 const MERGING: f64 = 0.01;
 
@@ -90,8 +93,13 @@ pub(super) struct Record {
     /// Times and loads at equal parts of the run, and the greatest of them.
     loads: Vec<(f64, f64)>,
     greatest_load: f64,
+    /// Loads below this one are lost in rounding.
+    least_load: f64,
     /// The longest time for which at least half of the greatest load acts.
     pressed: f64,
+    /// A load, and the time that it takes from nothing to there at its rate then, where a body
+    /// without elastic response that is approached resists most.
+    rise: [f64; 2],
     pub(super) rejected: u64,
 }
 
@@ -110,7 +118,9 @@ impl Record {
             greatest: [0.0; 2],
             loads,
             greatest_load: 0.0,
+            least_load: 0.0,
             pressed: 0.0,
+            rise: [0.0; 2],
             rejected: 0,
         }
     }
@@ -118,7 +128,9 @@ impl Record {
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
-        let sizes = [self.until, self.next, self.greatest[0], self.greatest[1], self.greatest_load, self.pressed];
+        let [[load, rise], [depth, force]] = [self.rise, self.greatest];
+        let sizes =
+            [self.until, self.next, depth, force, self.greatest_load, self.least_load, self.pressed, load, rise];
         let times = self.loads.iter().flat_map(|(time, load)| [*time, *load]);
         sizes.iter().all(|&size| size >= 0.0) && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
@@ -126,22 +138,48 @@ impl Record {
     /// Looks at the load at equal parts of the run, which fails where there is none. A load that the states have no demand for fails the step to it.
     fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) -> Result<()> {
         let (start, length) = (contact.time(), self.until - contact.time());
+        let mut presses = false;
         for k in 0..=PARTS_OF_RUN {
             let time = start + length * f64::from(k) / f64::from(PARTS_OF_RUN);
             let load = history.checked_at(time, false).inspect_err(|_| self.loads.clear())?;
-            self.by_force &= load.is_force();
+            (self.by_force, presses) = (self.by_force && load.is_force(), presses || load.is_force());
             self.loads.extend(value(contact, load).ok().map(|load| (time, load)));
         }
         self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
+        // of forces or of depths
+        self.least_load = if presses == self.by_force { f64::EPSILON * self.greatest_load } else { 0.0 };
         // a body without elastic response has no depth as soon as the load acts
         let spells = self.loads.split(|load| load.1 < 0.5 * self.greatest_load);
         let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));
         self.pressed = lengths.fold(length / f64::from(PARTS_OF_RUN), f64::max);
+        let lost = self.loads.iter_mut().filter(|load| 0.0 < load.1 && load.1 < self.least_load);
+        lost.for_each(|load| load.1 = 0.0);
+        // it resists by the rate of its level, about the square of the load
+        let rises = self.loads.windows(2).filter(|pair| pair[1].1 > pair[0].1.max(0.0)).map(|pair| {
+            let [(start, before), (end, load)] = [pair[0], pair[1]];
+            [load, load * (end - start) / (load - before.max(0.0))]
+        });
+        let resists = |[load, rise]: &[f64; 2]| load * load / rise;
+        let steepest = rises.max_by(|a, b| resists(a).total_cmp(&resists(b)));
+        self.rise = steepest.unwrap_or([self.greatest_load.max(0.0), length]);
         Ok(())
     }
 }
 
 impl StatesControl {
+    /// The history that adaptive steps follow, which is looked at before the first of them.
+    pub(super) fn rounded<'a>(&mut self, contact: &StatesContact, history: &'a dyn LoadHistory) -> Result<Rounded<'a>> {
+        if self.record.tolerance > 0.0 && self.record.loads.is_empty() {
+            self.record.sample(contact, history)?;
+        }
+        Ok(self.of_record(contact, history))
+    }
+
+    /// The same after the first step.
+    pub(super) fn of_record<'a>(&self, contact: &StatesContact, history: &'a dyn LoadHistory) -> Rounded<'a> {
+        Rounded { history, rest: contact.states.rest.approach, least: self.record.least_load }
+    }
+
     pub(super) fn new(contact: &StatesContact, record: Record) -> StatesControl {
         let [before, middle] = [contact.clone(), contact.clone().with_quadratic_steps()];
         let (whole, halves, passage) = (middle.clone(), middle.clone(), Passage::new(PARTS_OF_RUN as usize + 1));
@@ -152,15 +190,12 @@ impl StatesControl {
     pub(super) fn step(
         &mut self,
         contact: &mut StatesContact,
-        &Course { histories, stop, corner, .. }: &Course<'_>,
+        history: &dyn LoadHistory,
+        &Course { stop, corner, .. }: &Course<'_>,
     ) -> Result<StepReport> {
         let (now, is_first, tolerance) = (contact.time(), self.record.next == 0.0, self.record.tolerance);
-        let history = histories.first();
         if stop - now <= 2.0 * SHORTEST * stop {
             return contact.step_to(stop, stop - now, load_at(history, stop)?);
-        }
-        if self.record.loads.is_empty() {
-            self.record.sample(contact, history)?;
         }
         if is_first {
             self.record.corner = now;
@@ -278,14 +313,18 @@ impl StatesControl {
             of_surface[1] = 0.0;
         }
         let demand = contact.demand(load_at(history, end)?)?;
-        let Record { until, pressed, greatest_load, .. } = self.record;
-        let expected = halves.levels.expected(&halves.states, demand, greatest_load, until / half, pressed / half);
+        let Record { until, pressed, greatest_load, rise, .. } = self.record;
+        let times = [until, pressed, rise[1]].map(|time| time / half);
+        let expected = halves.levels.expected(&halves.states, demand, [greatest_load, rise[0]], times);
         let greatest = self.greatest_with(report.force);
         let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
         let StatesControl { whole, halves, middle, .. } = self;
         let results = |contact: &StatesContact| [contact.depth(), contact.force()];
         let ended = [&*whole, &*halves].map(results);
-        let scales = [0, 1].map(|k| f64::abs(ended[1][k]).max(0.1 * greatest[k]));
+        // rates of a prescribed approach resist at once, and leave nothing behind
+        let is_local = halves.levels.has_dashpot() && matches!(load_at(history, end)?, Load::Approach { .. });
+        let small = [SMALL, if is_local { 1.0 } else { SMALL }];
+        let scales = [0, 1].map(|k| f64::abs(ended[1][k]).max(small[k] * greatest[k]));
         let mut worst = 0.0f64;
         let mut see = |differences: [f64; 2], scales: [f64; 2]| {
             for (difference, scale) in differences.into_iter().zip(scales).filter(|(_, scale)| *scale > 0.0) {

@@ -52,6 +52,7 @@ mod passage;
 mod pressed;
 mod reach;
 mod repeated;
+mod rounded;
 mod run;
 mod run_fields;
 #[cfg(feature = "checkpoint")]

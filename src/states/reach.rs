@@ -11,9 +11,8 @@ use crate::run::Stepping;
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 
-/// Number of even parts of a run at whose ends the load is sampled, and most corners of the load sampled.
+/// Number of even parts of a run at whose ends the load is sampled.
 const PARTS: u32 = 4096;
-const MAX_CORNERS: usize = 1000;
 /// Number of even parts of a run at whose ends its level is sampled, and the tolerance of its steps.
 const LEVELS: u32 = 1024;
 const TOLERANCE: f64 = 1e-4;
@@ -40,7 +39,7 @@ impl Reach {
     /// Under forces that is the greatest level of the run, which does not depend on the shape, and under approaches the greatest approach.
     /// Springs, and histories of several kinds of load, take the greatest load of each kind on an elastic body of the last contact
     /// compliance. A spring, or a force among other loads, may need more than that; a step beyond the sweep is refused then. Loads are
-    /// sampled at 4097 even times and at both sides of the corners.
+    /// sampled at 4097 even times and at both sides of all corners.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -106,7 +105,7 @@ impl Loading<'_> {
             let time = start + (until - start) * f64::from(k) / f64::from(parts);
             all.push(history.checked_at(time, false)?);
         }
-        for corner in history.breakpoints(start).take(MAX_CORNERS).take_while(|&next| next <= until) {
+        for corner in history.breakpoints(start).take_while(|&next| next <= until) {
             all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
         }
         Ok(all)

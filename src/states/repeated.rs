@@ -36,6 +36,8 @@ pub(crate) struct Repeated {
     pub(super) accuracy: f64,
     /// Ends of steps that resolve the load, and what the bodies do under it.
     schedule: Vec<f64>,
+    /// Times, and the maximum force until then: times far on leave out steps near the start.
+    forces: Vec<(f64, f64)>,
     /// The part by which steps before a time are shorter than the one before.
     shortening: f64,
 }
@@ -50,7 +52,7 @@ pub(crate) struct Found {
 impl Repeated {
     /// Before the run is known.
     pub(super) fn unknown(origin: StatesContact, accuracy: f64) -> Repeated {
-        Repeated { origin, accuracy, schedule: Vec::new(), shortening: accuracy.sqrt() }
+        Repeated { origin, accuracy, schedule: Vec::new(), forces: Vec::new(), shortening: accuracy.sqrt() }
     }
 
     /// A run from `origin`; and its greatest level.
@@ -61,10 +63,13 @@ impl Repeated {
         accuracy: f64,
     ) -> Result<(Repeated, f64)> {
         let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
+        let (mut force, mut forces) = (0.0_f64, Vec::new());
         let mut run = contact.follow(history, Stepping::adaptive(COARSE), until);
         while let Some(report) = run.next_step()? {
             greatest = greatest.max(run.contact().level());
             ends.push(report.time);
+            force = force.max(report.force);
+            forces.push((report.time, force));
         }
         drop(run);
         let mut by_force = true;
@@ -76,7 +81,7 @@ impl Repeated {
         let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
         let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
-        Ok((Repeated { origin, accuracy, schedule, shortening: accuracy.sqrt() }, greatest))
+        Ok((Repeated { origin, accuracy, schedule, forces, shortening: accuracy.sqrt() }, greatest))
     }
 
     /// The run on other elastic states of the same surface.
@@ -131,7 +136,9 @@ impl Repeated {
     /// The contact at a time, by steps with these ends.
     fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<Found> {
         let mut contact = self.origin.clone();
-        let (start, mut force) = (contact.time(), 0.0_f64);
+        let start = contact.time();
+        let seen = self.forces.partition_point(|(end, _)| *end < time || after && *end == time);
+        let mut force = seen.checked_sub(1).map_or(0.0, |k| self.forces[k].1);
         let mut corner = history.next_breakpoint(start);
         let jump = |contact: &mut StatesContact, time: f64| {
             match contact.step_to(time, 0.0, history.checked_at(time, false)?) {

@@ -92,9 +92,10 @@ impl Driven for StatesContact {
             return Err(Error::Cancelled { what: "a step" });
         }
         control.before.copy_from(self);
+        let rounded = control.rounded(self, course.histories.first())?;
         let report = match course.given {
-            Some((time, &[load, ..])) => self.step_to(time, time - self.time(), load)?,
-            _ => control.step(self, course)?,
+            Some((time, &[load, ..])) => self.step_to(time, time - self.time(), rounded.round(load))?,
+            _ => control.step(self, &rounded, course)?,
         };
         control.halved = course.given.is_none();
         control.record.load = match course.given {
@@ -113,6 +114,7 @@ impl Driven for StatesContact {
     fn within(&self, control: &StatesControl, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)> {
         let history = histories.first();
         let (start, end) = (control.before.time(), self.time());
+        let history: &dyn LoadHistory = &control.of_record(self, history);
         within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
         let mut contact = if time == end { self.clone() } else { control.before.clone() };
         // an adaptive step is taken in two halves

@@ -28,6 +28,8 @@ struct Saved<'a> {
     interpolant: Interpolant,
     /// Time, reduced time, and the reduced time until which the bodies were undisturbed.
     times: [f64; 3],
+    /// Approach that the last step prescribed.
+    prescribed: Option<f64>,
     levels: Cow<'a, Levels>,
     run: Option<SavedRun>,
 }
@@ -54,7 +56,8 @@ impl StatesContact {
     pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun>) -> Result<()> {
         let (kind, states, interpolant) = (Cow::Borrowed(KIND), self.fingerprint(), self.scene.interpolant);
         let times = [self.time, self.reduced_time, self.undisturbed_until];
-        let saved = Saved { kind, states, interpolant, times, levels: Cow::Borrowed(&self.levels), run };
+        let (prescribed, levels) = (self.prescribed, Cow::Borrowed(&self.levels));
+        let saved = Saved { kind, states, interpolant, times, prescribed, levels, run };
         replace(path, |out| {
             let mut out = Output::begin(out)?;
             postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
@@ -75,7 +78,7 @@ impl StatesContact {
         let path = path.as_ref();
         let saved = self.read(path).map_err(|cause| Error::Checkpoint { path: path.to_owned(), cause })?;
         [self.time, self.reduced_time, self.undisturbed_until] = saved.times;
-        self.levels = saved.levels.into_owned();
+        (self.prescribed, self.levels) = (saved.prescribed, saved.levels.into_owned());
         self.saved_run = saved.run.map(|run| Arc::new(run) as _);
         Ok(())
     }
@@ -106,6 +109,7 @@ impl StatesContact {
         if undisturbed_until > reduced
             || !saved.levels.fits(&self.levels)
             || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0)
+            || saved.prescribed.is_some_and(|approach| !approach.is_finite())
         {
             return malformed("levels that no contact has");
         }

@@ -7,6 +7,7 @@ pub mod draws;
 pub mod environment;
 #[path = "../../examples/support/figures.rs"]
 pub mod figures;
+pub mod foundation;
 pub mod gauss;
 pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
@@ -24,6 +25,7 @@ pub mod quadratic;
 pub mod random_bodies;
 pub mod random_histories;
 pub mod random_returns;
+pub mod random_taps;
 pub mod ratios;
 pub mod refused;
 #[path = "../../examples/support/scenes/rolling.rs"]

@@ -20,5 +20,6 @@ mod states_merging;
 mod states_outside;
 mod states_population;
 mod taps_in_space;
+mod taps_on_states;
 mod temperature;
 mod time_rules;

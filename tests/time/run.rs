@@ -118,6 +118,28 @@ behaviours! {
         assert!(matches!(error, Error::Load(LoadError::OutOfRange { .. })), "{error}");
     }
 
+    quantities_that_are_no_number_end_the_run: kind, C => {
+        for (number, stepping) in STEPPINGS.into_iter().cycle().take(8).enumerate() {
+            let mut draws = Draws::new(number as u64 + 71_600_000);
+            let (load, last) = (Sinusoid::about(Load::force(0.3), 0.2, 0.7).unwrap(), draws.between(0.1, 1.9));
+            let mut run = kind.run(load, stepping, 2.0);
+            // infinite before the load acts, which is allowed
+            let quantity = move |contact: &C| if contact.time() > last { f64::NAN } else { 1.0 / contact.force() };
+            run = run.stop_when(quantity, Crossing::Up(1e9)).unwrap();
+            let mut state = [0.0; 3];
+            let error = loop {
+                match run.next_step() {
+                    Ok(report) => state = report.map(|report| [report.time, report.force, report.approach]).unwrap(),
+                    Err(error) => break error,
+                }
+            };
+            assert!(matches!(error, Error::OutOfRange { field: "quantity of Run::stop_when", .. }), "{error}");
+            let contact = run.contact();
+            assert_eq!([contact.time(), contact.force(), contact.approach()], state);
+            assert!(state[0] <= last, "a step to {} has passed {last}", state[0]);
+        }
+    }
+
     times_of_every_kind_are_met: kind, C => {
         let times = || Times::decades(1e-2, 3).and(Times::every(0.5)).and([0.77, 9.0]);
         let mut expected: Vec<f64> = (0..9).map(|k| 1e-2 * 10f64.powf(f64::from(k) / 3.0)).collect();

@@ -351,3 +351,23 @@ fn free_tilts_under_no_force_are_the_limit_of_small_forces() {
     }
     assert!(compared >= 2 && tilted == compared, "{compared} {tilted}");
 }
+
+/// Tables of thousands of rows whose highest peak is narrower than the samples of a run: a sweep reaches to it.
+#[test]
+fn sweeps_reach_the_tops_of_long_tables() {
+    for number in 0..20 {
+        let draws = &mut Draws::new(number + 71_700_000);
+        let (count, depth) = (1100 + draws.below(4000), draws.power_of_ten(-6.0, -4.0));
+        let highest = draws.below(count);
+        let mut rows = Vec::new();
+        for k in 0..count {
+            let part = if k == highest { 1.0 } else { draws.between(0.0, 0.5) };
+            let time = k as f64 + draws.between(0.1, 0.9);
+            rows.extend([(time - 1e-4, 0.0), (time, part * depth), (time + 1e-4, 0.0)]);
+        }
+        let rows: Vec<_> = rows.into_iter().map(|(time, approach)| (time, Load::approach(approach))).collect();
+        let history = PiecewiseLinear::new(&rows).unwrap();
+        let Reach::Loads(loads) = Reach::of(&zener(1e6), &history, count as f64).unwrap() else { panic!("no loads") };
+        assert!(loads.contains(&Load::approach(depth)), "{number}: {loads:?} for {depth}");
+    }
+}

@@ -9,27 +9,34 @@ const SWEPT: f64 = 0.05;
 const LASTING: i32 = 8;
 
 impl Levels {
-    /// Depth and force of an undisturbed contact under a load of this kind and size, for the length of the run and of the longest spell of the
-    /// load, both in steps like the last one: the depth under a force as soon as it acts, or, without elastic response, under half of it
-    /// when it has pressed for its spell; the force of a given approach at the end of the run.
+    /// Depth and force of an undisturbed contact under the maximum load of a run, of the kind of
+    /// the demand: under a force the depth as soon as it acts or, without elastic response, under
+    /// half of it when it has pressed for its spell; under an approach or a spring the force at the
+    /// end of the run, or that of the steepest load where a body without elastic response is
+    /// approached, which rises from nothing in a time of its own. Times, of the run, the spell and
+    /// the rise, are in steps like the last one.
     pub(in crate::states) fn expected(
         &self,
         states: &ElasticStates,
         demand: Demand,
-        size: f64,
-        run: f64,
-        spell: f64,
+        [most, steepest]: [f64; 2],
+        [run, spell, rise]: [f64; 3],
     ) -> [f64; 2] {
         let rule = self.history.rule();
         match demand {
             Demand::Force(_) => {
                 let soon = if rule.has_dashpot() { 0.5 / self.history.stiffness_over(spell) } else { 0.0 };
-                [states.depth(size * soon.max(rule.compliance())), size]
+                [states.depth(most * soon.max(rule.compliance())), most]
             }
             Demand::Depth { give, .. } => {
-                let stiffness = self.history.stiffness_over(run);
-                let level = states.level_where(give * stiffness, size);
-                [states.depth(level), stiffness * level]
+                let pressed = |load: f64, time: f64| {
+                    let stiffness = self.history.stiffness_over(time);
+                    let level = states.level_where(give * stiffness, load);
+                    [states.depth(level), stiffness * level]
+                };
+                let [depth, force] = pressed(most, run);
+                let at_rise = if rule.has_dashpot() && give == 0.0 { pressed(steepest, rise)[1] } else { 0.0 };
+                [depth, force.max(at_rise)]
             }
         }
     }

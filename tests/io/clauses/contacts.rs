@@ -149,7 +149,7 @@ pub fn rows(t: &mut Table) {
     pressed().save(&path).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     for (change, says) in [
-        (8, "…: the checkpoint is of format 114, this version reads format…"),
+        (8, "…: the checkpoint is of format 113, this version reads format…"),
         (bytes.len() - 3, "…: the checkpoint is damaged: its checksum is …, but should be …"),
     ] {
         let mut changed = bytes.clone();

@@ -1,0 +1,45 @@
+//! A load history without the loads that are lost in the rounding of a run.
+
+use crate::error::UserError;
+use crate::load::{Load, LoadHistory};
+
+/// A history in which the bodies just touch where a load is positive, but below `least`: levels are
+/// powers of loads, and those of a pulse that begins at 1e-250 of its maximum underflow.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rounded<'a> {
+    pub(super) history: &'a dyn LoadHistory,
+    /// Approach at which the undisturbed bodies touch.
+    pub(super) rest: f64,
+    pub(super) least: f64,
+}
+
+impl Rounded<'_> {
+    pub(super) fn round(&self, mut load: Load) -> Load {
+        let (value, touch) = match &mut load {
+            Load::Force { normal, .. } => (normal, 0.0),
+            Load::Approach { approach: value, .. } | Load::Spring { drive: value, .. } => (value, self.rest),
+        };
+        if *value > touch && *value - touch < self.least {
+            *value = touch;
+        }
+        load
+    }
+}
+
+impl LoadHistory for Rounded<'_> {
+    fn at(&self, t: f64) -> Load {
+        self.round(self.history.at(t))
+    }
+
+    fn before(&self, t: f64) -> Load {
+        self.round(self.history.before(t))
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        self.history.next_breakpoint(after)
+    }
+
+    fn failure(&self) -> Option<UserError> {
+        self.history.failure()
+    }
+}
