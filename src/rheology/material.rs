@@ -290,11 +290,9 @@ impl Material {
     /// As [`Rheology::series`].
     pub fn fitted(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<Material> {
         let fit = |body: &Body| {
-            if body.rheology.creep_spectrum().is_some() {
-                return Ok(body.clone());
-            }
-            let series = body.rheology.series(times.clone(), tolerance)?;
-            Ok(Body { rheology: Arc::new(series), ..body.clone() })
+            let is_exact = body.rheology.creep_spectrum().is_some();
+            let series = || Ok(Arc::new(body.rheology.series(times.clone(), tolerance)?));
+            if is_exact { Ok(body.clone()) } else { Ok(Body { rheology: series()?, ..body.clone() }) }
         };
         Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
     }
@@ -337,13 +335,6 @@ impl Material {
         let (value, previous) =
             self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
         Err(self.failure().map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
-    }
-
-    /// Whether the body on the other side than the creeping one creeps, too.
-    pub(crate) fn counter_creeps(&self) -> Result<bool> {
-        let creeps = |own: &CreepSpectrum| own.fluidity() > 0.0 || !own.terms().is_empty();
-        let mut others = self.bodies.iter().skip(1).map(Body::contact_spectrum);
-        others.try_fold(false, |any, own| Ok(any | own?.as_ref().is_none_or(creeps)))
     }
 
     /// The same without the other body, and the other one alone.

@@ -154,7 +154,9 @@ impl Builder {
                 Creep::Series(CreepSpectrum::new(glassy, own_creep.fluidity(), own_creep.terms())?)
             }
             (None, motion) => {
-                let unknown = motion.is_none() && material.counter_creeps()?;
+                let [_, counter] = material.apart();
+                let creeps = |own: CreepSpectrum| own.fluidity() > 0.0 || !own.terms().is_empty();
+                let unknown = pair && motion.is_none() && counter.contact_spectrum()?.is_none_or(creeps);
                 coverage::COUNTER_BODY.unless(|_| unknown)?;
                 series(material)?
             }
