@@ -291,8 +291,8 @@ impl Material {
     pub fn fitted(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<Material> {
         let fit = |body: &Body| {
             let is_exact = body.rheology.creep_spectrum().is_some();
-            let series = || Ok(Arc::new(body.rheology.series(times.clone(), tolerance)?));
-            if is_exact { Ok(body.clone()) } else { Ok(Body { rheology: series()?, ..body.clone() }) }
+            let series = || body.rheology.series(times.clone(), tolerance);
+            Ok(if is_exact { body.clone() } else { Body { rheology: Arc::new(series()?), ..body.clone() } })
         };
         Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
     }
@@ -330,7 +330,6 @@ impl Material {
         if may_follow(value, younger) {
             return Ok(value);
         }
-        // report the J that decreases
         let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
         let (value, previous) =
             self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
