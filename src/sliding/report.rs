@@ -60,7 +60,7 @@ impl SlidingReport {
     /// let rows: Vec<_> = (-4..=8).map(|k| row(10_f64.powf(0.25 * f64::from(k)))).collect();
     /// let rubber = Material::incompressible(Measurements::dynamic(&rows)?.fit()?);
     /// let grid = Grid::square(64, 1.0e-3)?;
-    /// let shape = Wavy::new([1.0e-6; 2], [1.0e-3; 2])?;
+    /// let shape = Wavy::new(1.0e-6, 1.0e-3)?;
     /// let mut sliding = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&shape)
     ///     .material(rubber)

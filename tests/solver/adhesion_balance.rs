@@ -240,7 +240,7 @@ fn pull_off(contact: &ViscoelasticContact, speed: f64, way: f64, tolerance: f64,
 #[test]
 fn fast_pull_offs_are_balanced_or_warn() {
     let (mut warned, mut worst, mut crossed) = (0, [0.0_f64; 3], 0);
-    let count = from_environment("PULL_OFFS", 3);
+    let count = from_environment("PULL_OFFS", 4);
     for number in 0..count {
         let mut draws = Draws::new(77_000 * from_environment("ADHESION_SEED", 1) + number);
         let moduli = [(60.0e3 * draws.scale(0.3, 1.5), draws.scale(0.3, 3.0)), (20.0e3, draws.scale(0.03, 0.3))];
@@ -270,7 +270,7 @@ fn fast_pull_offs_are_balanced_or_warn() {
     }
     println!("{warned} of {count} warned, {crossed} in fewer than 20 steps; the others off by at most {worst:.3?}");
     assert!(
-        crossed > 0 && 4 * warned <= count && worst[0] < 0.05 && worst[1] < 0.1 && worst[2] < 0.01,
+        crossed > 0 && 2 * warned <= count && worst[0] < 0.02 && worst[1] < 0.02 && worst[2] < 0.01,
         "{warned} {worst:?}"
     );
 }
