@@ -254,9 +254,10 @@ impl StepControl {
         time: f64,
         counts: impl Fn(&Track) -> bool,
     ) -> Result<f64> {
-        let bodies = self.tracks.iter().zip(histories.each()).filter(|(track, _)| counts(track));
-        let strays = bodies.map(|(track, history)| track.straying(scene, state, history, time, self.tolerance));
-        strays.fold(Ok(0.0), |most, own| Ok(most?.max(own?)))
+        let mut bodies = self.tracks.iter().zip(histories.each()).filter(|(track, _)| counts(track));
+        bodies.try_fold(0.0_f64, |most, (track, history)| {
+            Ok(most.max(track.straying(scene, state, history, time, self.tolerance)?))
+        })
     }
 
     /// The first time between `now` and `stop` at which undisturbed bodies touch, as [`RunScale::first_touch`].
