@@ -37,7 +37,7 @@ use bodies::Bodies;
 use contact_problem::{Found, Problem};
 use operator::MovingBodies;
 
-/// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`].
+/// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`](crate::contact::Builder::build_sliding).
 ///
 /// ```
 /// use viscocontact::prelude::*;
