@@ -235,6 +235,9 @@ impl ElasticStates {
     ) -> PyResult<Array<'py>> {
         let (history, times) = (history(load)?, column("times", times)?);
         let until = *times.last().ok_or_else(|| PyTypeError::new_err("times: at least one is needed"))?;
+        if !times.is_sorted_by(|one, next| one < next) {
+            return Err(pyo3::exceptions::PyValueError::new_err("times: they must ascend, each once"));
+        }
         let mut values = Vec::with_capacity(3 * materials.len() * times.len());
         for material in &materials {
             let material = &material.get().material;
@@ -249,11 +252,7 @@ impl ElasticStates {
             });
             let rows = rows.or_raise()?;
             if rows.len() != times.len() {
-                let text = format!(
-                    "times: they must ascend, each once, after 0: {} of {} were passed",
-                    rows.len(),
-                    times.len()
-                );
+                let text = format!("times: they must lie after 0: {} of {} were passed", rows.len(), times.len());
                 return Err(pyo3::exceptions::PyValueError::new_err(text));
             }
             values.extend(rows.iter().flat_map(|row| &row[1..]));
