@@ -1,21 +1,21 @@
-//! The greatest value of a quantity within a step.
+//! The maximum of a quantity within a step.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, finite};
 use crate::run::RunContact;
 use crate::run::follow::Run;
 
 /// Equal parts of a step at whose ends a quantity is looked at, ...
 const PARTS: usize = 8;
-/// ... and halvings of the parts beside the greatest value: the peak of a pull-off is a thousandth of a long step.
+/// ... and halvings of the parts beside the maximum: the peak of a pull-off is a thousandth of a long step.
 const HALVINGS: usize = 12;
-/// The greatest value is found to this part of the range of the quantity in the step.
+/// The maximum is found to this part of the range of the quantity in the step.
 const ACCURACY: f64 = 1e-3;
 
 impl<C: RunContact> Run<'_, C> {
-    /// The greatest value of a quantity within the last step, and its time \[s\]; pass the negative for the least. Adaptive steps
+    /// The time \[s\] of the maximum of a quantity within the last step, and the maximum; pass the negative for the minimum. Adaptive steps
     /// are as long as approach or force at their *ends* allow: the greatest pull of a pull-off, the peak of a pressure mostly lie within one.
     ///
-    /// The quantity is looked at at eight equal parts of the step, and beside the greatest value twice as often until it changes by less than a
+    /// The quantity is looked at at eight equal parts of the step, and beside the maximum twice as often until it changes by less than a
     /// thousandth of its range in the step. Each look costs a contact problem and a copy of the contact, as a
     /// [sample](Run::within_step) does. A peak is missed where it lies between two looks that do not show it.
     ///
@@ -45,12 +45,7 @@ impl<C: RunContact> Run<'_, C> {
         let end = self.contact.time();
         let look = |time: f64| {
             let value = if time == end { quantity(&self.contact) } else { quantity(&self.sample_within_step(time)?.0) };
-            let allowed = "finite at all times of the step";
-            if value.is_finite() {
-                Ok((time, value))
-            } else {
-                Err(Error::OutOfRange { field: "quantity within a step", value, allowed })
-            }
+            Ok((time, finite("quantity within a step", value)?))
         };
         let Some((start, report)) = self.last.filter(|(_, report)| report.dt > 0.0) else { return look(end) };
         let length = report.time - start;

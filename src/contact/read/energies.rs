@@ -164,8 +164,8 @@ impl EnergyBalance {
         Ok(self.energies)
     }
 
-    /// Takes in a step of length `dt`, if its work is not known in halves, and halves of halves, so many times.
-    /// From the contact `before` it, which the contact itself may know.
+    /// Takes in a step of length `dt` from the contact `before` it, which the contact itself may know: if its work is not known, or its
+    /// balance is off, in halves, and halves of halves, so many times.
     fn take_in(
         &mut self,
         (before, contact): (Option<&ViscoelasticContact>, &ViscoelasticContact),
@@ -176,24 +176,22 @@ impl EnergyBalance {
         if dt == 0.0 || halvings == 0 || self.far_apart || !(before.is_some() || self.starts_with(contact)) {
             return self.take_in_whole(contact, dt, jumped);
         }
-        let mut in_halves = self.clone();
-        if !self.is_inexact(contact) {
+        let (mut in_halves, is_inexact) = (self.clone(), self.is_inexact(contact));
+        if !is_inexact {
             self.take_in_whole(contact, dt, jumped)?;
             let off = self.energies.imbalance() - in_halves.energies.imbalance();
             let share = 0.5_f64.powi((MOST_HALVINGS - halvings) as i32);
             if jumped || off.abs() <= UNBALANCED * share * self.energies.size() {
                 return Ok(self.energies);
             }
-            if in_halves.take_in_halves((before, contact), halvings - 1).is_ok_and(|same_end| same_end) {
-                *self = in_halves;
-            }
-            return Ok(self.energies);
         }
-        if in_halves.take_in_halves((before, contact), halvings.min(HALVINGS) - 1).is_ok_and(|same_end| same_end) {
+        let left = if is_inexact { halvings.min(HALVINGS) } else { halvings } - 1;
+        if in_halves.take_in_halves((before, contact), left).is_ok_and(|same_end| same_end) {
             *self = in_halves;
-            return Ok(self.energies);
+        } else if is_inexact {
+            self.take_in_whole(contact, dt, jumped)?;
         }
-        self.take_in_whole(contact, dt, jumped)
+        Ok(self.energies)
     }
 
     fn take_in_whole(&mut self, contact: &ViscoelasticContact, dt: f64, jumped: bool) -> Result<Energies> {
