@@ -3,7 +3,7 @@
 //!
 //! In plane strain, on a layer whose base creeps otherwise. In time such a layer is not modelled.
 //!
-//! `cargo run --release --features plot,sliding --example conveyor_belt`
+//! `cargo run --release -p viscocontact --features plot,sliding --example conveyor_belt`
 
 mod support;
 

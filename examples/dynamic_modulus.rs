@@ -2,7 +2,7 @@
 //! shifted to a master curve, which gives the WLF law and a material; a ball is then pressed onto it at three
 //! temperatures. The isotherms are made from a published material, so that everything can be compared.
 //!
-//! `cargo run --release --features data,plot --example dynamic_modulus`
+//! `cargo run --release -p viscocontact --features data,plot --example dynamic_modulus`
 
 #[path = "support/scenes/noise.rs"]
 mod noise;

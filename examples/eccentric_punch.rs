@@ -2,7 +2,7 @@
 //! the whole face is in contact and beyond, where it opens; then on a creeping body, where the tilt grows
 //! with time under a steady force.
 //!
-//! `cargo run --release --features analytic,plot --example eccentric_punch`
+//! `cargo run --release -p viscocontact --features analytic,plot --example eccentric_punch`
 
 mod support;
 

@@ -4,7 +4,7 @@
 //!
 //! One of them is stepped in space, too, for comparison.
 //!
-//! `cargo run --release --features plot,states,surfaces --example hundred_rheologies`
+//! `cargo run --release -p viscocontact --features plot,states,surfaces --example hundred_rheologies`
 
 mod support;
 

@@ -2,7 +2,7 @@
 //! force–approach loop and the contact radius against the one-dimensional foundation (method of
 //! dimensionality reduction).
 //!
-//! `cargo run --release --features plot,states --example load_unload`
+//! `cargo run --release -p viscocontact --features plot,states --example load_unload`
 
 mod support;
 

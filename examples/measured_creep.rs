@@ -2,7 +2,7 @@
 //! material that it gives. The table was made from a known material, so that the error of the whole way can be
 //! told.
 //!
-//! `cargo run --release --features data,plot --example measured_creep`
+//! `cargo run --release -p viscocontact --features data,plot --example measured_creep`
 
 #[path = "support/scenes/noise.rs"]
 mod noise;
@@ -123,7 +123,7 @@ fn measure(args: &Args, seed: u64) -> Result<(), Box<dyn Error>> {
     let truth = truth()?;
     let mut text = String::from(
         "# Creep of a fractional Zener body (G = 1 GPa, G_K = 1 MPa, 10 s, order 0.45) with 2 % noise,\n\
-         # made by: cargo run --release --features data,plot --example measured_creep -- --seed 1\n\
+         # made by: cargo run --release -p viscocontact --features data,plot --example measured_creep -- --seed 1\n\
          time [s],creep compliance [1/Pa]\n",
     );
     let mut noise = noise(seed);

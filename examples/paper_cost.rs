@@ -4,7 +4,7 @@
 //!
 //! Times are processor times where the system measures them (Linux), so that a busy machine disturbs them little.
 //!
-//! `RAYON_NUM_THREADS=1 cargo run --release --features analytic,plot --example paper_cost`
+//! `RAYON_NUM_THREADS=1 cargo run --release -p viscocontact --features analytic,plot --example paper_cost`
 //! (six minutes), or with `-- --quick` (seconds)
 
 #[path = "support/scenes/step_loaded_sphere.rs"]

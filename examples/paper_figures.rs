@@ -1,7 +1,7 @@
 //! Figures 2 to 6 of the source paper, S. Spinu, *The surface contact of viscoelastic materials, Part I*, drawn to be laid
 //! beside it, with a table of how exact they are; fails if one is less exact than it should be.
 //!
-//! `cargo run --release --features analytic,plot,states --example paper_figures` (15 s), or with `-- --quick` (seconds, coarser)
+//! `cargo run --release -p viscocontact --features analytic,plot,states --example paper_figures` (15 s), or with `-- --quick` (seconds, coarser)
 
 #[path = "support/scenes/paper_figures.rs"]
 mod scenes;

@@ -1,7 +1,7 @@
 //! Cost of a step: the paper's scene on several meshes, computed in every way there is, in units of one convolution
 //! on the whole grid and of the paper's own algorithm. Writes a table (CSV) and a picture.
 //!
-//! `RAYON_NUM_THREADS=1 cargo run --release --features data,plot --example performance`
+//! `RAYON_NUM_THREADS=1 cargo run --release -p viscocontact --features data,plot --example performance`
 //! (about a minute), or with `-- --cells 64` (a second)
 
 mod support;

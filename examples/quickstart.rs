@@ -1,7 +1,7 @@
 //! The first program of the README: a sphere pressed onto a creeping body by a force that is held. `step_loaded_sphere` computes the
 //! same scene beside its closed form, with tables and pictures.
 //!
-//! `cargo run --release --example quickstart`
+//! `cargo run --release -p viscocontact --example quickstart`
 
 use viscocontact::prelude::*;
 

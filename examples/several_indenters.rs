@@ -8,7 +8,7 @@
 //!   ω_i(t) = Σ_j S_ij ∫ C(t − s) dW_j(s), with the S_ij of an elastic body. A sphere between them is under a constant
 //!   force; its centre of pressure moves away from the punch whose turn it is.
 //!
-//! `cargo run --release --features plot --example several_indenters`
+//! `cargo run --release -p viscocontact --features plot --example several_indenters`
 
 #[path = "support/scenes/indenters.rs"]
 mod indenters;

@@ -1,7 +1,7 @@
 //! The source paper's scene: a sphere pressed onto a creeping half-space by a force that is applied at
 //! once and held. Reproduces its Figures 4, 5 and 6 against the closed forms of its Table 1.
 //!
-//! `cargo run --release --features analytic,plot --example step_loaded_sphere` takes no argument; `-- --help` lists them.
+//! `cargo run --release -p viscocontact --features analytic,plot --example step_loaded_sphere` takes no argument; `-- --help` lists them.
 
 #[path = "support/scenes/step_loaded_sphere.rs"]
 mod scene;

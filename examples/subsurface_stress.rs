@@ -7,7 +7,7 @@
 //! On bodies that creep tenfold a shallow ring below the rim may carry more for a while; how much depends on mesh and steps there
 //! (49 … 55 MPa in one scene), so no such body is shown.
 //!
-//! `cargo run --release --features analytic,plot,stress --example subsurface_stress`
+//! `cargo run --release -p viscocontact --features analytic,plot,stress --example subsurface_stress`
 
 mod support;
 

@@ -1,7 +1,7 @@
 //! Speed against accuracy, measured: five scenes with a reference, every time rule, the paper's solver with its own, several meshes
 //! and step counts. Writes a table (CSV) and a picture for each scene.
 //!
-//! `cargo run --release --features analytic,plot,states --example trade` (about five minutes), or with `-- --quick` (seconds)
+//! `cargo run --release -p viscocontact --features analytic,plot,states --example trade` (about five minutes), or with `-- --quick` (seconds)
 
 mod support;
 

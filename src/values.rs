@@ -63,3 +63,21 @@ macro_rules! forward {
         }
     };
 }
+
+/// Implements `Clone` field by field. Unlike that of a derived `Clone`, `clone_from` keeps the memory of the fields: a snapshot
+/// is taken and restored without an allocation.
+macro_rules! clone_by_fields {
+    ($type:ident { $($field:ident),* $(,)? }) => {
+        impl Clone for $type {
+            fn clone(&self) -> $type {
+                let $type { $($field),* } = self;
+                $type { $($field: Clone::clone($field)),* }
+            }
+
+            fn clone_from(&mut self, other: &$type) {
+                let $type { $($field),* } = other;
+                $(self.$field.clone_from($field);)*
+            }
+        }
+    };
+}

@@ -1,7 +1,7 @@
 //! Every claim against its reference: closed forms, the method of dimensionality reduction, formulations of another kind. Computes
 //! all of them, and writes their table and pictures, which docs/validation.md shows; fails if one errs by more than it may.
 //!
-//! `cargo run --release --features full --example validation`
+//! `cargo run --release -p viscocontact --features full --example validation`
 
 mod adhesion;
 mod claim;

@@ -1,7 +1,5 @@
 //! The hereditary integral as a sum over every past increment.
 
-use educe::Educe;
-
 use crate::error::{Error, MaterialError, Result, StepError};
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::interval::{HistoryInputs, Interval};
@@ -21,8 +19,7 @@ pub(crate) enum Weighting {
 const BLOCK: usize = 2048;
 
 /// The past as all increments of v = K p, one field per step, no transforms.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DirectSum {
     weighting: Weighting,
@@ -32,9 +29,10 @@ pub(crate) struct DirectSum {
     weights: Vec<f64>,
 }
 
+clone_by_fields! { DirectSum { weighting, increments, weights } }
+
 /// What a step has added.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 struct Increment {
     /// When it happened, by the weighting.
@@ -42,6 +40,8 @@ struct Increment {
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     change: Vec<f64>,
 }
+
+clone_by_fields! { Increment { time, change } }
 
 impl DirectSum {
     pub(crate) fn new(weighting: Weighting) -> DirectSum {

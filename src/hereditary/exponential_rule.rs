@@ -1,7 +1,5 @@
 //! Exponential integration of the relaxation form of the hereditary integral.
 
-use educe::Educe;
-
 use crate::hereditary::moments::{Relaxed, RelaxedSteps, moments as moments_of, slopes as slopes_of};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
@@ -41,8 +39,7 @@ pub(crate) enum Interpolant {
 ///
 /// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length of the
 /// steps: d_k of a step is d_(k−1) less ρ_(k−1) times the d_(k−1) of the previous step.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ExponentialRule {
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::rheology::SavedRelaxation"))]
@@ -72,9 +69,15 @@ pub(crate) struct ExponentialRule {
     relaxed: RelaxedSteps,
 }
 
+clone_by_fields! {
+    ExponentialRule {
+        relaxation, spans, known, kept, lacking, at_start, tried, committed, greatest, repeated,
+        accepted, relaxed,
+    }
+}
+
 /// What a step does to a field that follows the rule.
-#[derive(Debug, Default, PartialEq, Educe)]
-#[educe(Clone)]
+#[derive(Debug, Default, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Weights {
     /// Length of the step.
@@ -101,6 +104,12 @@ pub(crate) struct Weights {
     pub(super) span: f64,
     /// How many differences are known at its end.
     known: usize,
+}
+
+clone_by_fields! {
+    Weights {
+        dt, degree, corrects, c, past, branches, terms, ratios, defects, answer, span, known,
+    }
 }
 
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...

@@ -1,7 +1,5 @@
 //! State of the hereditary integral, for every time rule.
 
-use educe::Educe;
-
 use crate::error::Result;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::ExponentialRule;
@@ -13,8 +11,7 @@ use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::CreepSpectrum;
 
 /// The displacement of a contact and the memory of its past.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct History {
     rule: Rule,
@@ -28,14 +25,32 @@ pub(crate) struct History {
     start_is_kept: bool,
 }
 
+clone_by_fields! { History { rule, displacement, far, frame, start_is_kept } }
+
 /// How the displacement follows from its past.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 #[expect(clippy::large_enum_variant, reason = "a contact has one")]
 enum Rule {
     Exponential(ExponentialRule),
     DirectSum(DirectSum),
+}
+
+impl Clone for Rule {
+    fn clone(&self) -> Rule {
+        match self {
+            Rule::Exponential(own) => Rule::Exponential(own.clone()),
+            Rule::DirectSum(own) => Rule::DirectSum(own.clone()),
+        }
+    }
+
+    fn clone_from(&mut self, other: &Rule) {
+        match (self, other) {
+            (Rule::Exponential(own), Rule::Exponential(other)) => own.clone_from(other),
+            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.clone_from(other),
+            (own, other) => *own = other.clone(),
+        }
+    }
 }
 
 impl History {

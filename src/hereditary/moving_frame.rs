@@ -1,7 +1,5 @@
 //! History of bodies that move under the grid.
 
-use educe::Educe;
-
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::remembered_field::RememberedField;
@@ -15,8 +13,7 @@ use crate::rheology::CreepSpectrum;
 ///
 /// The surface in contact is laid on the rigid body after each step. What that changes no pressure has caused; it
 /// follows the same recursion, as a displacement e: u = K U + e.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MovingFrame {
     cells: [usize; 2],
@@ -28,6 +25,8 @@ pub(crate) struct MovingFrame {
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     scratch: Vec<f64>,
 }
+
+clone_by_fields! { MovingFrame { cells, periodic, source, remainder, scratch } }
 
 impl MovingFrame {
     /// The undisturbed past, on no cells yet; both of its fields are like `field`.

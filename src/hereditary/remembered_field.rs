@@ -1,7 +1,5 @@
 //! A field that follows the recursion of the displacement, with the memory of its past.
 
-use educe::Educe;
-
 use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
 use crate::hereditary::field::{BLOCK, Field, Role, change};
 use crate::parallel::{BAND_CELLS, Rows, for_each_band};
@@ -17,8 +15,7 @@ const NOISE: f64 = -1e-14;
 ///
 /// What the step committed last adds to the past waits until the next one is predicted, so that every q_i passes through the
 /// processor once per step: with many relaxation times this is the cost of a step besides its contact problem.
-#[derive(Debug, Default, Educe)]
-#[educe(Clone)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RememberedField {
     /// Number of relaxation times.
@@ -39,6 +36,8 @@ pub(crate) struct RememberedField {
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(super) trial: Vec<f64>,
 }
+
+clone_by_fields! { RememberedField { branches, relaxing, kept, differences, waiting, now, trial } }
 
 const _: () = assert!(BAND_CELLS.is_multiple_of(BLOCK));
 

@@ -1,7 +1,5 @@
 //! What the error in time of a step depends on, besides the step.
 
-use educe::Educe;
-
 /// How bodies may meet again, on a surface that recovers.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Meeting {
@@ -28,8 +26,7 @@ impl Meeting {
 }
 
 /// Data of a run besides the step.
-#[derive(Debug, Clone, Copy, Educe)]
-#[educe(Default)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct StepContext {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(crate) expected: [f64; 2],
@@ -37,7 +34,6 @@ pub(crate) struct StepContext {
     pub(crate) meeting: Meeting,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(crate) lasting: [f64; 2],
-    #[educe(Default = 1.0)]
     pub(crate) tolerance: f64,
     /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy compliance, that a
     /// unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
@@ -49,10 +45,8 @@ pub(crate) struct StepContext {
     /// Whether the load has a corner or jumps at the end of the step, which no step then puts right.
     pub(crate) is_last: bool,
     /// How far the defects of the run agree in sign, 0 … 1.
-    #[educe(Default = 1.0)]
     pub(crate) agreement: f64,
     /// Steps so far, this one included.
-    #[educe(Default = f64::INFINITY)]
     pub(crate) steps: f64,
     /// Events that take less time than this do not matter: an immediate dashpot presses on a body that meets a cell with a finite pressure
     /// at once, however short the step.
@@ -60,6 +54,26 @@ pub(crate) struct StepContext {
     /// Steps of at most this length have no estimated error on a body without elastic response, which hardly moves in them.
     pub(crate) beginning: f64,
     /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
-    #[educe(Default = true)]
     pub(crate) length_is_given: bool,
+}
+
+/// A step of given length, beside which nothing is known.
+impl Default for StepContext {
+    fn default() -> StepContext {
+        StepContext {
+            expected: [0.0; 2],
+            meeting: Meeting::default(),
+            lasting: [0.0; 2],
+            tolerance: 1.0,
+            on_switch: [0.0; 2],
+            greatest_on_switch: 0.0,
+            on_jump: 0.0,
+            is_last: false,
+            agreement: 1.0,
+            steps: f64::INFINITY,
+            resolution: 0.0,
+            beginning: 0.0,
+            length_is_given: true,
+        }
+    }
 }

@@ -134,16 +134,24 @@ impl Rows {
         part: impl Fn(Range<usize>) -> [f64; K] + Sync,
         merge: impl Fn([f64; K], [f64; K]) -> [f64; K] + Sync,
     ) -> [f64; K] {
-        let in_threads = lanes(self.own.len() * self.cells[1]) > 1;
-        if !self.are_shared() {
-            return halves(0..self.bands(), in_threads, &|band| part(self.band(band)), &merge);
-        }
-        let found = (0..self.bands()).flat_map(|band| part(self.band(band)));
-        let join = |all: &[f64]| {
-            let all = all.as_chunks::<K>().0;
-            halves(0..all.len(), false, &|band: usize| all[band], &merge)
+        self.merge_bands(&|band| part(self.band(band)), &merge)
+    }
+
+    /// [`Rows::merge`], compiled once for all sums of K numbers.
+    fn merge_bands<const K: usize>(
+        &self,
+        part: &(dyn Fn(usize) -> [f64; K] + Sync),
+        merge: &(dyn Fn([f64; K], [f64; K]) -> [f64; K] + Sync),
+    ) -> [f64; K] {
+        let Some(shared) = &self.shared else {
+            return halves(0..self.bands(), lanes(self.own.len() * self.cells[1]) > 1, part, merge);
         };
-        self.gather(found, |rank| K * self.bands_of(rank), join)
+        let own = &mut |own: &mut Vec<f64>| (0..self.bands()).for_each(|band| own.extend_from_slice(&part(band)));
+        let buffers = self.gathered(shared, own, &|rank| K * self.bands_of(rank));
+        let all = buffers.all.as_chunks::<K>().0;
+        let sum = halves(0..all.len(), false, &|band: usize| all[band], merge);
+        *lock(&shared.buffers) = buffers;
+        sum
     }
 
     /// Sums K terms of each cell over the cells that have any.
@@ -183,10 +191,11 @@ impl Rows {
         own: [f64; K],
         merge: impl Fn([f64; K], [f64; K]) -> [f64; K],
     ) -> [f64; K] {
-        if !self.are_shared() {
-            return own;
-        }
-        self.gather(own.into_iter(), |_| K, |all| all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own))
+        let Some(shared) = &self.shared else { return own };
+        let buffers = self.gathered(shared, &mut |sent| sent.extend_from_slice(&own), &|_| K);
+        let joined = buffers.all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own);
+        *lock(&shared.buffers) = buffers;
+        joined
     }
 
     /// The greatest of the values of the ranks.
@@ -217,17 +226,24 @@ impl Rows {
         read: impl FnOnce(&[f64]) -> R,
     ) -> R {
         let Some(shared) = &self.shared else { return read(&own.collect::<Vec<_>>()) };
+        let mut own = own;
+        let buffers = self.gathered(shared, &mut |sent| sent.extend(&mut own), &count);
+        let found = read(&buffers.all);
+        *lock(&shared.buffers) = buffers;
+        found
+    }
+
+    /// The buffers, to be given back, with what `own` writes on each of the ranks.
+    fn gathered(&self, shared: &Shared, own: &mut dyn FnMut(&mut Vec<f64>), count: &dyn Fn(usize) -> usize) -> Buffers {
         let mut buffers = std::mem::take(&mut *lock(&shared.buffers));
         let Buffers { own: sent, all, counts } = &mut buffers;
         sent.clear();
-        sent.extend(own);
+        own(sent);
         counts.clear();
         counts.extend((0..self.ranks()).map(count));
         all.resize(counts.iter().sum(), 0.0);
         shared.gather(sent, counts, all);
-        let found = read(all);
-        *lock(&shared.buffers) = buffers;
-        found
+        buffers
     }
 
     /// Sends numbers to each rank, and receives numbers from each; if a rank is lost, `received` stays as it is. A process by itself

@@ -1,7 +1,5 @@
 //! Exponential series of creep and relaxation, and the exact conversion between them.
 
-use educe::Educe;
-
 use crate::error::{Result, least_length, positive, within};
 use crate::rheology::Rheology;
 use crate::rheology::interconversion::reciprocal;
@@ -37,8 +35,7 @@ pub struct CreepSpectrum {
 ///
 /// with equilibrium modulus G_∞, relaxation times τ_k and, for bodies without elastic response, the
 /// viscosity η of an immediate dashpot. Every coefficient is ≥ 0.
-#[derive(Debug, PartialEq, Educe)]
-#[educe(Clone)]
+#[derive(Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -50,6 +47,8 @@ pub struct RelaxationSpectrum {
     /// Moduli and relaxation times, times ascending and distinct.
     terms: Vec<(f64, f64)>,
 }
+
+clone_by_fields! { RelaxationSpectrum { equilibrium, viscosity, terms } }
 
 /// A relaxation modulus as a checkpoint stores it. A file is compared with the scene before it is used.
 #[cfg(feature = "checkpoint")]

@@ -2,8 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use educe::Educe;
-
 use super::{Cut, Freedom, Line, ModeCoefficients, Modes, Trace};
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
@@ -29,8 +27,7 @@ pub(crate) struct Problem<'a> {
 }
 
 /// A guess on entry, the solution on return.
-#[derive(Debug, Default, Educe)]
-#[educe(Clone)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Solution {
     /// p \[Pa\].
@@ -55,6 +52,13 @@ pub(crate) struct Solution {
     /// The residual over the iterations.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) trace: Trace,
+}
+
+clone_by_fields! {
+    Solution {
+        pressure, potential, attraction, motions, counts, residual, relative_rounding, stiffness,
+        trace,
+    }
 }
 
 /// Work done, in units that do not depend on the machine.

@@ -5,8 +5,6 @@ pub(crate) mod snapshot;
 
 use std::sync::Arc;
 
-use educe::Educe;
-
 use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::{Indenter, Region};
 use crate::hereditary::{Field, History, Interpolant, Interval, Role};
@@ -16,8 +14,7 @@ use crate::solver::{RigidMotion, Solution};
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
 /// tried on a larger region changes a copy.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     pub(crate) clock: Clock,
@@ -41,6 +38,13 @@ pub(crate) struct State {
     pub(crate) extrapolation: Extrapolation,
     /// The greatest means of displacement and v over the contact so far: errors of smaller ones are relative to parts of these.
     pub(crate) greatest: [f64; 2],
+}
+
+clone_by_fields! {
+    State {
+        clock, loads, indenter, indenter_is_new, region, region_is_for_contact, history, attracts,
+        current, previous, start, extrapolation, greatest,
+    }
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -74,8 +78,7 @@ impl Clock {
 }
 
 /// Pressure and motions in equilibrium with the loads.
-#[derive(Debug, Educe)]
-#[educe(Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Equilibrium {
     pub(crate) solution: Solution,
@@ -88,9 +91,10 @@ pub(crate) struct Equilibrium {
     pub(crate) sum: f64,
 }
 
+clone_by_fields! { Equilibrium { solution, motions, contact_cells, sum } }
+
 /// The start of the last step, besides `previous` and the fields that the history keeps.
-#[derive(Debug, Default, Educe)]
-#[educe(Clone)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct StepStart {
     pub(crate) clock: Clock,
@@ -103,6 +107,8 @@ pub(crate) struct StepStart {
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) replaced: Option<Arc<Indenter>>,
 }
+
+clone_by_fields! { StepStart { clock, loads, interpolant, indenter_was_new, replaced } }
 
 impl State {
     /// Bodies without load, where they just touch, by the time rule of a history; without values.
