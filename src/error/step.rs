@@ -131,7 +131,7 @@ pub enum StepError {
     /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
     /// the tolerance is too small.
     #[error(
-        "at t = {time} s no step that f64 resolves keeps the error in time below {tolerance:e}: name the time of a jump inside a closure with FnHistory::with_breakpoints, ramp the load, or allow a greater error", time = rounded(*.time, TIME))]
+        "at t = {time} s no step that f64 resolves keeps the error in time below {tolerance:e}: name the time of a jump inside a closure with FnHistory::with_breakpoints, ramp the load, allow a greater error, or approach a body that resists rates alone by a spring", time = rounded(*.time, TIME))]
     StepTooShort {
         /// Time of the contact \[s\].
         time: f64,

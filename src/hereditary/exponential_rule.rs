@@ -174,7 +174,7 @@ impl ExponentialRule {
     }
 
     /// E∞.
-    pub(super) fn equilibrium(&self) -> f64 {
+    pub(crate) fn equilibrium(&self) -> f64 {
         self.relaxation.equilibrium()
     }
 

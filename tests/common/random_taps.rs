@@ -17,6 +17,8 @@ const FINER: [f64; 2] = [2.0, 1.5];
 const FINENESSES: i32 = 6;
 /// Maximum difference of two finenesses, over the tolerance, of a reference that judges.
 const DOUBT: f64 = 0.5;
+/// A time is judged if the finenesses agree at so many times on both sides as well: where they cross they agree by chance.
+const AROUND: usize = 4;
 /// Share of the times at which the finest two may differ by more; these times are not judged.
 const MOST_UNKNOWN: f64 = 0.05;
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -262,7 +264,9 @@ impl Taps {
         for k in 1..FINENESSES {
             let fine = self.marched(&times, fineness(k));
             let doubt = coarse.found.iter().zip(&fine.found).map(|(a, b)| self.apart(a, b, fine.greatest));
-            let is_known: Vec<bool> = doubt.map(|doubt| doubt <= DOUBT).collect();
+            let agree: Vec<bool> = doubt.map(|doubt| doubt <= DOUBT).collect();
+            let around = |k: usize| k.saturating_sub(AROUND)..(k + AROUND + 1).min(agree.len());
+            let is_known: Vec<bool> = (0..agree.len()).map(|k| agree[around(k)].iter().all(|agree| *agree)).collect();
             let unknown = is_known.iter().filter(|is_known| !**is_known).count();
             // the force of a dashpot jumps where bodies return to an imprint, or where the rate changes
             if unknown == 0 || k + 1 == FINENESSES && unknown as f64 <= MOST_UNKNOWN * times.len() as f64 {

@@ -197,7 +197,8 @@ const MISTAKES: &[Mistake] = &[
 ("a jump inside a closure",
     || jump_in_a_closure().map(drop),
     "at t = 0.3 s no step that f64 resolves keeps the error in time below 1e-3: name the time of a jump inside a closure \
-     with FnHistory::with_breakpoints, ramp the load, or allow a greater error"),
+     with FnHistory::with_breakpoints, ramp the load, allow a greater error, or approach a body that resists rates \
+     alone by a spring"),
 ("a stop that is not a number",
     || stop().map(drop),
     "time to stop at or to sample = NaN is not allowed: it must be between the start and the end of the run"),

@@ -3,8 +3,6 @@
 use crate::states::curve::ElasticStates;
 use crate::states::levels::{Demand, Group, Levels, ROUNDING};
 
-/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, and counts so much.
-const SWEPT: f64 = 0.05;
 /// Strains of levels that were swept count as far as they last for so many halves of the step.
 const LASTING: i32 = 8;
 
@@ -41,17 +39,29 @@ impl Levels {
         }
     }
 
+    /// How much of a change of the depth is left after so many steps like the last one, about: all of it where a fluid is under a
+    /// force or apart; the elastic response that is left and a spring bring it back.
+    pub(in crate::states) fn lasting(&self, states: &ElasticStates, demand: Demand, steps: f64) -> f64 {
+        let (mean, left) = (self.history.stiffness_over(steps), self.history.rule().equilibrium());
+        match demand {
+            Demand::Depth { give, .. } if self.level > 0.0 => {
+                let [mean, left] = [mean, left].map(|modulus| states.stiffness(self.level) * modulus);
+                give * (mean - left) / (1.0 + give * mean)
+            }
+            _ => 1.0 - left / mean,
+        }
+    }
+
     /// The most that a step may be longer than the one before, both taken whole and in halves, so that the rule has the same order in both:
-    /// the order falls on a body without elastic response.
-    pub(in crate::states) fn longest_growth(&self, otherwise: f64) -> f64 {
-        let rule = self.history.rule();
-        // the whole follows half of the step before
-        if rule.has_dashpot() { 0.499 * rule.longest_continued() } else { otherwise }
+    /// the whole follows half of the step before.
+    pub(in crate::states) fn longest_growth(&self) -> f64 {
+        0.499 * self.history.rule().longest_continued()
     }
 
     /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|
     /// from below over the compliance, for X = W and X the strains as far as they can raise a free surface. This is the most that the
-    /// difference can ever add to a depth and to a force. The `cuts` belong to the other outcome.
+    /// difference can ever add to a depth and to a force. The `cuts` belong to the other outcome. Levels
+    /// that were `swept` count so much.
     pub(in crate::states) fn distance(
         &mut self,
         states: &ElasticStates,
@@ -59,13 +69,14 @@ impl Levels {
         start: f64,
         cuts: [f64; 2],
         steps: f64,
+        swept: f64,
     ) -> [f64; 2] {
         cuts.into_iter().for_each(|level| self.cut_at(states, level));
         let all = [start, self.level, cuts[0], cuts[1]];
         let [from, to] = [all.into_iter().fold(start, f64::min), all.into_iter().fold(start, f64::max)];
         let mut worst = [0.0f64; 2];
         for ((_, own), ([weight, decay], others)) in self.history.strains().zip(other.history.strains()) {
-            let swept = SWEPT * decay.powi(LASTING);
+            let swept = swept * decay.powi(LASTING);
             let (mut k, mut sums) = (0, [0.0f64; 2]);
             // least and greatest sum over the depth below a level, of levels that were swept and of others
             let mut range = [[0.0f64; 2]; 2];
