@@ -39,7 +39,7 @@ fn adaptive(scene: &Scene) -> String {
             Err(error) => break error.to_string(),
         }
     };
-    let fields = contact.pressure().iter().chain(contact.displacement());
+    let fields = contact.pressure().iter().chain(contact.fields().displacement());
     let numbers = fields.chain([&contact.time(), &contact.approach()]).map(|value| value.to_bits()).collect::<Vec<_>>();
     format!("{steps} steps {:016x} {end}", hash(numbers))
 }

@@ -30,7 +30,8 @@ const RUNS: f64 = 8.0;
 struct Scene {
     grid: Grid,
     geometry: Box<dyn Geometry>,
-    material: Material,
+    /// None of an elastic body of E* = 1.
+    material: Option<Material>,
     kernel: Arc<InfluenceKernel>,
     force: f64,
     /// Intervals between the times at which pressures are compared \[s\], and steps of each that may do; none if they are
@@ -53,7 +54,7 @@ impl Scene {
                 kernel: Arc::new(InfluenceKernel::half_space(&grid)?),
                 grid,
                 geometry: Box::new(FnGeometry::new(|x1: f64, x2: f64| 0.5 * (x1 * x1 + x2 * x2))),
-                material,
+                material: Some(material),
                 force,
                 intervals: &[1.0, 1.0],
                 steps: &[1, 2, 3, 4, 6, 8, 12],
@@ -66,7 +67,7 @@ impl Scene {
                 kernel: Arc::new(InfluenceKernel::periodic(&grid)?),
                 geometry: Box::new(Rough::new(&grid, spec)?),
                 grid,
-                material: Material::incompressible(Elastic::new(0.25)?), // E* = 1
+                material: None,
                 force: 0.03,
                 intervals: &[],
                 steps: &[0],
@@ -75,34 +76,63 @@ impl Scene {
         })
     }
 
-    fn contact(&self, settings: Settings) -> Result<ViscoelasticContact, viscocontact::Error> {
-        ViscoelasticContact::builder(self.grid.clone())
-            .geometry(&*self.geometry)
-            .material(self.material.clone())
-            .kernel(self.kernel.clone())
-            .settings(settings.with_edge(Edge::Allow))
-            .build()
+    fn contact(&self, settings: Settings) -> Result<Pressed, viscocontact::Error> {
+        let (grid, kernel, settings) = (self.grid.clone(), self.kernel.clone(), settings.with_edge(Edge::Allow));
+        Ok(match &self.material {
+            Some(material) => {
+                let builder = ViscoelasticContact::builder(grid).geometry(&*self.geometry).material(material.clone());
+                Pressed::Creeping(Box::new(builder.kernel(kernel).settings(settings).build()?))
+            }
+            None => {
+                let builder = ElasticContact::builder(grid).geometry(&*self.geometry).modulus(1.0);
+                Pressed::Elastic(Box::new(builder.kernel(kernel).settings(settings).build()?))
+            }
+        })
     }
 
     /// The pressures compared, the seconds that the steps take, and their iterations.
-    fn run(&self, contact: &mut ViscoelasticContact, steps: usize) -> Result<(Vec<f64>, f64, usize), Box<dyn Error>> {
+    fn run(&self, contact: &mut Pressed, steps: usize) -> Result<(Vec<f64>, f64, usize), Box<dyn Error>> {
         let load = Load::force(self.force);
         let (mut pressures, mut seconds) = (Vec::new(), 0.0);
         let start = processor_seconds();
-        let mut iterations = contact.step(0.0, load)?.iterations;
+        let mut iterations = contact.take(0.0, load)?;
         seconds += processor_seconds() - start;
         if self.intervals.is_empty() {
-            pressures.extend_from_slice(contact.pressure());
+            pressures.extend_from_slice(contact.fields().pressure());
         }
         for interval in self.intervals {
             let start = processor_seconds();
             for _ in 0..steps {
-                iterations += contact.step(interval / steps as f64, load)?.iterations;
+                iterations += contact.take(interval / steps as f64, load)?;
             }
             seconds += processor_seconds() - start;
-            pressures.extend_from_slice(contact.pressure());
+            pressures.extend_from_slice(contact.fields().pressure());
         }
         Ok((pressures, seconds, iterations))
+    }
+}
+
+/// The contact of a scene.
+#[derive(Clone)]
+enum Pressed {
+    Creeping(Box<ViscoelasticContact>),
+    Elastic(Box<ElasticContact>),
+}
+
+impl Pressed {
+    /// A step of length `dt`, which does not matter to an elastic body; returns its iterations.
+    fn take(&mut self, dt: f64, load: Load) -> Result<usize, viscocontact::Error> {
+        match self {
+            Pressed::Creeping(contact) => contact.step(dt, load).map(|report| report.iterations),
+            Pressed::Elastic(contact) => contact.solve(load).map(|report| report.iterations),
+        }
+    }
+
+    fn fields(&self) -> Fields<'_> {
+        match self {
+            Pressed::Creeping(contact) => contact.fields(),
+            Pressed::Elastic(contact) => contact.fields(),
+        }
     }
 }
 
@@ -128,7 +158,7 @@ fn write_reference(scene: &Scene, folder: &Path) -> Result<(), Box<dyn Error>> {
     write("gap", &gap)?;
     let mut contact = scene.contact(Settings::default().with_tolerance(1e-10))?;
     write("pressures", &scene.run(&mut contact, scene.reference_steps)?.0)?;
-    let share = contact.contact_cells() as f64 / scene.grid.len() as f64;
+    let share = contact.fields().contact_cells() as f64 / scene.grid.len() as f64;
     println!("{:e} {} {share:.3}", scene.grid.lengths()[0], scene.force);
     Ok(())
 }
@@ -148,11 +178,11 @@ fn measure(scene: &Scene, folder: &Path, allowed: f64) -> Result<(), Box<dyn Err
         for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
             let settings = Settings::default().with_tolerance(tolerance).with_symmetry(part).with_window(part);
             let mut contact = scene.contact(settings)?;
-            let at_rest = contact.snapshot();
+            let at_rest = contact.clone();
             for &steps in scene.steps {
                 let (mut sum, mut runs, mut last) = (0.0, 0.0, String::new());
                 while runs < RUNS {
-                    contact.restore(&at_rest)?;
+                    contact.clone_from(&at_rest);
                     let (pressures, seconds, iterations) = scene.run(&mut contact, steps)?;
                     let error = error(&pressures);
                     (sum, runs) = (sum + seconds, runs + 1.0);

@@ -81,7 +81,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         for step in (-3 * parts..=3 * parts).rev() {
             let speed = 10f64.powf(f64::from(step) / f64::from(parts));
             let report = belt.at([speed, 0.0], Load::force(args.load))?;
-            let peak = belt.contact().max_pressure();
+            let peak = belt.fields().max_pressure();
             table.serialize((cover, speed, report.friction(), report.contact_area, peak, report.transforms))?;
             points.push((speed, report.friction()));
         }
@@ -89,7 +89,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         println!("{:4} mm: {report}", 1e3 * cover);
         let name = format!("{} mm of rubber", 1e3 * cover);
         friction.add(&name, COLORS[k], Style::LineAndDots, points);
-        let profile = (0..cells).map(|i| (grid.center(i, 0)[0], belt.contact().pressure()[i]));
+        let profile = (0..cells).map(|i| (grid.center(i, 0)[0], belt.fields().pressure()[i]));
         pressure.add(&name, COLORS[k], Style::Line, profile.filter(|(x, _)| x.abs() < 0.3 * LENGTH).collect());
     }
     table.flush()?;

@@ -141,7 +141,7 @@ fn over_frequency(args: &Args, body: &Body) -> Result<(), Box<dyn Error>> {
         let loss = force.follow(&mut punch, args.steps, args.tolerance)?.loss();
         let exact = force.loss_of_fixed_contact(&body.creep, args.punch);
         // with 2a as the cells have it, the error in time is left
-        let on_mesh = force.loss_of_fixed_contact(&body.creep, 0.5 * punch.stiffness_over_modulus()?);
+        let on_mesh = force.loss_of_fixed_contact(&body.creep, 0.5 * punch.fields().stiffness_over_modulus()?);
         let [ball, foundation] = under_ball(args, body, force)?.map(|cycle| cycle.loss());
         let fixed = force.loss_of_fixed_contact(&body.creep, force.radius_under_mean(&body.material, args.ball));
         progress.suspend(|| {

@@ -170,7 +170,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     while let Some(report) = run.next_step()? {
         let contact = run.contact();
         (steps, work) = (steps + 1, work + report.convolution_equivalents());
-        let patches = contact.patches()?;
+        let patches = contact.fields().patches()?;
         let smooth = Hertz::new(args.radius, 1.0 / rubber.contact_compliance(report.time), args.load)?;
         let hertz = std::f64::consts::PI * smooth.contact_radius.powi(2);
         history.record(contact, &report, &[patches.all.len() as f64, hertz])?;
@@ -185,14 +185,14 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
                 hertz * 1e6,
                 patches.all.len(),
                 patches.largest().map_or(0.0, |patch| patch.area * 1e6),
-                contact.max_pressure() * 1e-3,
+                contact.fields().max_pressure() * 1e-3,
                 smooth.max_pressure * 1e-3
             );
         });
         progress.inc(1);
         if report.time == first || report.time == last {
             let color = if report.time == first { 0 } else { 1 };
-            let line = contact.profile(Axis::X1, 0.0)?;
+            let line = contact.fields().profile(Axis::X1, 0.0)?;
             let points = line.positions.iter().zip(&line.pressure).map(|(x, p)| (x * 1e3, p * 1e-3)).collect();
             chart.add(format!("{} s, rough", report.time), COLORS[color], Style::Line, points);
             let points = line.positions.iter().map(|&x| (x * 1e3, smooth.pressure(x.abs()) * 1e-3)).collect();

@@ -115,7 +115,7 @@ struct Past {
 
 impl Past {
     fn new(contact: &ViscoelasticContact) -> Result<Past> {
-        let kernel = Arc::clone(contact.kernel());
+        let kernel = Arc::clone(contact.fields().kernel());
         let empty = || vec![0.0; contact.grid().len()];
         let (work, increments) = (kernel.workspace()?, Vec::new());
         Ok(Past { kernel, work, increments, pressure: empty(), image: empty(), displacement: empty() })

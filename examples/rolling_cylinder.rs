@@ -102,9 +102,9 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
     let points = contact.pressure().iter().enumerate().map(|(i, &p)| (grid.center(i, 0)[0], p));
     Ok(Rolled {
         profile: points.filter(|(x, _)| near(*x)).map(|(x, p)| (x - axis, p)).collect(),
-        peak: contact.max_pressure(),
+        peak: contact.fields().max_pressure(),
         width: contact.contact_area() / grid.lengths()[1],
-        friction: contact.lateral_force(&cylinder)[0] / contact.force(),
+        friction: contact.fields().lateral_force(&cylinder)[0] / contact.force(),
         distance,
         steps,
         convolutions,

@@ -107,7 +107,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             let dt = if k == 0 { 0.0 } else { 1.0 };
             let report = contact.step((dt / steps as f64 * duration * args.tau).max(1e-6), Load::approach(approach))?;
             let (stress, share) = (report.force / nominal, contact.contact_area() / nominal);
-            table.serialize((name, report.time, approach, stress, share, contact.patches()?.all.len()))?;
+            table.serialize((name, report.time, approach, stress, share, contact.fields().patches()?.all.len()))?;
             path.push([approach - touch, stress, share]);
             // approach, the turn, and twice on the way back
             if n == 1 && [6 * steps / 10, steps, 14 * steps / 10, 15 * steps / 10].contains(&k) {

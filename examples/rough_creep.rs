@@ -284,9 +284,9 @@ fn persson(load: f64) -> f64 {
 
 fn observe(contact: &ViscoelasticContact) -> Result<Moment> {
     let nominal = contact.grid().cell_area() * contact.grid().len() as f64;
-    let patches = contact.patches()?;
+    let patches = contact.fields().patches()?;
     let mut gap = vec![0.0; contact.grid().len()];
-    contact.gap_into(&mut gap)?;
+    contact.fields().gap_into(&mut gap)?;
     Ok(Moment {
         time: contact.time(),
         area: contact.contact_area() / nominal,

@@ -105,7 +105,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut maps = Vec::new();
     for speed in [1e2, 1e-2, 1e-6] {
         let report = sliding.at([speed, 0.0], load)?;
-        let mut map = Map::pressure(sliding.contact())?;
+        let mut map = Map::pressure(sliding.fields())?;
         map.title =
             format!("{}: {:.1} % in contact", measure(speed, "m/s"), 100.0 * report.contact_area / args.length.powi(2));
         maps.push(map);

@@ -91,7 +91,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
 /// Approach of a body [m].
 fn approach(contact: &ViscoelasticContact, body: usize) -> f64 {
-    contact.body(body).map_or(f64::NAN, |body| body.approach)
+    contact.fields().body(body).map_or(f64::NAN, |body| body.approach)
 }
 
 /// All forces jump at t = 0 and are held.
@@ -153,7 +153,7 @@ fn surface(
     forces: &[f64],
     compliance: f64,
 ) -> Result<(), Box<dyn Error>> {
-    let line = contact.profile(Axis::X1, 0.0)?;
+    let line = contact.fields().profile(Axis::X1, 0.0)?;
     let mut chart = Chart::new(
         format!("Surface through two punches and the sphere, t = {HELD} τ"),
         Quantity::new("x1", "m"),
@@ -213,7 +213,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
                     });
                 }
             }
-            let sphere = four.body(SPHERE).ok_or("the sphere is the last of four bodies")?;
+            let sphere = four.fields().body(SPHERE).ok_or("the sphere is the last of four bodies")?;
             centers[turn as usize].push((1e6 * sphere.moment[0] / sphere.force, 1e6 * sphere.moment[1] / sphere.force));
         }
     }

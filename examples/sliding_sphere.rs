@@ -113,8 +113,9 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     for k in 0..speeds {
         let ratio = 10f64.powf(-1.5 + 3.0 * k as f64 / (speeds - 1) as f64);
         let velocity = ratio * bodies.glassy / bodies.tau;
-        let friction =
-            |(contact, sphere): &(ViscoelasticContact, Shifted)| contact.lateral_force(sphere)[0] / contact.force();
+        let friction = |(contact, sphere): &(ViscoelasticContact, Shifted)| {
+            contact.fields().lateral_force(sphere)[0] / contact.force()
+        };
         let slid = bodies.slide(velocity, side)?;
         let (own, other) = (friction(&slid), friction(&bodies.slide(velocity, 2.0 * side)?));
         let (contact, sphere) = slid;

@@ -101,7 +101,7 @@ fn press(args: &Args, material: Material, length: f64, advance: impl Fn()) -> vi
         // nearer the surface the cells that joined last stand out, as in the pressure: they are stiffer than their neighbours
         let depths: Vec<f64> = (2..=12).map(|k| 0.1 * f64::from(k) * radius).collect();
         let peak = stress.greatest(&depths, Stress::von_mises)?;
-        run.moments.push(Moment { time: contact.time(), radius, pressure: contact.max_pressure(), peak });
+        run.moments.push(Moment { time: contact.time(), radius, pressure: contact.fields().max_pressure(), peak });
         if k == 0 || k == args.steps {
             let depths: Vec<f64> = (0..cells / 2).map(|k| (k as f64 + 0.5) * step).collect();
             run.sections.push((contact.clone(), stress.on_section(Axis::X1, 0.0, &depths)?));

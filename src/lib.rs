@@ -46,6 +46,8 @@
 //! |---|---|
 //! | drive every step | [`ViscoelasticContact::step`] |
 //! | follow a load history, in fixed or adaptive steps | [`ViscoelasticContact::follow`] |
+//! | load elastic bodies, without time | [`elastic::ElasticContact`] |
+//! | read pressure, gap, patches, profiles | [`fields::Fields`] |
 //! | reach a required accuracy | [`plan::Plan`] |
 //! | compute many materials on one surface | [`states`] |
 //! | let surfaces attract each other | [`adhesion`] |
@@ -146,10 +148,13 @@ mod ascending;
 mod axis;
 pub mod contact;
 mod dense;
+pub mod elastic;
+mod equilibrium;
 mod error;
 mod events;
 mod extent;
 mod fft;
+pub mod fields;
 mod file;
 pub mod geometry;
 mod grid;
@@ -219,6 +224,8 @@ pub mod prelude {
         BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, Solver, StepError, StepReport, TimeRule,
         ViscoelasticContact, Warnings,
     };
+    pub use crate::elastic::ElasticContact;
+    pub use crate::fields::Fields;
     #[cfg(feature = "surfaces")]
     pub use crate::geometry::{Anisotropy, HeightMap, LengthUnit, Rough, RoughSpec, Roughness, SurfaceStatistics};
     pub use crate::geometry::{

@@ -72,7 +72,7 @@ pub fn opened_punch() -> Outcome {
         .build()?;
     let load = Load::eccentric_force(1.0, [0.6e-3, 0.0]);
     let state = |contact: &ViscoelasticContact| {
-        [contact.approach(), contact.tilt()[0], contact.contact_area(), contact.max_pressure()]
+        [contact.approach(), contact.tilt()[0], contact.contact_area(), contact.fields().max_pressure()]
     };
     contact.step(0.0, load)?;
     let start = state(&contact);
@@ -253,13 +253,13 @@ pub fn rolling() -> Outcome {
     let load = Load::force(scene.per_length);
     contact.toward_steady(SteadyMotion::new(Axis::X1, scene.reach, load).with_tolerance(2e-4))?.run()?;
     let [behind, ahead] = exact.ends();
-    let friction = contact.lateral_force(&cylinder)[0] / contact.force();
+    let friction = contact.fields().lateral_force(&cylinder)[0] / contact.force();
     let axis = 1e3 * (0.5 * grid.lengths()[0] - 2.0 * relaxed);
     let line = exact.positions.iter().zip(&exact.pressure).map(|(x, p)| (1e3 * x, 1e-3 * p)).collect();
     let dots = along_x1(&contact).into_iter().map(|(x, p)| (x - axis, p));
     let dots = dots.filter(|(x, _)| x.abs() < 1e3 * 1.5 * relaxed).collect();
     let rows = [
-        ("greatest pressure", contact.max_pressure(), exact.peak(), 1e-2),
+        ("greatest pressure", contact.fields().max_pressure(), exact.peak(), 1e-2),
         ("contact width", contact.contact_area(), ahead - behind, 1e-2),
         ("hysteretic friction", friction, exact.friction(scene.radius), 2e-2),
     ];

@@ -149,10 +149,14 @@ pub fn direct_sums() -> Outcome {
         // every sixth step lets go, the last one does not
         let force = if k % 6 == 3 { 0.0 } else { random() };
         contact.step(dt, Load::force(force))?;
-        past.push((contact.time(), contact.displacement()[middle]));
+        past.push((contact.time(), contact.fields().displacement()[middle]));
     }
     let mut potential = vec![0.0; grid.len()];
-    contact.kernel().convolve(contact.pressure(), &mut potential, &mut contact.kernel().workspace()?)?;
+    contact.fields().kernel().convolve(
+        contact.pressure(),
+        &mut potential,
+        &mut contact.fields().kernel().workspace()?,
+    )?;
     let now = contact.time();
     let summed: f64 = past
         .windows(2)
@@ -172,7 +176,7 @@ pub fn direct_sums() -> Outcome {
         let mut contact = sphere(rule, 1e-8)?;
         let mut run = contact.follow(&history, Stepping::fixed(2.0 / f64::from(steps)), 1.9);
         while run.next_step()?.is_some() {}
-        Ok([contact.approach(), contact.max_pressure()])
+        Ok([contact.approach(), contact.fields().max_pressure()])
     };
     let [own, coarse, fine] =
         [run(TimeRule::Exponential, 400)?, run(TimeRule::Backward, 400)?, run(TimeRule::Backward, 800)?];

@@ -100,8 +100,8 @@ fn hold(ranks: Option<Arc<dyn Ranks>>, from: Option<&str>, to: Option<&str>) -> 
         }
     }
     add(&mut hash, &[contact.force(), contact.approach(), contact.contact_area()]);
-    add(&mut hash, &contact.gathered(contact.pressure(), 0)?.unwrap_or_default());
-    add(&mut hash, &contact.gathered(contact.displacement(), 0)?.unwrap_or_default());
+    add(&mut hash, &contact.fields().gathered(contact.pressure(), 0)?.unwrap_or_default());
+    add(&mut hash, &contact.fields().gathered(contact.fields().displacement(), 0)?.unwrap_or_default());
     Ok(hash)
 }
 
@@ -122,9 +122,9 @@ fn hash_of_scenes(ranks: Option<Arc<dyn Ranks>>) -> Result<u64, Error> {
     let mut hash = 0xcbf2_9ce4_8422_2325;
     for (dt, load) in [(0.0, Load::force(1.0)), (0.3, Load::force(1.5)), (0.5, Load::approach(2.0e-4))] {
         contact.step(dt, load)?;
-        add(&mut hash, &[contact.force(), contact.approach(), contact.max_pressure()]);
+        add(&mut hash, &[contact.force(), contact.approach(), contact.fields().max_pressure()]);
     }
-    add(&mut hash, &contact.gathered(contact.pressure(), 0)?.unwrap_or_default());
+    add(&mut hash, &contact.fields().gathered(contact.pressure(), 0)?.unwrap_or_default());
     let settings = Settings::default().with_symmetry(false).with_window(false);
     let punch = ViscoelasticContact::builder(Grid::new([170, 160], [1.2e-3, 1.0e-3])?)
         .geometry(&FlatPunch::rectangular([0.8e-3, 0.6e-3])?)
@@ -139,7 +139,7 @@ fn hash_of_scenes(ranks: Option<Arc<dyn Ranks>>) -> Result<u64, Error> {
             .step(0.2 * f64::from(step), Load::eccentric_force(1.0, [0.1e-3 + 0.03e-3 * f64::from(step), 0.05e-3]))?;
         add(&mut hash, &contact.tilt());
     }
-    add(&mut hash, &contact.gathered(contact.pressure(), 0)?.unwrap_or_default());
+    add(&mut hash, &contact.fields().gathered(contact.pressure(), 0)?.unwrap_or_default());
     Ok(hash)
 }
 

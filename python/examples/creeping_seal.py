@@ -54,7 +54,7 @@ run = contact.follow(vc.Load.force(0.16), 1e5, tolerance=1e-2, sample_at=vc.Time
 states = []
 for _ in run:
     for sample in run.samples():
-        gap = np.where(sample.contact.pressure > 0, 0.0, sample.contact.gap)
+        gap = np.where(sample.fields.pressure > 0, 0.0, sample.fields.gap)
         states.append((sample.report.time, sample.contact.contact_area / side**2, effective_cube(gap)))
 time, share, cube = np.array(states).T
 # below this the solution is that of the small term that keeps its matrix regular: no open channel is left

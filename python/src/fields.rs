@@ -1,80 +1,186 @@
-//! Fields and numbers of the state of a contact.
+//! Fields and numbers of the state of a contact of any kind.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact as vc;
+use viscocontact::fields as vf;
 
 use crate::arrays::{Array, to_array};
 use crate::contact::ViscoelasticContact;
+use crate::elastic::ElasticContact;
 use crate::errors::OrRaise;
 use crate::grid::Grid;
 use crate::loads::Load;
 use crate::reports::BodyState;
 use crate::sliding::SteadySliding;
 
-/// The fields of a class that has a contact in space.
-macro_rules! fields {
+/// What has fields to show.
+pub trait Shown {
+    fn shown(&self) -> PyResult<vf::Fields<'_>>;
+}
+
+impl Shown for ViscoelasticContact {
+    fn shown(&self) -> PyResult<vf::Fields<'_>> {
+        self.get().map(vc::ViscoelasticContact::fields)
+    }
+}
+
+impl Shown for SteadySliding {
+    fn shown(&self) -> PyResult<vf::Fields<'_>> {
+        Ok(self.sliding.fields())
+    }
+}
+
+impl Shown for ElasticContact {
+    fn shown(&self) -> PyResult<vf::Fields<'_>> {
+        Ok(self.contact.fields())
+    }
+}
+
+impl Shown for Fields {
+    fn shown(&self) -> PyResult<vf::Fields<'_>> {
+        Ok(self.0.fields())
+    }
+}
+
+/// The fields of a contact as they were: of a steady motion, of a sample of a run, of a contact on elastic states.
+///
+/// >>> contact = ElasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), 4e6)
+/// >>> _ = contact.solve(Load.force(0.5))
+/// >>> before = contact.fields
+/// >>> _ = contact.solve(Load.force(1.0))
+/// >>> before.contact_area < contact.contact_area
+/// True
+#[pyclass(frozen, module = "viscocontact")]
+pub struct Fields(pub vf::KeptFields);
+
+#[pymethods]
+impl Fields {
+    fn __repr__(&self) -> String {
+        let (of, [n1, n2]) = (self.0.fields(), self.0.fields().grid().cells());
+        format!("Fields({n1} × {n2} cells, force={:e} N, approach={:e} m)", of.force(), of.approach())
+    }
+}
+
+/// What has fields, as an argument.
+#[derive(FromPyObject)]
+pub enum Showing<'py> {
+    Contact(PyRef<'py, ViscoelasticContact>),
+    Elastic(PyRef<'py, ElasticContact>),
+    Sliding(PyRef<'py, SteadySliding>),
+    Kept(PyRef<'py, Fields>),
+}
+
+impl Shown for Showing<'_> {
+    fn shown(&self) -> PyResult<vf::Fields<'_>> {
+        match self {
+            Showing::Contact(contact) => contact.shown(),
+            Showing::Elastic(contact) => contact.shown(),
+            Showing::Sliding(sliding) => sliding.shown(),
+            Showing::Kept(kept) => kept.shown(),
+        }
+    }
+}
+
+/// The arrays of a class that has fields.
+macro_rules! arrays {
     ($class:ident) => {
         #[pymethods]
         impl $class {
             /// Pressure [Pa], of the shape of the grid.
             #[getter]
             fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                let contact = self.get()?;
-                to_array(py, contact.pressure().to_vec(), &contact.grid().cells())
+                let of = self.shown()?;
+                to_array(py, of.pressure().to_vec(), &of.grid().cells())
             }
 
             /// Displacement of the surface, positive into the bodies [m], of the shape of the grid.
             #[getter]
             fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                let contact = self.get()?;
-                to_array(py, contact.displacement().to_vec(), &contact.grid().cells())
+                let of = self.shown()?;
+                to_array(py, of.displacement().to_vec(), &of.grid().cells())
             }
 
             /// Gap between the deformed bodies [m], of the shape of the grid; +inf where there is nothing to touch.
             #[getter]
             fn gap<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                field(py, self.get()?, vc::ViscoelasticContact::gap_into)
+                field(py, self.shown()?, |of, values| of.gap_into(values))
             }
 
             /// Net traction [Pa]: the pressure less the attraction, of the shape of the grid.
             #[getter]
             fn traction<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                field(py, self.get()?, vc::ViscoelasticContact::traction_into)
+                field(py, self.shown()?, |of, values| of.traction_into(values))
             }
         }
     };
 }
 
-fields!(ViscoelasticContact);
-fields!(SteadySliding);
+/// The numbers of a class that has fields.
+macro_rules! numbers {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            /// The state of each rigid body.
+            #[getter]
+            fn bodies(&self) -> PyResult<Vec<BodyState>> {
+                let of = self.shown()?;
+                Ok((0..of.bodies()).filter_map(|body| of.body(body)).map(BodyState).collect())
+            }
+
+            /// The load on the first body.
+            #[getter]
+            fn load(&self, py: Python<'_>) -> PyResult<Load> {
+                Load::of(py, self.shown()?.load())
+            }
+        }
+
+        getters! {shown $class, of:
+            /// The grid of every field.
+            grid: Grid = Grid(of.grid().clone());
+            /// Normal force on all bodies [N].
+            force: f64 = of.force();
+            /// Approach of the first body, at the origin [m].
+            approach: f64 = of.approach();
+            /// Tilt of the first body along x1 and x2 [rad].
+            tilt: (f64, f64) = of.tilt().into();
+            /// Moments of the pressure about the origin, ∬ p x1 and ∬ p x2 [N·m].
+            moment: (f64, f64) = of.moment().into();
+            /// Cells in contact.
+            contact_cells: usize = of.contact_cells();
+            /// Area of contact [m²], fractions of cells included.
+            contact_area: f64 = of.contact_area();
+            /// Mean pressure over the contact [Pa].
+            mean_pressure: f64 = of.mean_pressure();
+            /// Greatest pressure of any cell [Pa].
+            max_pressure: f64 = of.max_pressure();
+            /// Whether the bodies are apart.
+            is_separated: bool = of.is_separated();
+        }
+    };
+}
+
+arrays!(ViscoelasticContact);
+arrays!(ElasticContact);
+arrays!(Fields);
+arrays!(SteadySliding);
+numbers!(ViscoelasticContact);
+numbers!(ElasticContact);
+numbers!(Fields);
 
 /// A field that a contact writes.
 fn field<'py>(
     py: Python<'py>,
-    contact: &vc::ViscoelasticContact,
-    write: fn(&vc::ViscoelasticContact, &mut [f64]) -> vc::Result<()>,
+    of: vf::Fields<'_>,
+    write: fn(&vf::Fields<'_>, &mut [f64]) -> vc::Result<()>,
 ) -> PyResult<Array<'py>> {
-    let mut values = vec![0.0; contact.grid().len()];
-    py.detach(|| write(contact, &mut values)).or_raise()?;
-    to_array(py, values, &contact.grid().cells())
+    let mut values = vec![0.0; of.grid().len()];
+    py.detach(|| write(&of, &mut values)).or_raise()?;
+    to_array(py, values, &of.grid().cells())
 }
 
 #[pymethods]
 impl ViscoelasticContact {
-    /// The state of each rigid body.
-    #[getter]
-    fn bodies(&self) -> PyResult<Vec<BodyState>> {
-        let contact = self.get()?;
-        Ok((0..contact.bodies()).filter_map(|body| contact.body(body)).map(BodyState).collect())
-    }
-
-    /// The load of the last step.
-    #[getter]
-    fn load(&self, py: Python<'_>) -> PyResult<Load> {
-        Load::of(py, self.get()?.load())
-    }
-
     /// How the last step of surfaces that attract each other went: contact problems ("passes"), those given up ("rejected"), the greatest
     /// "rise" of the energy over the sum of its parts, the energy "released" [J], and whether the surfaces "jumped". None without attraction.
     #[getter]
@@ -95,26 +201,6 @@ getters! {try ViscoelasticContact, of:
     time: f64 = of.time();
     /// Reduced time of the material [s].
     reduced_time: f64 = of.reduced_time();
-    /// The grid of every field.
-    grid: Grid = Grid(of.grid().clone());
-    /// Normal force on all bodies [N].
-    force: f64 = of.force();
-    /// Approach of the first body, at the origin [m].
-    approach: f64 = of.approach();
-    /// Tilt of the first body along x1 and x2 [rad].
-    tilt: (f64, f64) = of.tilt().into();
-    /// Moments of the pressure about the origin, ∬ p x1 and ∬ p x2 [N·m].
-    moment: (f64, f64) = of.moment().into();
-    /// Cells in contact.
-    contact_cells: usize = of.contact_cells();
-    /// Area of contact [m²], fractions of cells included.
-    contact_area: f64 = of.contact_area();
-    /// Mean pressure over the contact [Pa].
-    mean_pressure: f64 = of.mean_pressure();
-    /// Greatest pressure of any cell [Pa].
-    max_pressure: f64 = of.max_pressure();
-    /// Whether the bodies are apart.
-    is_separated: bool = of.is_separated();
     /// The errors of exponential series that were fitted for this contact, a line each.
     fit_reports: Vec<String> = of.material().fit_reports().map(ToString::to_string).collect();
 }

@@ -9,6 +9,7 @@ use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use viscocontact as vc;
 use viscocontact::contact::Contact;
+use viscocontact::fields::KeptFields;
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::{Elastic, Material};
 use viscocontact::run::{self as vr, Crossing, RunContact, Stepping};
@@ -116,6 +117,9 @@ pub trait Led: RunContact + Contact + 'static {
 
     fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>>;
 
+    /// The fields of a sample, if it is one in space.
+    fn fields_of(sample: &vr::Sample<'_, Self>) -> Option<KeptFields>;
+
     /// The object of Python.
     fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>>;
 
@@ -126,7 +130,7 @@ pub trait Led: RunContact + Contact + 'static {
 
 /// How the contact in space and the one on elastic states are led, and their objects.
 macro_rules! led {
-    ($($contact:ty, $in_space:literal => $class:ty;)*) => {$(
+    ($($contact:ty, $in_space:literal, $fields:expr => $class:ty;)*) => {$(
         impl Led for $contact {
             const IN_SPACE: bool = $in_space;
 
@@ -138,6 +142,11 @@ macro_rules! led {
                 run.fields_to(accuracy)
             }
 
+            fn fields_of(sample: &vr::Sample<'_, Self>) -> Option<KeptFields> {
+                let fields: fn(&vr::Sample<'_, Self>) -> Option<KeptFields> = $fields;
+                fields(sample)
+            }
+
             fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>> {
                 Ok(Py::new(py, <$class>::of(self, recipe))?.into_any())
             }
@@ -146,8 +155,8 @@ macro_rules! led {
 }
 
 led! {
-    vc::ViscoelasticContact, true => crate::contact::ViscoelasticContact;
-    InStates, false => crate::states_contact::StatesContact;
+    vc::ViscoelasticContact, true, |sample| Some(sample.fields().keep()) => crate::contact::ViscoelasticContact;
+    InStates, false, |_| None => crate::states_contact::StatesContact;
 }
 
 /// A contact, or the run that owns it.

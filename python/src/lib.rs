@@ -9,6 +9,7 @@ mod attraction;
 mod both;
 mod contact;
 mod curves;
+mod elastic;
 mod errors;
 mod fields;
 mod fits;
@@ -61,7 +62,11 @@ mod _native {
     #[pymodule_export]
     use crate::curves::{Curve, Experiment, Recording};
     #[pymodule_export]
+    use crate::elastic::ElasticContact;
+    #[pymodule_export]
     use crate::errors::{Cancelled, ConvergenceError};
+    #[pymodule_export]
+    use crate::fields::Fields;
     #[pymodule_export]
     use crate::fits::{Estimate, Fit, write_fits};
     #[pymodule_export]

@@ -1,7 +1,21 @@
 //! What many classes repeat.
 
-/// Getters of a class: documentation, name, type and value, of what the class wraps, of a field, or (`try`) of the contact that it holds.
+/// Getters of a class: documentation, name, type and value, of what the class wraps, of a field, or (`try`) of the contact that it holds,
+/// or (`shown`) of its fields.
 macro_rules! getters {
+    (shown $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+        #[pymethods]
+        impl $class {
+            $(
+                $(#[$doc])*
+                #[getter]
+                fn $name(&self) -> PyResult<$type> {
+                    let $of = self.shown()?;
+                    Ok($value)
+                }
+            )*
+        }
+    };
     (try $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
         #[pymethods]
         impl $class {

@@ -7,95 +7,110 @@ use viscocontact::observe as ob;
 
 use crate::arrays::{Array, columns, field, to_array};
 use crate::contact::ViscoelasticContact;
+use crate::elastic::ElasticContact;
 use crate::errors::OrRaise;
+use crate::fields::{Fields, Shown};
 use crate::grid::Grid;
 use crate::kernels::axis;
 use crate::shapes::Shape;
 use crate::stress::SubsurfaceStress;
 
-#[pymethods]
-impl ViscoelasticContact {
-    /// The force that moves `shape` along the surface without friction, along x1 and x2 [N].
-    fn lateral_force(&self, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
-        let contact = self.get()?;
-        Ok(py.detach(|| contact.lateral_force(&*shape.geometry)).into())
-    }
+/// What a class that has fields shows.
+macro_rules! observed {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            /// The force that moves `shape` along the surface without friction, along x1 and x2 [N].
+            fn lateral_force(&self, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
+                let contact = self.shown()?;
+                Ok(py.detach(|| contact.lateral_force(&*shape.geometry)).into())
+            }
 
-    /// Normal stiffness over the contact modulus [m].
-    fn stiffness_over_modulus(&self, py: Python<'_>) -> PyResult<f64> {
-        let contact = self.get()?;
-        py.detach(|| contact.stiffness_over_modulus()).or_raise()
-    }
+            /// Normal stiffness over the contact modulus [m].
+            fn stiffness_over_modulus(&self, py: Python<'_>) -> PyResult<f64> {
+                let contact = self.shown()?;
+                py.detach(|| contact.stiffness_over_modulus()).or_raise()
+            }
 
-    /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
-    /// Σ p), "rim_pressure" (of a cell of the rim, over the greatest pressure), "area"; None where there is no estimate.
-    fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let contact = self.get()?;
-        let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
-        Ok(Some(dict! { py;
-            "approach": error.approach,
-            "max_pressure": error.max_pressure,
-            "pressure_field": error.pressure_field,
-            "rim_pressure": error.rim_pressure,
-            "area": error.area,
-        }))
-    }
+            /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
+            /// Σ p), "rim_pressure" (of a cell of the rim, over the greatest pressure), "area"; None where there is no estimate.
+            fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+                let contact = self.shown()?;
+                let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
+                Ok(Some(dict! { py;
+                    "approach": error.approach,
+                    "max_pressure": error.max_pressure,
+                    "pressure_field": error.pressure_field,
+                    "rim_pressure": error.rim_pressure,
+                    "area": error.area,
+                }))
+            }
 
-    /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
-    fn pressure_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<(f64, Array<'py>, Array<'py>)> {
-        distribution(py, &self.get()?.pressure_distribution(bins).or_raise()?)
-    }
+            /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
+            fn pressure_distribution<'py>(
+                &self,
+                py: Python<'py>,
+                bins: usize,
+            ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+                distribution(py, &self.shown()?.pressure_distribution(bins).or_raise()?)
+            }
 
-    /// The distribution of the gap where it is finite: the share at zero, the centres of the bins [m], and the density [1/m].
-    fn gap_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<(f64, Array<'py>, Array<'py>)> {
-        distribution(py, &self.get()?.gap_distribution(bins).or_raise()?)
-    }
+            /// The distribution of the gap where it is finite: the share at zero, the centres of the bins [m], and the density [1/m].
+            fn gap_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+                distribution(py, &self.shown()?.gap_distribution(bins).or_raise()?)
+            }
 
-    /// Arrays "position" [m], "pressure", "displacement", "gap" and "traction" along the line of cells in the direction of the axis `along`
-    /// (0 or 1) that contains the other coordinate `at` [m].
-    #[pyo3(signature = (along=0, at=0.0))]
-    fn profile<'py>(&self, py: Python<'py>, along: usize, at: f64) -> PyResult<Bound<'py, PyDict>> {
-        let line = self.get()?.profile(axis(along)?, at).or_raise()?;
-        let named = [
-            ("position", line.positions),
-            ("pressure", line.pressure),
-            ("displacement", line.displacement),
-            ("gap", line.gap),
-            ("traction", line.traction),
-        ];
-        columns(py, named)
-    }
+            /// Arrays "position" [m], "pressure", "displacement", "gap" and "traction" along the line of cells in the direction of the axis `along`
+            /// (0 or 1) that contains the other coordinate `at` [m].
+            #[pyo3(signature = (along=0, at=0.0))]
+            fn profile<'py>(&self, py: Python<'py>, along: usize, at: f64) -> PyResult<Bound<'py, PyDict>> {
+                let line = self.shown()?.profile(axis(along)?, at).or_raise()?;
+                let named = [
+                    ("position", line.positions),
+                    ("pressure", line.pressure),
+                    ("displacement", line.displacement),
+                    ("gap", line.gap),
+                    ("traction", line.traction),
+                ];
+                columns(py, named)
+            }
 
-    /// The connected patches of the contact: an array of labels (0 out of contact, k + 1 in patch k), and for each patch a dict of
-    /// "cells", "area" [m²], "force" [N], "centroid" [m], "max_pressure" [Pa] and "winds" (around periodic axes).
-    fn patches<'py>(&self, py: Python<'py>) -> PyResult<Labelled<'py>> {
-        let contact = self.get()?;
-        labelled(py, contact.grid(), py.detach(|| contact.patches()).or_raise()?)
-    }
+            /// The connected patches of the contact: an array of labels (0 out of contact, k + 1 in patch k), and for each patch a dict of
+            /// "cells", "area" [m²], "force" [N], "centroid" [m], "max_pressure" [Pa] and "winds" (around periodic axes).
+            fn patches<'py>(&self, py: Python<'py>) -> PyResult<Labelled<'py>> {
+                let contact = self.shown()?;
+                labelled(py, contact.grid(), py.detach(|| contact.patches()).or_raise()?)
+            }
 
-    /// About a point [m] along x1 and x2: the "center_of_pressure" [m], the "reach" to the ends of the contact, back and ahead along each
-    /// axis [m], and its "skewness", (ahead − back)/(ahead + back); None without contact.
-    fn asymmetry<'py>(&self, py: Python<'py>, about: [f64; 2]) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(of) = self.get()?.asymmetry(about).or_raise()? else { return Ok(None) };
-        Ok(Some(dict! { py;
-            "center_of_pressure": of.center_of_pressure,
-            "reach": of.reach,
-            "skewness": of.skewness(),
-        }))
-    }
+            /// About a point [m] along x1 and x2: the "center_of_pressure" [m], the "reach" to the ends of the contact, back and ahead along each
+            /// axis [m], and its "skewness", (ahead − back)/(ahead + back); None without contact.
+            fn asymmetry<'py>(&self, py: Python<'py>, about: [f64; 2]) -> PyResult<Option<Bound<'py, PyDict>>> {
+                let Some(of) = self.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
+                Ok(Some(dict! { py;
+                    "center_of_pressure": of.center_of_pressure,
+                    "reach": of.reach,
+                    "skewness": of.skewness(),
+                }))
+            }
 
-    /// The stress below the surface of the creeping body, or with `in_counter_body` of the other one.
-    ///
-    /// Raises NotImplementedError where it is not known: in layers, or with an elastic bulk.
-    #[pyo3(signature = (*, in_counter_body=false))]
-    fn stress(&self, py: Python<'_>, in_counter_body: bool) -> PyResult<SubsurfaceStress> {
-        let contact = self.get()?;
-        let stress = py
-            .detach(|| if in_counter_body { contact.stress_in_counter_body() } else { contact.stress() })
-            .or_raise()?;
-        Ok(SubsurfaceStress(stress))
-    }
+            /// The stress below the surface of the creeping body, or with `in_counter_body` of the other one.
+            ///
+            /// Raises NotImplementedError where it is not known: in layers, or with an elastic bulk.
+            #[pyo3(signature = (*, in_counter_body=false))]
+            fn stress(&self, py: Python<'_>, in_counter_body: bool) -> PyResult<SubsurfaceStress> {
+                let contact = self.shown()?;
+                let stress = py
+                    .detach(|| if in_counter_body { contact.stress_in_counter_body() } else { contact.stress() })
+                    .or_raise()?;
+                Ok(SubsurfaceStress(stress))
+            }
+        }
+    };
 }
+
+observed!(ViscoelasticContact);
+observed!(ElasticContact);
+observed!(Fields);
 
 type Labelled<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
 

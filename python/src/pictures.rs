@@ -10,7 +10,9 @@ use viscocontact::plot::{self as vp, Chart, Map, Quantity};
 
 use crate::arrays::{cell_values, column};
 use crate::contact::ViscoelasticContact;
+use crate::elastic::ElasticContact;
 use crate::errors::{OrRaise, choice};
+use crate::fields::{Fields, Showing, Shown};
 use crate::grid::Grid;
 use crate::kernels::axis;
 use crate::scratch::bytes_of;
@@ -114,54 +116,63 @@ impl Picture {
 }
 
 /// A map of a field.
-type Draw = fn(&viscocontact::ViscoelasticContact) -> viscocontact::Result<Map>;
+type Draw = for<'a> fn(viscocontact::fields::Fields<'a>) -> viscocontact::Result<Map>;
 
-#[pymethods]
-impl ViscoelasticContact {
-    /// A map of "pressure", "gap", "displacement" or "traction" with the contact outlined; `range` are the ends of the colours.
-    #[pyo3(signature = (field="pressure", *, range=None))]
-    fn picture(&self, py: Python<'_>, field: &str, range: Option<[f64; 2]>) -> PyResult<Picture> {
-        let fields: [(&str, Draw); 4] = [
-            ("pressure", Map::pressure),
-            ("gap", Map::gap),
-            ("displacement", Map::displacement),
-            ("traction", Map::traction),
-        ];
-        let (draw, contact) = (choice("field", field, &fields)?, self.get()?);
-        let picture = py.detach(|| {
-            let mut map = draw(contact)?;
-            map.range = range.unwrap_or(map.range);
-            map.draw()
-        });
-        picture.or_raise().map(Picture)
-    }
+/// Pictures of a class that has fields.
+macro_rules! drawn {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            /// A map of "pressure", "gap", "displacement" or "traction" with the contact outlined; `range` are the ends of the colours.
+            #[pyo3(signature = (field="pressure", *, range=None))]
+            fn picture(&self, py: Python<'_>, field: &str, range: Option<[f64; 2]>) -> PyResult<Picture> {
+                let fields: [(&str, Draw); 4] = [
+                    ("pressure", |of| Map::pressure(of)),
+                    ("gap", |of| Map::gap(of)),
+                    ("displacement", |of| Map::displacement(of)),
+                    ("traction", |of| Map::traction(of)),
+                ];
+                let (draw, contact) = (choice("field", field, &fields)?, self.shown()?);
+                let picture = py.detach(|| {
+                    let mut map = draw(contact)?;
+                    map.range = range.unwrap_or(map.range);
+                    map.draw()
+                });
+                picture.or_raise().map(Picture)
+            }
 
-    /// The pressure along a line of cells, as of `profile`.
-    #[pyo3(signature = (along=0, at=0.0))]
-    fn profile_picture(&self, along: usize, at: f64) -> PyResult<Picture> {
-        Chart::profile(self.get()?, axis(along)?, at).and_then(|chart| chart.draw()).or_raise().map(Picture)
-    }
+            /// The pressure along a line of cells, as of `profile`.
+            #[pyo3(signature = (along=0, at=0.0))]
+            fn profile_picture(&self, along: usize, at: f64) -> PyResult<Picture> {
+                Chart::profile(self.shown()?, axis(along)?, at).and_then(|chart| chart.draw()).or_raise().map(Picture)
+            }
 
-    /// A map of the stress below a line of cells, at `depths` [m] in equal steps: "von_mises", "tresca", "mean", "principal_1" or
-    /// "principal_3".
-    #[pyo3(signature = (depths, quantity="von_mises", *, along=0, at=0.0))]
-    fn stress_picture(
-        &self,
-        py: Python<'_>,
-        depths: Vec<f64>,
-        quantity: &str,
-        along: usize,
-        at: f64,
-    ) -> PyResult<Picture> {
-        let (contact, along, of) = (self.get()?, axis(along)?, choice("quantity", quantity, &QUANTITIES)?);
-        let name = Quantity::new(quantity.replace('_', " "), "Pa");
-        let picture = py.detach(|| {
-            let section = contact.stress()?.on_section(along, at, &depths)?;
-            Map::section(contact, &section, of, name)?.draw()
-        });
-        picture.or_raise().map(Picture)
-    }
+            /// A map of the stress below a line of cells, at `depths` [m] in equal steps: "von_mises", "tresca", "mean", "principal_1" or
+            /// "principal_3".
+            #[pyo3(signature = (depths, quantity="von_mises", *, along=0, at=0.0))]
+            fn stress_picture(
+                &self,
+                py: Python<'_>,
+                depths: Vec<f64>,
+                quantity: &str,
+                along: usize,
+                at: f64,
+            ) -> PyResult<Picture> {
+                let (contact, along, of) = (self.shown()?, axis(along)?, choice("quantity", quantity, &QUANTITIES)?);
+                let name = Quantity::new(quantity.replace('_', " "), "Pa");
+                let picture = py.detach(|| {
+                    let section = contact.stress()?.on_section(along, at, &depths)?;
+                    Map::section(contact, &section, of, name)?.draw()
+                });
+                picture.or_raise().map(Picture)
+            }
+        }
+    };
 }
+
+drawn!(ViscoelasticContact);
+drawn!(ElasticContact);
+drawn!(Fields);
 
 /// A run as an animated GIF: frames of a "pressure", "gap", "displacement" or "traction", with colours from `range[0]` to `range[1]` in SI
 /// units, each shown for `seconds`. `finish`, or the end of a `with` block, gives the file its name.
@@ -187,8 +198,8 @@ impl Animation {
     }
 
     /// Appends the state of a contact.
-    fn record(&mut self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<()> {
-        let (animation, contact) = (self.open()?, contact.get()?);
+    fn record(&mut self, py: Python<'_>, contact: Showing<'_>) -> PyResult<()> {
+        let (animation, contact) = (self.open()?, contact.shown()?);
         py.detach(|| animation.record(contact)).or_raise()
     }
 

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use viscocontact as vc;
 use viscocontact::contact::StepReport as Report;
+use viscocontact::fields::KeptFields;
 use viscocontact::run::{self as vr, Crossing};
-use viscocontact::{self as vc, ViscoelasticContact as InSpace};
 
 use crate::arrays;
 use crate::contact::ViscoelasticContact;
 use crate::errors::{Cancelled, OrRaise, choice, raised_number};
+use crate::fields::Fields;
 use crate::held::{Led, Options};
 use crate::recipe::Recipe;
 use crate::reports::StepReport;
@@ -158,9 +160,10 @@ impl Run {
         with_contact!(self, py, borrow, contact => {
             let run = contact.held.run_ref(self.number)?;
             let taken = py.detach(|| asked_for(run, kept)).or_raise()?;
-            let sample = |(report, field, state): (_, _, _)| {
+            let sample = |(report, field, kept, state): (_, _, Option<KeptFields>, _)| {
                 let contact = Led::into_object(state, py, contact.recipe.again(py))?;
-                Ok(Sample { report, field, contact })
+                let fields = kept.map(|kept| Py::new(py, Fields(kept))).transpose()?;
+                Ok(Sample { report, field, fields, contact })
             };
             taken.into_iter().map(sample).collect()
         })
@@ -269,15 +272,15 @@ fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) ->
         ("force", |contact| contact.force()),
         ("approach", |contact| contact.approach()),
         ("contact_area", |contact| contact.contact_area()),
-        ("max_pressure", |contact| contact.in_space().map_or(f64::NAN, InSpace::max_pressure)),
+        ("max_pressure", |contact| contact.in_space().map_or(f64::NAN, |fields| fields.max_pressure())),
     ];
     let known = if C::IN_SPACE { &all[..] } else { &all[..3] };
     Ok(Box::new(choice("quantity", &name, known)?))
 }
 
 /// What is kept of a sample.
-fn kept<C: Led>(sample: &vr::Sample<'_, C>) -> (Report, Option<vr::FieldReport>, C) {
-    (*sample.report(), sample.field(), sample.contact().clone())
+fn kept<C: Led>(sample: &vr::Sample<'_, C>) -> (Report, Option<vr::FieldReport>, Option<KeptFields>, C) {
+    (*sample.report(), sample.field(), C::fields_of(sample), sample.contact().clone())
 }
 
 /// What the samples that were asked for have.
@@ -291,12 +294,19 @@ pub fn asked_for<C: Led, T>(run: &vr::Run<'static, C>, of: impl Fn(&vr::Sample<'
 pub struct Sample {
     report: Report,
     field: Option<vr::FieldReport>,
+    fields: Option<Py<Fields>>,
     contact: Py<PyAny>,
 }
 
 #[pymethods]
 impl Sample {
-    /// The contact at this time.
+    /// The fields of a contact in space at this time: with `fields_to` to that accuracy. None on elastic states, whose contact has them.
+    #[getter]
+    fn fields(&self, py: Python<'_>) -> Option<Py<Fields>> {
+        self.fields.as_ref().map(|fields| fields.clone_ref(py))
+    }
+
+    /// The contact at this time; in space its pressure is that of the steps.
     #[getter]
     fn contact(&self, py: Python<'_>) -> Py<PyAny> {
         self.contact.clone_ref(py)

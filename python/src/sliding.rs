@@ -11,8 +11,8 @@ use pyo3::types::PyDict;
 use viscocontact::{self as vc, sliding as sl};
 
 use crate::arrays::{number, vectors};
-use crate::contact::ViscoelasticContact;
 use crate::errors::{Kept, OrRaise, choice, in_python};
+use crate::fields::Fields;
 use crate::grid::Grid;
 use crate::interrupt::{Listener, interruptible};
 use crate::loads::{Load, loads};
@@ -104,19 +104,10 @@ getters! {SlidingReport, of:
 /// True
 #[pyclass(module = "viscocontact")]
 pub struct SteadySliding {
-    sliding: sl::SteadySliding,
+    pub sliding: sl::SteadySliding,
     cancel: Arc<AtomicBool>,
     /// What the modulus raised.
     kept: Kept,
-    /// A contact at rest of the same parts.
-    recipe: Recipe,
-}
-
-impl SteadySliding {
-    /// The contact of the state found last.
-    pub fn get(&self) -> PyResult<&vc::ViscoelasticContact> {
-        Ok(self.sliding.contact())
-    }
 }
 
 #[pymethods]
@@ -153,8 +144,7 @@ impl SteadySliding {
         };
         let cancel = Arc::<AtomicBool>::default();
         let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
-        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options)?;
-        Ok(SteadySliding { sliding, cancel, kept, recipe })
+        Ok(SteadySliding { sliding, cancel, kept })
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
@@ -195,10 +185,10 @@ impl SteadySliding {
         listener.result(kept.raise_or(table)).map(SlidingTable)
     }
 
-    /// The state found last as a contact to look at, by all that a `ViscoelasticContact` shows: patches, profiles, distributions, stress.
+    /// The fields of the state found last, with all that a contact shows: patches, profiles, distributions, stress.
     #[getter]
-    fn contact(&self, py: Python<'_>) -> ViscoelasticContact {
-        ViscoelasticContact::of(self.sliding.contact().clone(), self.recipe.again(py))
+    fn fields(&self) -> Fields {
+        Fields(self.sliding.fields().keep())
     }
 
     /// Bytes that a contact in steady motion takes at most, before it is built. Takes the arguments of `ViscoelasticContact`.
@@ -214,7 +204,7 @@ impl SteadySliding {
     }
 
     fn __repr__(&self) -> String {
-        let [n1, n2] = self.sliding.contact().grid().cells();
+        let [n1, n2] = self.sliding.fields().grid().cells();
         format!("SteadySliding({n1} × {n2} cells)")
     }
 }

@@ -10,6 +10,7 @@ use viscocontact::states as st;
 
 use crate::arrays::{Array, to_array};
 use crate::errors::OrRaise;
+use crate::fields::Fields;
 use crate::held::Held;
 use crate::loads::Load;
 use crate::materials::Material;
@@ -109,18 +110,11 @@ impl StatesContact {
         to_array(py, pressure, &self.cells()?)
     }
 
-    /// Arrays "pressure" [Pa], "displacement" [m] and "gap" [m] of the shape of the grid, within a relative `accuracy`.
+    /// The fields within a relative `accuracy`.
     #[pyo3(signature = (accuracy=1e-3))]
-    fn fields<'py>(&self, py: Python<'py>, accuracy: f64) -> PyResult<Bound<'py, PyDict>> {
+    fn fields(&self, py: Python<'_>, accuracy: f64) -> PyResult<Fields> {
         let contact = self.get()?;
-        let fields = py.detach(|| contact.fields(accuracy)).or_raise()?;
-        let cells = self.cells()?;
-        let array = |field| to_array(py, field, &cells);
-        Ok(dict! { py;
-            "pressure": array(fields.pressure)?,
-            "displacement": array(fields.displacement)?,
-            "gap": array(fields.gap)?,
-        })
+        py.detach(|| contact.fields(accuracy)).or_raise().map(Fields)
     }
 
     /// The state as it is, to come back to by `restore`: a copy of the contact.

@@ -11,6 +11,7 @@ use viscocontact::output::{Format, write_stress};
 use crate::arrays::{Array, field, table, to_array};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
+use crate::fields::{Showing, Shown};
 use crate::grid::Grid;
 use crate::kernels::{InfluenceKernel, axis};
 use crate::reports::StepReport;
@@ -139,14 +140,14 @@ impl SubsurfaceStress {
         &self,
         py: Python<'_>,
         path: PathBuf,
-        contact: &ViscoelasticContact,
+        contact: Showing<'_>,
         depths: Vec<f64>,
         format: &str,
         title: &str,
         notes: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
         let format: Format = choice("format", format, &FORMATS)?;
-        let (contact, metadata) = (contact.get()?, metadata(title, notes)?);
+        let (contact, metadata) = (contact.shown()?, metadata(title, notes)?);
         let write = || write_stress(path, format, contact, &self.0.in_volume(&depths)?, &metadata);
         py.detach(write).or_raise()
     }

@@ -9,6 +9,7 @@ use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
+use crate::fields::{Showing, Shown};
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
 
@@ -105,7 +106,7 @@ impl FrameSeries {
     #[pyo3(signature = (folder, contact, *, format="npz", fields=None, title="", notes=None, earlier="refuse"))]
     fn new(
         folder: PathBuf,
-        contact: &ViscoelasticContact,
+        contact: Showing<'_>,
         format: &str,
         fields: Option<Vec<String>>,
         title: &str,
@@ -113,7 +114,7 @@ impl FrameSeries {
         earlier: &str,
     ) -> PyResult<FrameSeries> {
         let format = choice("format", format, &FORMATS)?;
-        let (metadata, contact) = (metadata(title, notes)?, contact.get()?);
+        let (metadata, contact) = (metadata(title, notes)?, contact.shown()?);
         let fields = match fields {
             Some(names) => names.iter().map(|name| choice("field", name, &FIELDS)).collect::<PyResult<Vec<_>>>()?,
             None => Field::of(contact).to_vec(),
@@ -123,8 +124,8 @@ impl FrameSeries {
     }
 
     /// Writes the state of the contact as the next frame, and returns its path.
-    fn record(&mut self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<PathBuf> {
-        let contact = contact.get()?;
+    fn record(&mut self, py: Python<'_>, contact: Showing<'_>) -> PyResult<PathBuf> {
+        let contact = contact.shown()?;
         py.detach(|| self.0.record(contact)).or_raise()
     }
 }

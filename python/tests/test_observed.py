@@ -25,7 +25,7 @@ def test_fields_to_an_accuracy(on_states):
     fine = ball()
     for sample in samples:
         list(fine.follow(vc.Load.force(0.3), sample.contact.time, tolerance=1e-6))
-        pressure = sample.contact.fields(1e-3)["pressure"] if on_states else sample.contact.pressure
+        pressure = (sample.contact.fields(1e-3) if on_states else sample.fields).pressure
         assert abs(pressure - fine.pressure).sum() < 3e-3 * fine.pressure.sum()
         if not on_states:
             assert 0 < sample.field["error"] < 1e-3 and sample.field["elastic_contacts"] > 0
@@ -174,13 +174,36 @@ def test_states_go_back_and_conduct():
         contact.restore(vc.StatesContact(vc.ElasticStates.cone(0.5), RUBBER))
 
 
-def test_sliding_shows_its_contact():
+def test_an_elastic_contact():
+    grid = vc.Grid(64, 3e-3)
+    contact = vc.ElasticContact(grid, BALL, 4e6, tolerance=1e-8)
+    report = contact.solve(vc.Load.force(0.5))
+    radius = (0.75 * 0.5 * 10e-3 / 4e6) ** (1 / 3)
+    assert contact.approach == pytest.approx(radius**2 / 10e-3, rel=2e-3) and report["convolutions"] > 0
+    assert contact.contact_area == pytest.approx(np.pi * radius**2, rel=5e-3) and not report["warnings"]
+    assert contact.picture("gap").pixels.std() > 0 and len(contact.patches()[1]) == 1
+    with pytest.raises(ValueError, match="normal force"):
+        contact.solve(vc.Load.force(-1.0))
+    # a surface that is displaced by u is a gap that is wider by u
+    x1 = (np.arange(64) - 31.5) * 3e-3 / 64
+    surface = np.broadcast_to(1e-6 * np.cos(2000 * x1)[:, None], (64, 64))
+    before = contact.fields
+    contact.set_surface(surface)
+    contact.solve(vc.Load.force(0.5))
+    gaps = 0.5 * (x1[:, None] ** 2 + x1[None, :] ** 2) / 10e-3
+    wider = vc.ElasticContact(grid, gaps + surface, 4e6, tolerance=1e-8)
+    wider.solve(vc.Load.force(0.5))
+    assert abs(contact.pressure - wider.pressure).sum() < 1e-6 * wider.pressure.sum()
+    assert before.force == pytest.approx(0.5) and abs(before.pressure - contact.pressure).max() > 0
+
+
+def test_sliding_shows_its_fields():
     grid = vc.Grid(32, 1e-3)
     parts = grid, vc.Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), vc.Material(vc.Rheology.prony(1e6, [(1e7, 1e-4)]))
     kernel = vc.InfluenceKernel.periodic(grid)
     sliding = vc.SteadySliding(*parts, kernel=kernel)
     table = sliding.sweep([0.1, 1.0], vc.Load.force(0.02))
-    contact = sliding.contact
+    contact = sliding.fields
     assert (contact.pressure == sliding.pressure).all() and len(contact.patches()[1]) >= 1
     assert (sliding.traction == sliding.pressure).all()
     assert vc.SteadySliding.memory(*parts, kernel=kernel) > 8 * 32 * 32

@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::contact::window::fields::transferred;
-use crate::contact::{Indenter, Region, Scene, State, Trial, Window};
+use crate::contact::step::attraction::Attracted;
+use crate::contact::{Scene, State};
+use crate::equilibrium::pressed::Pressed;
+use crate::equilibrium::window::fields::transfer_by_role;
+use crate::equilibrium::{Indenter, Region, Trial, Window};
 use crate::error::Result;
 
 /// State, window and trial of one computation. A step that needs a larger region continues in a copy, which the
@@ -13,12 +16,15 @@ pub(crate) struct Computation {
     pub(crate) state: State,
     pub(crate) window: Window,
     pub(crate) trial: Trial,
+    /// What steps of surfaces that attract each other work in, from the first one on.
+    pub(crate) attracted: Option<Box<Attracted>>,
 }
 
 impl Computation {
     pub(crate) fn new(scene: &Scene, state: State) -> Computation {
-        let window = Window::new(scene, &state.region, &state.indenter);
-        Computation { trial: Trial::new(state.region.len(), scene.bodies), window, state }
+        let window = Window::new(&scene.ground, &state.held.region, &state.held.indenter);
+        let trial = Trial::new(state.held.region.len(), scene.ground.bodies);
+        Computation { trial, window, state, attracted: None }
     }
 
     /// A copy on another region, for a step under `indenter`. This state keeps its values and loses the start of its last step.
@@ -32,20 +38,31 @@ impl Computation {
         indenter: &Arc<Indenter>,
     ) -> Result<Box<Computation>> {
         self.check_memory_for(scene, &region)?;
-        let cells = region.len();
-        let (state, window) = transferred(scene, &mut self.state, region, indenter);
-        Ok(Box::new(Computation { state, window, trial: Trial::new(cells, scene.bodies) }))
+        let mut window = Window::new(&scene.ground, &region, indenter);
+        self.state.history.apply_pending_step();
+        let mut transfer = transfer_by_role(&self.state.held.region, &region, &mut window);
+        let mut state = self.state.map(&region, &mut transfer);
+        drop(transfer);
+        state.sum_up();
+        let trial = Trial::new(region.len(), scene.ground.bodies);
+        Ok(Box::new(Computation { state, window, trial, attracted: None }))
+    }
+
+    /// Where the trial presses. A call of all ranks.
+    pub(crate) fn pressed(&self, scene: &Scene) -> Pressed {
+        let Computation { state: State { held, .. }, trial, .. } = self;
+        Pressed::by(&trial.solution.pressure, &scene.ground, &held.region, &held.indenter)
     }
 
     /// Rejects a region for which there is no memory beside this one.
     pub(crate) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let history = &self.state.history;
-        scene.check_memory(history, region, scene.memory_on(history, &self.state.region).total())
+        scene.check_memory(history, region, scene.memory_on(history, &self.state.held.region).total())
     }
 
     /// Goes to another state, without reallocating where the regions are the same.
     pub(crate) fn restore(&mut self, scene: &Scene, state: &State) {
-        if self.state.region == state.region {
+        if self.state.held.region == state.held.region {
             self.state.clone_from(state);
         } else {
             *self = Computation::new(scene, state.clone());

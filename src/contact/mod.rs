@@ -30,45 +30,27 @@ mod state;
 #[cfg(feature = "checkpoint")]
 pub(crate) mod checkpoint;
 mod computation;
-/// Operations of a contact whose rows ranks share out.
-mod distributed {
-    pub(in crate::contact) mod area;
-    pub(in crate::contact) mod gap;
-    pub(in crate::contact) mod local_rows;
-}
-mod indenter;
 mod scene;
-mod settings;
 mod stepper;
-pub(crate) mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
 pub use crate::error::{StepError, Unsteady};
+pub use crate::fields::BodyState;
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use read::energies::{Energies, EnergyBalance};
-pub(crate) use read::limits::{DEEP, Limits, STEEP};
-pub use read::report::{BodyState, Estimated, Figures, StepReport};
+pub(crate) use read::limits::Limits;
+pub use read::report::{Estimated, StepReport};
 #[cfg(feature = "stress")]
 pub use read::stress::StressHistory;
-pub use read::warnings::Warnings;
-pub(crate) use settings::DEFAULT_TOLERANCE;
-pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
-pub(crate) use step::constraints::depth_of_power;
-pub(crate) use stepper::impl_contact;
 pub use stepper::{Contact, ViscoelasticContact};
 
+pub use crate::equilibrium::{Edge, Figures, Frame, Settings, Solver, TimeRule, Warnings};
 pub(crate) use computation::Computation;
-use indenter::Indenter;
-use indenter::hull::Hull;
 pub(crate) use scene::Scene;
-pub(crate) use state::State;
-use state::{Clock, Equilibrium};
+pub(crate) use state::{Clock, State};
 pub(crate) use step::request::Step;
-use step::request::Trial;
-use window::Window;
-use window::region::Region;

@@ -3,12 +3,11 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use crate::contact::read::view::View;
-use crate::contact::{Computation, Figures, Scene, State, StepReport, Warnings};
+use crate::contact::{Computation, Scene, State, StepReport};
 use crate::error::Result;
-use crate::geometry::{Gap, Missed};
+use crate::fields::{About, Fields, Surface, View};
+use crate::geometry::Missed;
 use crate::load::Load;
-use crate::solver::RigidMotion;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -60,67 +59,19 @@ pub struct ViscoelasticContact {
 impl ViscoelasticContact {
     pub(crate) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
         let mut view = View::default();
-        view.refresh(&computation.state);
+        view.refresh(&computation.state.held);
         ViscoelasticContact { scene: Arc::new(scene), computation, missed, view, saved_run: None }
     }
 
-    /// The gap before the bodies deform.
-    pub(crate) fn initial_gap(&self) -> &Gap {
-        self.computation.state.indenter.gap()
-    }
-
-    /// The same contact with a pressure on the whole grid in the place of its own; `None` where it does not compute all of these cells.
-    pub(crate) fn with_pressure(&self, pressure: &[f64]) -> Option<ViscoelasticContact> {
-        let mut contact = self.clone();
-        let State { region, current, .. } = &mut contact.computation.state;
-        let n2 = region.whole.cells()[1];
-        let pressed = |k: usize| pressure[k] > 0.0;
-        if (0..pressure.len()).any(|k| pressed(k) && region.find([k / n2, k % n2]).is_none()) {
-            return None;
-        }
-        current.contact_cells = (0..pressure.len()).filter(|k| pressed(*k)).count();
-        for (k, own) in current.solution.pressure.iter_mut().enumerate() {
-            let [i, j] = region.cell(k);
-            *own = pressure[i * n2 + j];
-        }
-        contact.computation.state.extrapolation.renew();
-        contact.computation.state.sum_up();
-        contact.view.refresh(&contact.computation.state);
-        Some(contact)
-    }
-
-    /// Takes over the state of a steady motion, of which it has the fields but not the past.
-    /// Returns the warnings of a step to it.
-    pub(crate) fn show_steady(
-        &mut self,
-        load: Load,
-        motion: RigidMotion,
-        pressure: Vec<f64>,
-        displacement: Vec<f64>,
-    ) -> (Warnings, Figures) {
-        let state = &mut self.computation.state;
-        state.loads[0] = load;
-        state.current.motions[0] = motion;
-        self.computation.trial.solution.pressure.clone_from(&pressure);
-        state.current.solution.pressure = pressure;
-        state.history.show(displacement);
-        state.sum_up();
-        self.view.refresh(state);
-        let pressed = self.computation.pressed(&self.scene, &self.computation.state.indenter);
-        self.computation.state.current.contact_cells = pressed.cells;
-        let StepReport { warnings, figures, .. } = self.report(None, pressed);
-        (warnings | self.scene.limits.warnings(0.0, 0.0), figures)
-    }
-
-    /// Scales the pressure of a steady motion to that under `load`, of a body with moduli `factor` times as great.
-    pub(crate) fn scale_steady(&mut self, load: Load, factor: f64) {
-        if factor != 1.0 {
-            let state = &mut self.computation.state;
-            state.loads[0] = load;
-            state.current.solution.pressure.iter_mut().for_each(|p| *p *= factor);
-            state.sum_up();
-            self.view.refresh(state);
-        }
+    /// Its fields, and what follows from them.
+    pub fn fields(&self) -> Fields<'_> {
+        let (Scene { ground, material, temperature, .. }, Computation { state, window, .. }) =
+            (&*self.scene, &self.computation);
+        let State { held, history, clock, .. } = state;
+        let surface = Surface { own: history.displacement(), far: history.far_source().map(|source| (1.0, source)) };
+        let (time, material, temperature) = (Some(clock.time), Some(material), temperature.as_ref());
+        let about = About { time, reduced_time: clock.reduced_time, material, temperature };
+        Fields { ground, held, surface, view: &self.view, kernel: Some(&window.kernel), about }
     }
 }
 
@@ -180,30 +131,46 @@ pub trait Contact: Clone {
         if area > 0.0 { self.force() / area } else { 0.0 }
     }
 
-    /// The contact in space, with pressures and cells; `None` for one on elastic states.
-    fn in_space(&self) -> Option<&ViscoelasticContact>;
+    /// The fields of a contact in space; `None` for one on elastic states, which takes work to find them.
+    fn in_space(&self) -> Option<Fields<'_>>;
 }
 
-/// Implements [`Contact`] by methods of the type of the same names.
-macro_rules! impl_contact {
-    ($contact:ty, $in_space:expr) => {
-        impl_contact!($contact, $in_space; time -> f64, force -> f64, approach -> f64, tilt -> [f64; 2], contact_area -> f64,
-            is_separated -> bool);
-    };
-    ($contact:ty, $in_space:expr; $($read:ident -> $value:ty),*) => {
-        impl $crate::contact::Contact for $contact {
-            fn step(&mut self, dt: f64, load: $crate::load::Load) -> $crate::Result<$crate::contact::StepReport> {
-                <$contact>::step(self, dt, load)
-            }
-            $(fn $read(&self) -> $value {
-                <$contact>::$read(self)
-            })*
-            fn in_space(&self) -> Option<&$crate::ViscoelasticContact> {
-                ($in_space)(self)
-            }
-        }
-    };
+impl<'a> From<&'a ViscoelasticContact> for Fields<'a> {
+    fn from(contact: &'a ViscoelasticContact) -> Fields<'a> {
+        contact.fields()
+    }
 }
-pub(crate) use impl_contact;
 
-impl_contact!(ViscoelasticContact, Some);
+impl Contact for ViscoelasticContact {
+    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
+        ViscoelasticContact::step(self, dt, load)
+    }
+
+    fn time(&self) -> f64 {
+        ViscoelasticContact::time(self)
+    }
+
+    fn force(&self) -> f64 {
+        self.fields().force()
+    }
+
+    fn approach(&self) -> f64 {
+        self.fields().approach()
+    }
+
+    fn tilt(&self) -> [f64; 2] {
+        self.fields().tilt()
+    }
+
+    fn contact_area(&self) -> f64 {
+        self.fields().contact_area()
+    }
+
+    fn is_separated(&self) -> bool {
+        self.fields().is_separated()
+    }
+
+    fn in_space(&self) -> Option<Fields<'_>> {
+        Some(self.fields())
+    }
+}

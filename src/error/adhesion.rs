@@ -45,7 +45,7 @@ pub enum AdhesionError {
     /// assert!(force < -4.0 && time == contact.time() + 0.5);
     /// // 20 R away nothing acts: the surface recovers
     /// contact.step(0.5, Load::approach(-20.0))?;
-    /// assert!(contact.is_separated());
+    /// assert!(contact.fields().is_separated());
     /// # Ok::<(), Error>(())
     /// ```
     #[error("at t = {} s the force of {} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME), rounded(*.force, 5))]

@@ -67,7 +67,6 @@ not_covered! {
     OTHER_ROWS: "a geometry that was given for other ranks", Ranks: ONE_PROCESS;
 
     // steps and their loads
-    STEP: "a step", SteadyMotion: "build a contact by Builder::build to step";
     STEP_ALONG_PATH: "a step along a path",
         Ranks: ONE_PROCESS, Attraction: "keep the indenter in place", FixedToIndenter: OTHER_FRAME;
     STEP_OVER_BODIES: "a step over the bodies", FixedToBodies: OTHER_FRAME;

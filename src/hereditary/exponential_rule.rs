@@ -69,12 +69,9 @@ pub(crate) struct ExponentialRule {
     relaxed: RelaxedSteps,
 }
 
-clone_by_fields! {
-    ExponentialRule {
-        relaxation, spans, known, kept, lacking, at_start, tried, committed, greatest, repeated,
-        accepted, relaxed,
-    }
-}
+clone_by_fields! { ExponentialRule {
+    relaxation, spans, known, kept, lacking, at_start, tried, committed, greatest, repeated, accepted, relaxed,
+} }
 
 /// What a step does to a field that follows the rule.
 #[derive(Debug, Default, PartialEq)]
@@ -106,11 +103,7 @@ pub(crate) struct Weights {
     known: usize,
 }
 
-clone_by_fields! {
-    Weights {
-        dt, degree, corrects, c, past, branches, terms, ratios, defects, answer, span, known,
-    }
-}
+clone_by_fields! { Weights { dt, degree, corrects, c, past, branches, terms, ratios, defects, answer, span, known } }
 
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
 const LONGEST_CONTINUED: f64 = 4.0;

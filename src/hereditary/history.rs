@@ -110,11 +110,6 @@ impl History {
         values
     }
 
-    /// Takes over a displacement, of which it does not know the past.
-    pub(crate) fn show(&mut self, displacement: Vec<f64>) {
-        self.displacement.now = displacement;
-    }
-
     /// Whether the displacement outside a window of the grid can be found.
     pub(crate) fn has_far_field(&self) -> bool {
         self.frame.is_none() && !self.grows()

@@ -4,7 +4,7 @@ use crate::Grid;
 use crate::sum::greatest;
 
 /// Position of a contact relative to a point, see
-/// [`ViscoelasticContact::asymmetry`](crate::ViscoelasticContact::asymmetry).
+/// [`Fields::asymmetry`](crate::fields::Fields::asymmetry).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -63,10 +63,10 @@ mod tests {
     fn a_sphere_off_the_origin() {
         let [a, _] = hertz(0.2);
         let contact = sphere([120, 100], [2.4e-3, 2.0e-3], [0.3e-3, -0.2e-3], 0.2);
-        let found = contact.asymmetry([0.1e-3, -0.2e-3]).unwrap().unwrap();
+        let found = contact.fields().asymmetry([0.1e-3, -0.2e-3]).unwrap().unwrap();
         let [x1, x2] = found.center_of_pressure;
         assert!((x1 - 0.3e-3).abs() < 1e-7 && (x2 + 0.2e-3).abs() < 1e-7, "{x1:e} {x2:e}");
-        assert_abs_diff_eq!(contact.moment()[0] / contact.force(), x1, epsilon = 1e-15);
+        assert_abs_diff_eq!(contact.fields().moment()[0] / contact.force(), x1, epsilon = 1e-15);
         // within a cell
         for (found, exact) in found.reach.as_flattened().iter().zip([a - 0.2e-3, a + 0.2e-3, a, a]) {
             assert!((found - exact).abs() < 20.0e-6, "{found:e} {exact:e}");
@@ -74,9 +74,9 @@ mod tests {
         assert_abs_diff_eq!(found.skewness()[0], 0.2e-3 / a, epsilon = 0.05);
         assert!(found.skewness()[1].abs() < 1e-9);
         // about a point beyond its edge the whole contact lies on one side
-        let beyond = contact.asymmetry([1.1e-3, 0.0]).unwrap().unwrap();
+        let beyond = contact.fields().asymmetry([1.1e-3, 0.0]).unwrap().unwrap();
         assert!(beyond.reach[0][1] < 0.0 && beyond.skewness()[0] < -1.0);
-        assert_eq!(contact.asymmetry([f64::NAN, 0.0]).unwrap_err().kind(), crate::ErrorKind::Value);
+        assert_eq!(contact.fields().asymmetry([f64::NAN, 0.0]).unwrap_err().kind(), crate::ErrorKind::Value);
     }
 
     #[test]
@@ -93,7 +93,7 @@ mod tests {
             .build()
             .unwrap();
         contact.step(0.0, Load::force(50.0)).unwrap();
-        let found = contact.asymmetry([at, 0.0]).unwrap().unwrap();
+        let found = contact.fields().asymmetry([at, 0.0]).unwrap().unwrap();
         assert!((found.center_of_pressure[0] - at).abs() < 1e-6, "{found:?}");
         assert!(found.reach[0].iter().all(|reach| (0.1e-3..1.0e-3).contains(reach)), "{found:?}");
     }

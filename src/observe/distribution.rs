@@ -81,7 +81,7 @@ mod tests {
     fn pressures_under_a_sphere() {
         let [a, peak] = hertz(0.5);
         let side = 2.6 * a;
-        let found = sphere([256; 2], [side; 2], [0.0; 2], 0.5).pressure_distribution(10).unwrap();
+        let found = sphere([256; 2], [side; 2], [0.0; 2], 0.5).fields().pressure_distribution(10).unwrap();
         let scale = 2.0 * std::f64::consts::PI * (a / side).powi(2) / peak.powi(2);
         for (p, density) in found.centers().zip(&found.density) {
             // each tenth of the peak holds at least 200 cells
@@ -99,15 +99,15 @@ mod tests {
             .build()
             .unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
-        let found = contact.gap_distribution(5).unwrap();
+        let found = contact.fields().gap_distribution(5).unwrap();
         assert_eq!((found.share_at_zero, found.density.len()), (1.0, 0));
 
         let contact = sphere([32; 2], [4.0e-3; 2], [0.0; 2], 0.5);
-        let found = contact.gap_distribution(50).unwrap();
+        let found = contact.fields().gap_distribution(50).unwrap();
         assert_eq!(found.share_at_zero, contact.contact_cells() as f64 / 1024.0);
         let sum = found.density.iter().sum::<f64>() * found.width;
         assert_abs_diff_eq!(sum + found.share_at_zero, 1.0, epsilon = 1e-12);
-        let corner = contact.profile(crate::Axis::X1, -2.0e-3).unwrap().gap[0];
+        let corner = contact.fields().profile(crate::Axis::X1, -2.0e-3).unwrap().gap[0];
         assert_abs_diff_eq!(found.width * 50.0 / corner, 1.0, epsilon = 1e-12);
     }
 }

@@ -7,7 +7,7 @@ use crate::observe::area::{End, Pressed};
 use crate::sum::{most, sum};
 
 /// Estimated relative errors of a state due to the width of its cells, made by
-/// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error). Typical sizes, not bounds.
+/// [`Fields::mesh_error`](crate::fields::Fields::mesh_error). Typical sizes, not bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

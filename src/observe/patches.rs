@@ -251,13 +251,13 @@ mod tests {
     #[test]
     fn a_sphere_has_one_patch_with_the_whole_force() {
         let contact = sphere([64, 48], [2.0e-3, 1.5e-3], [0.1e-3, -0.05e-3], 0.1);
-        let found = contact.patches().unwrap();
+        let found = contact.fields().patches().unwrap();
         assert_eq!(found.all.len(), 1);
         let patch = found.all[0];
         assert_eq!(patch.cells, contact.contact_cells());
         assert_abs_diff_eq!(patch.force, 0.1, epsilon = 1e-9);
         assert!((patch.centroid[0] - 0.1e-3).abs() < 1e-5 && (patch.centroid[1] + 0.05e-3).abs() < 1e-5);
-        assert_eq!(patch.max_pressure, contact.max_pressure());
+        assert_eq!(patch.max_pressure, contact.fields().max_pressure());
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static st
 }
 
 /// Pressure, displacement, gap and net traction along a line of cells, see
-/// [`ViscoelasticContact::profile`](crate::ViscoelasticContact::profile).
+/// [`Fields::profile`](crate::fields::Fields::profile).
 #[derive(Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -50,27 +50,27 @@ mod tests {
     fn profiles_are_lines_of_the_fields() {
         let contact = sphere([24, 32], [2.4e-3, 3.2e-3], [0.2e-3, -0.1e-3], 0.2);
         let mut gap = vec![0.0; 24 * 32];
-        contact.gap_into(&mut gap).unwrap();
-        let profile = contact.profile(Axis::X1, 0.26e-3).unwrap();
+        contact.fields().gap_into(&mut gap).unwrap();
+        let profile = contact.fields().profile(Axis::X1, 0.26e-3).unwrap();
         assert_abs_diff_eq!(profile.at, 0.25e-3, epsilon = 1e-12);
         for i in 0..24 {
             let k = i * 32 + 18;
             assert_eq!(profile.positions[i], contact.grid().center(i, 18)[0]);
-            let values = [contact.pressure()[k], contact.displacement()[k], gap[k]];
+            let values = [contact.pressure()[k], contact.fields().displacement()[k], gap[k]];
             assert_eq!([profile.pressure[i], profile.displacement[i], profile.gap[i]], values);
         }
-        let profile = contact.profile(Axis::X2, -1.2e-3).unwrap();
+        let profile = contact.fields().profile(Axis::X2, -1.2e-3).unwrap();
         assert_eq!(profile.at, contact.grid().center(0, 0)[0]);
         assert_eq!(profile.gap, gap[..32]);
         assert_eq!(profile.positions[31], contact.grid().center(0, 31)[1]);
-        assert_eq!(contact.profile(Axis::X2, 1.2e-3).unwrap().gap, gap[23 * 32..]);
+        assert_eq!(contact.fields().profile(Axis::X2, 1.2e-3).unwrap().gap, gap[23 * 32..]);
     }
 
     #[test]
     fn lines_outside_the_grid_are_refused() {
         let contact = sphere([8, 8], [4.0e-3; 2], [0.0; 2], 0.1);
         for at in [2.1e-3, f64::NAN, f64::NEG_INFINITY] {
-            let error = contact.profile(Axis::X1, at).unwrap_err();
+            let error = contact.fields().profile(Axis::X1, at).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { field: "coordinate of the profile", .. }));
         }
     }

@@ -20,12 +20,12 @@ fn columns<C: Contact>(_: &C) -> [Column<C>; 17] {
         ("approach [m]", |contact, _| number(contact.approach())),
         ("tilt 1 [rad]", |contact, _| number(contact.tilt()[0])),
         ("tilt 2 [rad]", |contact, _| number(contact.tilt()[1])),
-        ("moment 1 [N m]", |contact, _| known(contact.in_space().map(|contact| contact.moment()[0]))),
-        ("moment 2 [N m]", |contact, _| known(contact.in_space().map(|contact| contact.moment()[1]))),
+        ("moment 1 [N m]", |contact, _| known(contact.in_space().map(|fields| fields.moment()[0]))),
+        ("moment 2 [N m]", |contact, _| known(contact.in_space().map(|fields| fields.moment()[1]))),
         ("contact area [m2]", |contact, _| number(contact.contact_area())),
         ("contact cells", |_, report| report.contact_cells.to_string()),
         ("mean pressure [Pa]", |contact, _| number(contact.mean_pressure())),
-        ("max pressure [Pa]", |contact, _| known(contact.in_space().map(|contact| contact.max_pressure()))),
+        ("max pressure [Pa]", |contact, _| known(contact.in_space().map(|fields| fields.max_pressure()))),
         ("iterations", |_, report| report.iterations.to_string()),
         ("convolutions", |_, report| report.convolutions.to_string()),
         ("preconditioner applications", |_, report| report.preconditioner_applications.to_string()),
@@ -37,7 +37,7 @@ fn columns<C: Contact>(_: &C) -> [Column<C>; 17] {
 /// The result of every rank, or the error of one.
 fn agreed<T>(contact: &impl Contact, own: Result<T>) -> Result<T> {
     match contact.in_space() {
-        Some(contact) => contact.agreed(own),
+        Some(fields) => fields.agreed(own),
         None => own,
     }
 }
@@ -125,7 +125,7 @@ impl CsvHistory {
             Ok(file)
         };
         let file = match contact.in_space() {
-            Some(contact) => contact.by_one_rank(create)?,
+            Some(fields) => fields.by_one_rank(create)?,
             None => Some(create()?),
         };
         Ok(CsvHistory { path: path.to_owned(), file, additional: additional.len() })
@@ -149,6 +149,7 @@ impl CsvHistory {
 
 /// The file of a history of these columns, cut off after the state of a contact.
 fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<Appending<File>> {
+    let now = [contact.time(), contact.force(), contact.approach()];
     let file = File::options().read(true).write(true).open(path)?;
     let mut lines = io::BufReader::new(&file);
     let (mut number, mut end, mut kept, mut line) = (0, 0, Kept::default(), String::new());
@@ -158,7 +159,7 @@ fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<App
         match (number, &numbers[..]) {
             (0, _) if line.starts_with("# ") => kept.earlier = end,
             (1, _) if line.trim_end_matches(['\n', '\r']) == names => kept.earlier = end,
-            (2.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], contact) => {}
+            (2.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], now) => {}
             _ => break,
         }
         number += 1;

@@ -1,6 +1,7 @@
 //! The fields of a contact that can be written.
 
-use crate::{Result, ViscoelasticContact};
+use crate::Result;
+use crate::fields::Fields;
 
 /// A field that can be written, with one value per cell.
 ///
@@ -13,14 +14,14 @@ use crate::{Result, ViscoelasticContact};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
-    /// [`ViscoelasticContact::pressure`](crate::ViscoelasticContact::pressure) \[Pa\].
+    /// [`Fields::pressure`] \[Pa\].
     Pressure,
-    /// [`ViscoelasticContact::displacement`](crate::ViscoelasticContact::displacement) \[m\].
+    /// [`Fields::displacement`] \[m\].
     Displacement,
-    /// [`ViscoelasticContact::gap_into`](crate::ViscoelasticContact::gap_into) \[m\]; +∞ where the
+    /// [`Fields::gap_into`] \[m\]; +∞ where the
     /// initial gap is infinite.
     Gap,
-    /// [`ViscoelasticContact::traction_into`](crate::ViscoelasticContact::traction_into): the net traction \[Pa\], < 0 where the bodies
+    /// [`Fields::traction_into`]: the net traction \[Pa\], < 0 where the bodies
     /// pull at each other; without attraction the pressure.
     Traction,
 }
@@ -35,8 +36,8 @@ impl Field {
 
     /// The fields of a contact: all of them where surfaces [attract](crate::adhesion) each other, else all but [`Field::Traction`], which
     /// is the pressure then.
-    pub fn of(contact: &ViscoelasticContact) -> &'static [Field] {
-        if contact.attraction().is_some() { &Field::ALL } else { &Field::ALL[..3] }
+    pub fn of<'a>(contact: impl Into<Fields<'a>>) -> &'static [Field] {
+        if contact.into().attraction().is_some() { &Field::ALL } else { &Field::ALL[..3] }
     }
 
     /// Name in files.
@@ -51,7 +52,7 @@ impl Field {
 
     /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the values of
     /// a field that the contact does not store.
-    pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
+    pub(crate) fn values<'a>(self, contact: Fields<'a>, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {
             Field::Pressure => Ok(contact.pressure()),
             Field::Displacement => Ok(contact.displacement()),

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-use crate::ViscoelasticContact;
 use crate::error::Result;
+use crate::fields::Fields;
 use crate::output::{Field, Format};
 
 /// Cells that ranks send at a time, or one row or some columns where they have more.
@@ -17,7 +17,7 @@ const LEAST_COLUMNS: usize = 8;
 /// and the other ranks send their rows piece by piece.
 #[derive(Debug)]
 pub(super) struct FieldValues<'a> {
-    contact: &'a ViscoelasticContact,
+    contact: Fields<'a>,
     pub(super) fields: &'a [Field],
     format: Format,
     /// Values of a field that the contact does not store.
@@ -27,7 +27,7 @@ pub(super) struct FieldValues<'a> {
 /// Writes a file with these fields in the place of an earlier file. A call of all ranks, of which rank 0 writes.
 pub(super) fn write_fields(
     path: &Path,
-    (contact, fields, format): (&ViscoelasticContact, &[Field], Format),
+    (contact, fields, format): (Fields<'_>, &[Field], Format),
     buffer: &mut Vec<f64>,
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
@@ -45,7 +45,7 @@ impl FieldValues<'_> {
         let FieldValues { contact, fields, format, buffer } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
-        let values = field.values(contact, buffer).map_err(io::Error::other)?;
+        let values = field.values(*contact, buffer).map_err(io::Error::other)?;
         let [n1, n2] = contact.grid().cells();
         let by_rows = !format.is_vtk();
         let (all, most) =
@@ -112,7 +112,7 @@ mod tests {
         ] {
             for failing in 0..4 {
                 let written = Threads::run(3, |ranks| {
-                    let mut contact = ViscoelasticContact::builder(Grid::square(256, 4.0e-3)?)
+                    let mut contact = crate::ViscoelasticContact::builder(Grid::square(256, 4.0e-3)?)
                         .geometry(&Sphere::new(10.0e-3)?)
                         .material(Material::incompressible(Elastic::new(1.0e6)?))
                         .ranks(ranks)
@@ -122,7 +122,7 @@ mod tests {
                     let full = |taken: usize, most: usize| {
                         if taken > most { Err(io::Error::other("full")) } else { Ok(()) }
                     };
-                    let failed = write_fields(&path, (&contact, &fields, format), &mut buffer, |_, values| {
+                    let failed = write_fields(&path, (contact.fields(), &fields, format), &mut buffer, |_, values| {
                         let mut taken = 0;
                         for _ in fields {
                             values.next(|part| {
@@ -133,7 +133,7 @@ mod tests {
                         Ok(())
                     });
                     let mut count = 0;
-                    write_fields(&path, (&contact, &fields, format), &mut buffer, |_, values| {
+                    write_fields(&path, (contact.fields(), &fields, format), &mut buffer, |_, values| {
                         values.next(|part| {
                             count += part.len();
                             Ok(())

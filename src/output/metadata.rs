@@ -1,6 +1,7 @@
 //! The description of a run in its files.
 
 use crate::contact::{Contact, Settings};
+use crate::fields::{About, Fields};
 use crate::output::Field;
 use crate::rheology::{Material, TemperatureHistory, Volume};
 
@@ -78,26 +79,32 @@ impl Metadata {
     /// temperature\], or the `corners` of a function. Of a contact on elastic states there is no more than title, notes, crate and
     /// version, units and conventions.
     pub fn json(&self, contact: &impl Contact) -> String {
+        self.of(contact.in_space())
+    }
+
+    /// [`Metadata::json`] of a contact with these fields.
+    pub(super) fn of(&self, contact: Option<Fields<'_>>) -> String {
         let units = Field::ALL.map(|field| (field.name(), field.unit())).into_iter().chain(UNITS);
         let units = ("units", object(units.map(|(name, unit)| (name, text(unit)))));
         let about = self.head().into_iter();
         let after = [units, ("conventions", text(CONVENTIONS))];
-        let Some(contact) = contact.in_space() else { return object(about.chain(after)) };
+        let Some(contact) = contact else { return object(about.chain(after)) };
         let grid = contact.grid();
         let grid = object([
             ("cells", format!("{:?}", grid.cells())),
             ("spacing", format!("{:?}", grid.spacing())),
             ("lengths", format!("{:?}", grid.lengths())),
         ]);
-        let temperature = contact.temperature().map(|history| ("temperature", temperature(history)));
+        let About { material: bodies, temperature: history, .. } = contact.about;
+        let bodies = bodies.map(|bodies| ("material", material(bodies)));
+        let temperature = history.map(|history| ("temperature", temperature(history)));
         let scene = [
             ("grid", grid),
             ("bodies", contact.bodies().to_string()),
             ("kernel", text(&contact.kernel().to_string())),
-            ("settings", settings(contact.settings())),
-            ("material", material(contact.material())),
+            ("settings", settings(&contact.ground.settings)),
         ];
-        object(about.chain(scene).chain(temperature).chain(after))
+        object(about.chain(scene).chain(bodies).chain(temperature).chain(after))
     }
 
     /// Title, notes and version of the crate as JSON.

@@ -59,7 +59,7 @@ pub use states::{read_states, write_states};
 #[cfg(feature = "stress")]
 pub use stress::write_stress;
 
-use crate::contact::Contact;
+use crate::fields::Fields;
 
 /// What becomes of the files of an earlier run, for [`CsvHistory::create`] and [`FrameSeries::create`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,17 +84,22 @@ struct Kept {
 
 impl Kept {
     /// Includes what ends at `end`, with its time, force and approach, unless it is later than the contact.
-    fn includes(&mut self, end: u64, state: [f64; 3], contact: &impl Contact) -> bool {
+    fn includes(&mut self, end: u64, state: [f64; 3], now: [f64; 3]) -> bool {
         let time = state[0];
-        if time < contact.time() {
+        if time < now[0] {
             self.earlier = end;
-        } else if state == [contact.time(), contact.force(), contact.approach()] {
+        } else if state == now {
             self.with_state = Some(end);
         }
-        time <= contact.time()
+        time <= now[0]
     }
 
     fn end(&self) -> u64 {
         self.with_state.unwrap_or(self.earlier)
     }
+}
+
+/// The time of a frame: 0 of a contact that knows none.
+fn time_of(contact: Fields<'_>) -> f64 {
+    contact.time().unwrap_or(0.0)
 }

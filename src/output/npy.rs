@@ -3,11 +3,12 @@
 use std::io::Write;
 use std::path::Path;
 
+use crate::Grid;
 use crate::error::{Result, exact_length};
+use crate::fields::Fields;
 use crate::file::{npy, replace, write_numbers};
 use crate::output::field_values::write_fields;
 use crate::output::{Field, Format};
-use crate::{Grid, ViscoelasticContact};
 
 /// Writes a field, one value per cell of `grid`, as an NPY file: a `float64` array of the shape of the grid, so that
 /// `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. An existing file is replaced.
@@ -57,7 +58,8 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn write_field_npy(path: impl AsRef<Path>, contact: &ViscoelasticContact, field: Field) -> Result<()> {
+pub fn write_field_npy<'a>(path: impl AsRef<Path>, contact: impl Into<Fields<'a>>, field: Field) -> Result<()> {
+    let contact = contact.into();
     write_fields(path.as_ref(), (contact, &[field], Format::Npz), &mut Vec::new(), |out, values| {
         out.write_all(&npy::header("<f8", &contact.grid().cells()))?;
         values.next(|part| write_numbers(out, part.iter().copied()))

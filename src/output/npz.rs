@@ -6,21 +6,22 @@ use std::io::{self, BufWriter, Read, Seek, Write};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
+use crate::Grid;
+use crate::fields::Fields;
 use crate::file::{npy, write_numbers};
-use crate::output::Metadata;
 use crate::output::deferred::Deferred;
 use crate::output::field_values::FieldValues;
-use crate::{Grid, ViscoelasticContact};
+use crate::output::{Metadata, time_of};
 
 /// Writes a frame; `area` is the contact area.
 pub(super) fn write_frame(
     out: &mut (impl Write + Seek),
-    (contact, area): (&ViscoelasticContact, f64),
+    (contact, area): (Fields<'_>, f64),
     metadata: &Metadata,
     values: &mut FieldValues<'_>,
 ) -> io::Result<()> {
     let cells = contact.grid().cells();
-    let mut archive = Archive::new(out, contact.time(), contact.grid())?;
+    let mut archive = Archive::new(out, time_of(contact), contact.grid())?;
     for field in values.fields {
         let mut array = archive.array(field.name(), &cells)?;
         values.next(|part| write_numbers(&mut array, part.iter().copied()))?;
@@ -30,7 +31,7 @@ pub(super) fn write_frame(
     archive.add("force", &[], &[contact.force()])?;
     archive.add("tilt", &[2], &contact.tilt())?;
     archive.add("contact_area", &[], &[area])?;
-    archive.finish(&metadata.json(contact))
+    archive.finish(&metadata.of(Some(contact)))
 }
 
 /// Time, force and approach of a frame.

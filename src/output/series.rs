@@ -4,12 +4,13 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::ViscoelasticContact;
 use crate::error::Result;
+use crate::fields::Fields;
 use crate::file::{check_regular, failed, replace};
 use crate::output::field_values::write_fields;
 #[cfg(feature = "npy")]
 use crate::output::npz;
+use crate::output::time_of;
 use crate::output::vtk;
 use crate::output::{Earlier, Field, Format, Kept, Metadata};
 
@@ -59,11 +60,11 @@ impl FrameSeries {
     /// # Errors
     /// If the folder cannot be used, contains frames where [`Earlier`] refuses them or one that cannot be read where they are continued, or a field is requested
     /// twice.
-    pub fn create(
+    pub fn create<'a>(
         folder: impl AsRef<Path>,
         format: Format,
         metadata: &Metadata,
-        contact: &ViscoelasticContact,
+        contact: impl Into<Fields<'a>>,
         fields: &[Field],
         earlier: Earlier,
     ) -> Result<FrameSeries> {
@@ -80,7 +81,7 @@ impl FrameSeries {
         fs::create_dir_all(folder).map_err(unusable)?;
         let (mut written, mut entries) = (0, String::new());
         if earlier == Earlier::Continue {
-            (written, entries) = kept(folder, format, contact)?;
+            (written, entries) = kept(folder, format, contact.into())?;
         }
         let kept: Vec<String> = (0..written).map(|number| format.frame(number)).collect();
         for entry in fs::read_dir(folder).map_err(unusable)? {
@@ -111,7 +112,8 @@ impl FrameSeries {
     ///
     /// # Errors
     /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
-    pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
+    pub fn record<'a>(&mut self, contact: impl Into<Fields<'a>>) -> Result<PathBuf> {
+        let contact = contact.into();
         let FrameSeries { folder, format, metadata, fields, buffer, .. } = self;
         let name = format.frame(self.written);
         let path = folder.join(&name);
@@ -122,7 +124,7 @@ impl FrameSeries {
             Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
         if format.is_vtk() {
-            let entries = format!("{}{}", self.entries, entry(contact.time(), &name));
+            let entries = format!("{}{}", self.entries, entry(time_of(contact), &name));
             contact.by_one_rank(|| {
                 replace(&folder.join(COLLECTION), |out| {
                     write!(
@@ -145,7 +147,7 @@ impl FrameSeries {
 }
 
 /// The number of the frames of an earlier series up to the state of a contact, and their entries in the collection.
-fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> Result<(usize, String)> {
+fn kept(folder: &Path, format: Format, contact: Fields<'_>) -> Result<(usize, String)> {
     let (mut kept, mut entries) = (Kept::default(), Vec::new());
     loop {
         let path = folder.join(format.frame(entries.len()));
@@ -162,7 +164,7 @@ fn kept(folder: &Path, format: Format, contact: &ViscoelasticContact) -> Result<
         };
         let state = state.map_err(no_frame)?;
         entries.push(entry(state[0], &format.frame(entries.len())));
-        if !kept.includes(entries.len() as u64, state, contact) {
+        if !kept.includes(entries.len() as u64, state, [time_of(contact), contact.force(), contact.approach()]) {
             break;
         }
     }

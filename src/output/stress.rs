@@ -3,12 +3,13 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::ViscoelasticContact;
 use crate::error::{Error, Result};
+use crate::fields::Fields;
 use crate::file::replace;
 use crate::observe::{Stress, StressVolume};
-#[cfg(feature = "npy")]
 use crate::output::npz::Archive;
+#[cfg(feature = "npy")]
+use crate::output::time_of;
 use crate::output::vtk::{CLOSING, Section, write_array, write_opening};
 use crate::output::{Format, Metadata};
 
@@ -34,7 +35,7 @@ const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 ///     .material(Material::incompressible(Elastic::new(1.0e6)?))
 ///     .build()?;
 /// contact.step(0.0, Load::force(0.1))?;
-/// let volume = contact.stress()?.in_volume(&[0.1e-3, 0.2e-3, 0.4e-3])?;
+/// let volume = contact.fields().stress()?.in_volume(&[0.1e-3, 0.2e-3, 0.4e-3])?;
 /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-stress-{}.npz", std::process::id()));
 /// write_stress(&path, Format::Npz, &contact, &volume, &Metadata::new("Ball on rubber"))?;
 /// # std::fs::remove_file(&path).unwrap();
@@ -44,35 +45,36 @@ const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 ///
 /// # Errors
 /// If the volume lies below a grid other than the contact's, or the file cannot be written.
-pub fn write_stress(
+pub fn write_stress<'a>(
     path: impl AsRef<Path>,
     format: Format,
-    contact: &ViscoelasticContact,
+    contact: impl Into<Fields<'a>>,
     volume: &StressVolume,
     metadata: &Metadata,
 ) -> Result<()> {
+    let contact = contact.into();
     let (len, expected) = (volume.values.len(), contact.grid().len() * volume.depths.len());
     if *contact.grid() != volume.grid || len != expected {
         return Err(Error::WrongLength { field: "stress in a volume", len, expected, exact: true });
     }
-    let metadata = metadata.clone().note("stress", NOTE).json(contact);
+    let metadata = metadata.clone().note("stress", NOTE).of(Some(contact));
     replace(path.as_ref(), |out| match format {
         #[cfg(feature = "npy")]
         Format::Npz => write_archive(out, contact, volume, &metadata),
-        Format::Vtk => write_rectilinear(out, contact.time(), volume, &metadata),
+        Format::Vtk => write_rectilinear(out, time_of(contact), volume, &metadata),
     })
 }
 
 #[cfg(feature = "npy")]
 fn write_archive(
     out: &mut (impl Write + io::Seek),
-    contact: &ViscoelasticContact,
+    contact: Fields<'_>,
     volume: &StressVolume,
     metadata: &str,
 ) -> io::Result<()> {
     let ([n1, n2], depths) = (volume.grid.cells(), volume.depths.len());
     let mut values = vec![0.0; volume.values.len()];
-    let mut archive = Archive::new(out, contact.time(), &volume.grid)?;
+    let mut archive = Archive::new(out, time_of(contact), &volume.grid)?;
     archive.add("x3", &[depths], &volume.depths)?;
     archive.add("pressure", &[n1, n2], contact.pressure())?;
     for (name, quantity) in QUANTITIES {

@@ -3,9 +3,10 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 
-use crate::ViscoelasticContact;
+use crate::fields::Fields;
 use crate::file::write_numbers;
 use crate::output::field_values::FieldValues;
+use crate::output::time_of;
 use crate::output::{Field, Metadata};
 
 /// What the numbers follow.
@@ -19,7 +20,7 @@ pub(super) type Section<'a> = (&'a str, Vec<(String, usize)>);
 /// Writes a frame as an image; `area` is the contact area.
 pub(super) fn write_frame(
     out: &mut impl Write,
-    (contact, area): (&ViscoelasticContact, f64),
+    (contact, area): (Fields<'_>, f64),
     metadata: &Metadata,
     values: &mut FieldValues<'_>,
 ) -> io::Result<()> {
@@ -27,7 +28,7 @@ pub(super) fn write_frame(
     let ([n1, n2], [d1, d2], [c1, c2]) = (grid.cells(), grid.spacing(), grid.center(0, 0));
     let (o1, o2) = (c1 - 0.5 * d1, c2 - 0.5 * d2);
     let numbers: [(&str, &[f64]); 5] = [
-        ("TimeValue", &[contact.time()]),
+        ("TimeValue", &[time_of(contact)]),
         ("approach [m]", &[contact.approach()]),
         ("force [N]", &[contact.force()]),
         ("tilt [rad]", &contact.tilt()),
@@ -38,7 +39,7 @@ pub(super) fn write_frame(
         out,
         ("ImageData", &format!("0 {n1} 0 {n2} 0 0")),
         &format!(" Origin=\"{o1:?} {o2:?} 0\" Spacing=\"{d1:?} {d2:?} {d1:?}\""),
-        (&numbers, &metadata.json(contact)),
+        (&numbers, &metadata.of(Some(contact))),
         &[("CellData", values.fields.iter().map(array).collect())],
     )?;
     for _ in values.fields {

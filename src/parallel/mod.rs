@@ -27,14 +27,14 @@
 //! added in the same order on every rank. Ranks compute the whole grid, as far as symmetry does not leave less: they pass over
 //! [`Settings::window`](crate::contact::Settings::window). A contact without ranks has the same bits if that setting is false;
 //! with its default, true, its results differ from theirs by the tolerance of the solver. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
-//! fields of the [local rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
+//! fields of the [local rows](crate::fields::Fields::rows), and [`gathered`](crate::fields::Fields::gathered) brings
 //! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
 //! nothing to do.
 //!
 //! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
-//! observations that look at all cells ([`moment`](crate::ViscoelasticContact::moment),
-//! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
-//! [`lateral_force`](crate::ViscoelasticContact::lateral_force), [`profile`](crate::ViscoelasticContact::profile)), files and
+//! observations that look at all cells ([`moment`](crate::fields::Fields::moment),
+//! [`max_pressure`](crate::fields::Fields::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
+//! [`lateral_force`](crate::fields::Fields::lateral_force), [`profile`](crate::fields::Fields::profile)), files and
 //! checkpoints. What a rank has by itself may be read by one
 //! alone: time, force, approach, tilt, contact cells, local rows.
 //!
@@ -48,7 +48,7 @@
 //! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
 //! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
-//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
+//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::fields::Fields::mesh_error) |
 //!
 //! Surfaces that attract each other are refused, too.
 //!

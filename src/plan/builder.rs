@@ -114,7 +114,7 @@ impl<'a> PlanBuilder<'a> {
     /// let mut run = run.fields_to(plan.fields.expect("asked for"))?;
     /// while run.next_step()?.is_some() {
     ///     for sample in run.samples() {
-    ///         println!("{:.3e} Pa", sample?.contact().max_pressure());
+    ///         println!("{:.3e} Pa", sample?.fields().max_pressure());
     ///     }
     /// }
     /// # Ok::<(), viscocontact::Error>(())

@@ -3,13 +3,15 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use crate::contact::{Builder, StepReport, ViscoelasticContact, Warnings};
+use crate::contact::{Builder, ViscoelasticContact, Warnings};
+use crate::elastic::ElasticContact;
 use crate::error::Result;
+use crate::fields::Fields;
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory, load_point};
 use crate::plan::Accuracy;
 use crate::plan::domain::{Body, ContactSize, Side};
-use crate::rheology::{Elastic, Material, TemperatureHistory};
+use crate::rheology::{Material, TemperatureHistory};
 use crate::run::Stepping;
 use crate::states::{Loading, Pressed};
 use crate::{Grid, InfluenceKernel};
@@ -79,30 +81,31 @@ pub(super) struct Run {
 
 impl Run {
     /// No steps yet.
-    fn of(contact: &ViscoelasticContact, sides: [Side; 2]) -> Run {
-        Run { size: ContactSize::none(sides), rest: contact.approach(), ..Run::default() }
+    fn of(fields: Fields<'_>, sides: [Side; 2]) -> Run {
+        Run { size: ContactSize::none(sides), rest: fields.approach(), ..Run::default() }
     }
 
-    fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
-        let mesh = contact.mesh_error().unwrap_or_default();
+    /// Adds a step of length `dt` to a load, after its convolutions.
+    fn add(&mut self, fields: Fields<'_>, (dt, load): (f64, Load), convolutions: f64, warnings: Warnings) {
+        let mesh = fields.mesh_error().unwrap_or_default();
         let field = mesh.map(|error| [error.pressure_field, error.rim_pressure]);
-        self.convolutions += report.convolution_equivalents();
-        self.steps.push((report.dt, contact.load()));
-        let at = load_point(contact.load().tilt());
+        self.convolutions += convolutions;
+        self.steps.push((dt, load));
+        let (at, [tilt1, tilt2]) = (load_point(load.tilt()), fields.tilt());
         self.states.push(StepState {
-            time: report.time,
-            approach: report.approach,
-            depth: report.approach + contact.tilt()[0] * at[0] + contact.tilt()[1] * at[1],
-            force: report.force,
-            radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
-            pressure: contact.max_pressure(),
+            time: fields.time().unwrap_or(0.0),
+            approach: fields.approach(),
+            depth: fields.approach() + tilt1 * at[0] + tilt2 * at[1],
+            force: fields.force(),
+            radius: (fields.contact_area() / std::f64::consts::PI).sqrt(),
+            pressure: fields.max_pressure(),
             peak: mesh.and_then(|error| error.max_pressure),
             singular: mesh.map_or(0.0, |error| error.singular),
             field,
-            resolved: !report.warnings.contains(Warnings::FEW_CELLS),
+            resolved: !warnings.contains(Warnings::FEW_CELLS),
         });
-        if let Some(extent) = contact.extent_of_contact() {
-            self.size.include(contact.grid(), extent);
+        if let Some(extent) = fields.extent_of_contact() {
+            self.size.include(fields.grid(), extent);
         }
     }
 
@@ -137,31 +140,27 @@ impl TrialScene<'_> {
     }
 
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
-        let builder = self.builder_of(grid, self.asked.material.clone())?;
+        let (kernel, material) = (self.kernel(&grid)?, self.asked.material.clone());
+        let builder = ViscoelasticContact::builder(grid).geometry(self.asked.geometry).material(material);
+        let builder = builder.kernel(kernel).settings(self.asked.accuracy.settings());
         Ok(match self.asked.temperature {
             Some(temperature) => builder.temperature(temperature.clone()),
             None => builder,
         })
     }
 
-    fn builder_of(&self, grid: Grid, material: Material) -> Result<Builder> {
-        let kernel = self.kernel(&grid)?;
-        let builder = ViscoelasticContact::builder(grid).geometry(self.asked.geometry).material(material);
-        Ok(builder.kernel(kernel).settings(self.asked.accuracy.settings()))
-    }
-
     /// The elastic contacts of unit compliance under these loads, on a mesh.
     pub(super) fn elastic(&self, grid: Grid, loads: &[Load]) -> Result<Run> {
-        let nu = self.asked.material.poisson_ratios().flatten().next().unwrap_or(0.5);
-        // C = (1 − ν) J/2 = 1 Pa⁻¹
-        let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
-        let mut contact = self.builder_of(grid, unit)?.build()?;
-        let mut run = Run::of(&contact, self.asked.body.sides);
+        let cells = grid.cells();
+        let kernel = self.kernel(&grid)?;
+        let builder = ElasticContact::builder(grid).geometry(self.asked.geometry).kernel(kernel).modulus(1.0);
+        let mut contact = builder.settings(self.asked.accuracy.settings()).build()?;
+        let mut run = Run::of(contact.fields(), self.asked.body.sides);
         for &load in loads {
-            let report = contact.step(0.0, load)?;
-            run.add(&contact, &report);
-            run.pressed.push(Pressed::new(contact.pressure()));
-            (self.progress)(contact.grid().cells(), report.convolution_equivalents(), 0.0)?;
+            let report = contact.solve(load)?;
+            run.add(contact.fields(), (0.0, load), report.convolution_equivalents(), report.warnings);
+            run.pressed.push(Pressed::new(contact.fields().pressure()));
+            (self.progress)(cells, report.convolution_equivalents(), 0.0)?;
         }
         Ok(run)
     }
@@ -198,9 +197,10 @@ impl TrialScene<'_> {
         let mut contact = self.builder(grid)?.build()?;
         let mut follow =
             contact.follow(self.asked.history, Stepping::adaptive(tolerance), self.asked.until).stop_at(stops)?;
-        let mut run = Run::of(follow.contact(), self.asked.body.sides);
+        let mut run = Run::of(follow.contact().fields(), self.asked.body.sides);
         while let Some(report) = follow.next_step()? {
-            run.add(follow.contact(), &report);
+            let (contact, convolutions) = (follow.contact(), report.convolution_equivalents());
+            run.add(contact.fields(), (report.dt, contact.load()), convolutions, report.warnings);
             (self.progress)(follow.contact().grid().cells(), report.convolution_equivalents(), report.time)?;
         }
         Ok(run)

@@ -5,8 +5,8 @@ use std::io;
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 
-use crate::ViscoelasticContact;
 use crate::error::{Error, Result, count_within, within};
+use crate::fields::Fields;
 use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
@@ -90,7 +90,8 @@ impl Animation {
     ///
     /// # Errors
     /// As [`Animation::record_picture`], or if a value exceeds 1e100 in magnitude.
-    pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<()> {
+    pub fn record<'a>(&mut self, contact: impl Into<Fields<'a>>) -> Result<()> {
+        let contact = contact.into();
         let mut map = Map::field(contact, self.field)?.outline_contact(contact)?;
         map.range = self.range;
         self.record_picture(&map.draw()?)

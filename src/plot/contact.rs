@@ -1,10 +1,11 @@
 //! Maps and charts of a contact.
 
+use crate::Axis;
 use crate::error::{Result, coverage};
+use crate::fields::Fields;
 use crate::output::Field;
 use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, ColorScale, Legend, Map, Quantity, Style};
-use crate::{Axis, ViscoelasticContact};
 
 impl Map {
     /// The pressure of a contact, white out of contact; the colour scale begins at zero. A line contact, whose map is a
@@ -12,15 +13,16 @@ impl Map {
     ///
     /// # Errors
     /// If a pressure exceeds 1e100 Pa.
-    pub fn pressure(contact: &ViscoelasticContact) -> Result<Map> {
-        Map::field(contact, Field::Pressure)
+    pub fn pressure<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
+        Map::field(contact.into(), Field::Pressure)
     }
 
     /// The gap of a contact, grey where it is infinite, with the contact outlined; the colour scale begins at zero.
     ///
     /// # Errors
     /// If a finite gap exceeds 1e100 m.
-    pub fn gap(contact: &ViscoelasticContact) -> Result<Map> {
+    pub fn gap<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
+        let contact = contact.into();
         Map::field(contact, Field::Gap)?.outline_contact(contact)
     }
 
@@ -28,7 +30,8 @@ impl Map {
     ///
     /// # Errors
     /// If a displacement exceeds 1e100 m in magnitude.
-    pub fn displacement(contact: &ViscoelasticContact) -> Result<Map> {
+    pub fn displacement<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
+        let contact = contact.into();
         Map::field(contact, Field::Displacement)?.outline_contact(contact)
     }
 
@@ -37,7 +40,8 @@ impl Map {
     ///
     /// # Errors
     /// If a traction exceeds 1e100 Pa in magnitude.
-    pub fn traction(contact: &ViscoelasticContact) -> Result<Map> {
+    pub fn traction<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
+        let contact = contact.into();
         Map::field(contact, Field::Traction)?.outline_contact(contact)
     }
 
@@ -45,12 +49,12 @@ impl Map {
     ///
     /// # Errors
     /// If map and contact differ in the number of cells.
-    pub fn outline_contact(self, contact: &ViscoelasticContact) -> Result<Map> {
-        self.outline(contact.pressure().iter().map(|&p| p > 0.0).collect())
+    pub fn outline_contact<'a>(self, contact: impl Into<Fields<'a>>) -> Result<Map> {
+        self.outline(contact.into().pressure().iter().map(|&p| p > 0.0).collect())
     }
 
     /// A field of a contact, titled with its time.
-    pub(super) fn field(contact: &ViscoelasticContact, field: Field) -> Result<Map> {
+    pub(super) fn field(contact: Fields<'_>, field: Field) -> Result<Map> {
         contact.covers(coverage::PICTURE)?;
         let mut buffer = Vec::new();
         let mut values = field.values(contact, &mut buffer)?.to_vec();
@@ -77,19 +81,22 @@ impl Map {
 }
 
 impl Chart {
-    /// The pressure along a line of cells, see [`ViscoelasticContact::profile`], and beside it the net traction where surfaces
+    /// The pressure along a line of cells, see [`Fields::profile`], and beside it the net traction where surfaces
     /// [attract](crate::adhesion) each other.
     ///
     /// # Errors
     /// If `at` lies outside the grid.
-    pub fn profile(contact: &ViscoelasticContact, along: Axis, at: f64) -> Result<Chart> {
+    pub fn profile<'a>(contact: impl Into<Fields<'a>>, along: Axis, at: f64) -> Result<Chart> {
+        let contact = contact.into();
         let profile = contact.profile(along, at)?;
         let [name, across] = match along {
             Axis::X1 => ["x1", "x2"],
             Axis::X2 => ["x2", "x1"],
         };
         let (x, y) = (Quantity::new(name, "m"), Quantity::new("pressure", "Pa"));
-        let title = format!("{}, {across} = {}", time_title(contact), measure(at, "m"));
+        let line = format!("{across} = {}", measure(at, "m"));
+        let title =
+            [time_title(contact), line].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
         let mut chart = Chart::new(title, x, y, Legend::UpperRight);
         let points = |values: Vec<f64>| profile.positions.iter().copied().zip(values).collect();
         if contact.attraction().is_some() {
@@ -102,7 +109,7 @@ impl Chart {
     }
 }
 
-/// The time of a contact, as a title.
-pub(super) fn time_title(contact: &ViscoelasticContact) -> String {
-    format!("t = {}", measure(contact.time(), "s"))
+/// The time of a contact, as a title; empty if it knows none.
+pub(super) fn time_title(contact: Fields<'_>) -> String {
+    contact.time().map(|time| format!("t = {}", measure(time, "s"))).unwrap_or_default()
 }

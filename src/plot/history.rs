@@ -16,7 +16,7 @@ pub enum HistoryColumn {
     ContactArea,
     /// [`Contact::mean_pressure`] \[Pa\].
     MeanPressure,
-    /// [`ViscoelasticContact::max_pressure`](crate::ViscoelasticContact::max_pressure) \[Pa\]; not recorded of contacts on
+    /// [`Fields::max_pressure`](crate::fields::Fields::max_pressure) \[Pa\]; not recorded of contacts on
     /// elastic states.
     MaxPressure,
 }

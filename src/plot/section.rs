@@ -1,11 +1,12 @@
 //! Maps of the stress on a section.
 
 use crate::error::{Result, exact_length, in_order, least_length, within};
+use crate::fields::Fields;
 use crate::observe::{Stress, StressSection};
 use crate::plot::contact::time_title;
 use crate::plot::map::runs;
 use crate::plot::{Map, Quantity};
-use crate::{Axis, Grid, ViscoelasticContact};
+use crate::{Axis, Grid};
 
 /// Greatest difference of the steps between depths, relative to the first of them.
 const UNEQUAL: f64 = 1e-6;
@@ -25,7 +26,7 @@ impl Map {
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let depths: Vec<f64> = (0..16).map(|k| (f64::from(k) + 0.5) * 0.1e-3).collect();
-    /// let section = contact.stress()?.on_section(Axis::X1, 0.0, &depths)?;
+    /// let section = contact.fields().stress()?.on_section(Axis::X1, 0.0, &depths)?;
     /// let map = Map::section(&contact, &section, Stress::von_mises, Quantity::new("von Mises stress", "Pa"))?;
     /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-section-{}.png", std::process::id()));
     /// map.save(&path)?;
@@ -36,12 +37,13 @@ impl Map {
     /// # Errors
     /// If there are fewer than two depths, they do not rise in equal steps, the section does not lie below the grid of the
     /// contact, or a value is beyond ±1e100.
-    pub fn section(
-        contact: &ViscoelasticContact,
+    pub fn section<'a>(
+        contact: impl Into<Fields<'a>>,
         section: &StressSection,
         quantity: impl Fn(&Stress) -> f64,
         name: impl Into<Quantity>,
     ) -> Result<Map> {
+        let contact = contact.into();
         let (axis, _) = section.along.and_other();
         let (positions, depths) = (&section.positions, &section.depths);
         exact_length("positions of a section", positions.len(), contact.grid().cells()[axis])?;

@@ -44,7 +44,7 @@ pub(super) fn adaptive_step(
         let mut proposal = control.propose(scene, state, histories, until - now, stop, tried)?;
         let Proposal { time, unresolved, .. } = proposal;
         tried = time;
-        histories.loads(&mut loads, |history| history.checked_before(time, scene.attraction.is_some()))?;
+        histories.loads(&mut loads, |history| history.checked_before(time, scene.ground.attraction.is_some()))?;
         let mut step = contact.request(time, time - now, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         let dt = step.interval.dt;
@@ -63,7 +63,7 @@ pub(super) fn adaptive_step(
         // the path of bodies that stay apart does not matter
         let apart = control.straying(scene, state, histories, time, Track::is_parted)?;
         let outlook = control.outlook(scene, state, &step, course, kink)?;
-        step.interval.interpolant = scene.settings.adaptive_interpolant();
+        step.interval.interpolant = scene.ground.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, &step, &outlook);
         let Tried { attempt, mut error, excess, halves } =
             match try_step(contact, control, &mut step, (course, &outlook), [straying, apart], &mut wasted) {
@@ -94,7 +94,7 @@ pub(super) fn adaptive_step(
             continue;
         }
         // a jump takes no time: shorter steps would show nothing but its moment
-        let jumps = contact.scene.attraction.is_some()
+        let jumps = contact.scene.ground.attraction.is_some()
             && time - now <= outlook.resolution
             && error.relative > control.tolerance;
         if jumps {
@@ -164,14 +164,14 @@ fn try_step(
     let attempt = tried.inspect_err(|_| add_work(wasted, computation))?;
     let computed = attempt.computation(computation);
     let mut error = error_in_time(scene, computed, step, outlook);
-    computed.state.region.rows().intact()?;
+    computed.state.held.region.rows().intact()?;
     let meets = |(body, track): (usize, &Track)| track.is_parted() && presses(scene, computed, body);
     let meets = apart > 0.0 && control.tracks.iter().enumerate().any(meets);
     error.relative = error.relative.max(straying).max(if meets { apart } else { 0.0 });
     let excess = excess(scene, computed, step.interval.dt);
     error.relative *= excess;
     let resolved = step.interval.length > outlook.resolution;
-    if scene.attraction.is_none() || resolved && error.relative > control.tolerance {
+    if scene.ground.attraction.is_none() || resolved && error.relative > control.tolerance {
         return Ok(Tried { attempt, error, excess, halves: None });
     }
     let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));

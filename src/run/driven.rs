@@ -52,15 +52,21 @@ pub struct Prepared {
 }
 
 /// Finds fields to an accuracy.
-pub trait FieldFinder<C>: Debug + Send + Sync {
+pub trait FieldFinder<C: Driven>: Debug + Send + Sync {
     /// Looks at the run before its first step.
     fn prepare(&mut self, contact: &C, request: &FieldRequest<'_>) -> Result<Prepared>;
 
     /// Sees a step of the run, from `start` to the time of its contact.
     fn follow(&mut self, _: &C, _: &dyn LoadHistory, _start: f64) {}
 
-    /// A contact of the last step with its field to the accuracy, where it does not have it itself; before a jump of the load at its time, or after it.
-    fn with_field(&self, contact: &C, history: &dyn LoadHistory, after: bool) -> Result<(Option<C>, FieldReport)>;
+    /// What has the field of a contact of the last step to the accuracy, where the contact has not; before a jump of the load at
+    /// its time, or after it.
+    fn exact_field(
+        &self,
+        contact: &C,
+        history: &dyn LoadHistory,
+        after: bool,
+    ) -> Result<(Option<C::Exact>, FieldReport)>;
 }
 
 /// How exact the pressure of a [`Sample`](crate::run::Sample) is, and what it took.
@@ -80,6 +86,13 @@ pub struct FieldReport {
 pub trait Driven: Contact + Debug {
     /// The control of the steps, and what the run has found so far.
     type Control: Debug + Clone;
+    /// What has fields to an accuracy.
+    type Exact: Debug + Clone;
+
+    /// The contact to show in the place of the run's own.
+    fn instead(_: &Self::Exact) -> Option<&Self> {
+        None
+    }
 
     /// Progress and control of a run that begins here, or that continues from this saved contact.
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, Self::Control);

@@ -2,7 +2,6 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::contact::StepReport;
 use crate::error::{Result, count_within, within};
 use crate::run::RunContact;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
@@ -45,16 +44,15 @@ impl<'a, C: RunContact> Run<'a, C> {
         fields.finder.follow(&self.contact, self.histories.first(), start);
     }
 
-    /// A contact of the last step with its field to the accuracy, where it does not have it itself.
-    pub(super) fn with_field(&self, contact: &C, after: bool) -> Result<Option<(Option<C>, FieldReport)>> {
-        let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok(None) };
-        let history = self.histories.first();
-        let (exact, report) = fields.finder.with_field(contact, history, after)?;
+    /// What has the field of a contact of the last step to the accuracy, where it has not itself.
+    pub(super) fn exact_field(&self, contact: &C, after: bool) -> Result<(Option<C::Exact>, Option<FieldReport>)> {
+        let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok((None, None)) };
+        let (exact, report) = fields.finder.exact_field(contact, self.histories.first(), after)?;
         if let Some(error) = report.error {
             let mut worst = fields.worst.lock().unwrap_or_else(PoisonError::into_inner);
             *worst = Some(worst.unwrap_or(0.0).max(error));
         }
-        Ok(Some((exact, report)))
+        Ok((exact, Some(report)))
     }
 
     /// The greatest error of the fields so far.
@@ -62,12 +60,8 @@ impl<'a, C: RunContact> Run<'a, C> {
         *self.fields.as_ref()?.worst.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(super) fn field_within_step(&self, time: f64) -> Result<(C, StepReport, Option<FieldReport>)> {
-        let (contact, report) = self.sample_within_step(time)?;
-        let after = self.last.is_none_or(|(_, last)| time < last.time || last.dt == 0.0);
-        Ok(match self.with_field(&contact, after)? {
-            Some((exact, field)) => (exact.unwrap_or(contact), report, Some(field)),
-            None => (contact, report, None),
-        })
+    /// [`Run::exact_field`] at a time within the last step.
+    pub(super) fn exact_within_step(&self, contact: &C, time: f64) -> Result<(Option<C::Exact>, Option<FieldReport>)> {
+        self.exact_field(contact, self.last.is_none_or(|(_, last)| time < last.time || last.dt == 0.0))
     }
 }

@@ -144,7 +144,7 @@ impl ViscoelasticContact {
     /// let pressed = Ramp::new(Load::force(0.0), Load::force(0.5), 2.0)?;
     /// let mut run = contact.follow_each(&[&held, &pressed], Stepping::adaptive(1.0e-2), 5.0)?;
     /// while run.next_step()?.is_some() {}
-    /// assert!(contact.body(1).unwrap().force > 0.499);
+    /// assert!(contact.fields().body(1).unwrap().force > 0.499);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
@@ -182,7 +182,7 @@ impl<'a> Run<'a> {
         stepping: Stepping,
         until: f64,
     ) -> Result<Run<'a>> {
-        let (field, len, expected) = ("load histories of the rigid bodies", histories.len(), contact.bodies());
+        let (field, len, expected) = ("load histories of the rigid bodies", histories.len(), contact.fields().bodies());
         let histories = Histories::new(histories).filter(|_| len == expected);
         let histories = histories.ok_or(Error::WrongLength { field, len, expected, exact: true })?;
         Ok(Run::follows(contact, histories, stepping, until))
@@ -339,7 +339,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         self.stepping.validate_run(self.progress.start, self.until)?;
         let Run { contact, histories, loads, until, progress, control, cancelled, known, .. } = self;
         let (now, until) = (contact.time(), *until);
-        let attracts = contact.in_space().is_some_and(|contact| contact.scene.attraction.is_some());
+        let attracts = contact.in_space().is_some_and(|fields| fields.attraction().is_some());
         histories.loads(loads, |history| history.checked_at(now, attracts))?;
         let jumps = !contact.bears(control, loads);
         if !jumps && now >= until {

@@ -37,7 +37,7 @@ pub(super) struct Divided {
 
 impl Halves {
     pub(super) fn new(state: &State) -> Halves {
-        let field = || vec![0.0; state.region.len()];
+        let field = || vec![0.0; state.held.region.len()];
         Halves { start: state.clone(), middle: f64::NAN, whole: [field(), field(), field()] }
     }
 
@@ -66,7 +66,7 @@ impl Halves {
         step.interval = until(contact, step, time)?;
         let attempt = contact.attempt(step)?;
         let of_second = error_in_time(&contact.scene, &contact.computation, step, outlook);
-        if let Some(passes) = contact.computation.trial.passes.as_mut() {
+        if let Some(passes) = contact.computation.attracted.as_mut() {
             passes.report = passes.report.after(of_first_half, of_whole);
         }
         let difference = SHARE * self.difference(contact, outlook);
@@ -94,7 +94,7 @@ impl Halves {
         let Computation { state, trial, .. } = &contact.computation;
         let ([net, u_whole, v_whole], solution) = (&self.whole, &trial.solution);
         let (u, v) = (state.history.trial(), &solution.potential);
-        let [weight, of_u, of_v, off_u, off_v] = state.region.rows().sum_terms(|k| {
+        let [weight, of_u, of_v, off_u, off_v] = state.held.region.rows().sum_terms(|k| {
             let w = net[k].abs() + (solution.pressure[k] - solution.attraction[k]).abs();
             Some([1.0, u[k].abs(), v[k].abs(), (u[k] - u_whole[k]).abs(), (v[k] - v_whole[k]).abs()].map(|x| w * x))
         });

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::fields::KeptFields;
 use crate::hereditary::{StepContext, TimeError};
 use crate::load::Load;
 use crate::rheology::TemperatureHistory;
@@ -19,20 +20,21 @@ use crate::run::step_control::StepControl;
 
 impl Driven for ViscoelasticContact {
     type Control = StepControl;
+    type Exact = KeptFields;
 
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StepControl) {
         let saved = self.saved_run.take().and_then(|saved| saved.downcast::<(Progress, StepControl)>().ok());
         let continues = |(progress, control): &(Progress, StepControl)| {
-            progress.continues(self.time(), stepping, until) && control.tracks.len() == self.bodies()
+            progress.continues(self.time(), stepping, until) && control.tracks.len() == self.fields().bodies()
         };
         match saved.filter(|saved| continues(saved)) {
             Some(saved) => (*saved).clone(),
-            None => (Progress::begin(self.time(), stepping), StepControl::new(stepping, self.bodies())),
+            None => (Progress::begin(self.time(), stepping), StepControl::new(stepping, self.fields().bodies())),
         }
     }
 
     fn bears(&self, _: &StepControl, loads: &[Load]) -> bool {
-        self.computation.state.loads == loads
+        self.computation.state.held.loads == loads
     }
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
@@ -41,7 +43,7 @@ impl Driven for ViscoelasticContact {
 
     fn untouched(&self) -> Option<f64> {
         let state = &self.computation.state;
-        state.is_undisturbed().then(|| state.indenter.gap().datum)
+        state.is_undisturbed().then(|| state.held.indenter.gap().datum)
     }
 
     fn is_known_until(&self, end: f64) -> Result<()> {
@@ -52,19 +54,19 @@ impl Driven for ViscoelasticContact {
     }
 
     fn advance(&mut self, control: &mut StepControl, course: &Course<'_>) -> Result<StepReport> {
-        let rows = self.computation.state.region.rows();
+        let rows = self.computation.state.held.region.rows();
         rows.unless_lost(|| {
             let (report, error) = match course.given {
                 Some((time, loads)) => self.given_step(control, course, time, loads)?,
                 None => adaptive_step(self, control, course)?,
             };
-            control.include(&error, report.residual, self.mesh_error().unwrap_or_default());
+            control.include(&error, report.residual, self.fields().mesh_error().unwrap_or_default());
             Ok(report)
         })
     }
 
     fn within(&self, control: &StepControl, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)> {
-        let attracts = self.scene.attraction.is_some();
+        let attracts = self.scene.ground.attraction.is_some();
         let loads = |_: &_| histories.each().map(|history| history.checked_at(time, attracts)).collect();
         let of_last = |halves: &&Halves| halves.middle == self.computation.state.start.clock.time;
         let before = control.halves.as_deref().filter(of_last).map(|halves| &halves.start);
@@ -89,7 +91,7 @@ impl Driven for ViscoelasticContact {
 
     #[cfg(feature = "checkpoint")]
     fn is_due(&self, due: bool) -> Result<bool> {
-        let rows = self.computation.state.region.rows();
+        let rows = self.computation.state.held.region.rows();
         rows.unless_lost(|| Ok(rows.any(due)))
     }
 }
@@ -121,7 +123,7 @@ impl ViscoelasticContact {
 impl Run<'_> {
     /// The errors of the run so far, by their source.
     pub fn error_budget(&self) -> ErrorBudget {
-        let mesh = self.contact.mesh_error().unwrap_or_default();
+        let mesh = self.contact.fields().mesh_error().unwrap_or_default();
         ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst }
     }
 }

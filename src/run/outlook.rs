@@ -1,8 +1,9 @@
 //! What the error of a step depends on, besides the step, and the tolerance of its solver.
 
-use crate::contact::step::Pressed;
 use crate::contact::step::error_in_time::SHORTEST_TOUCH;
-use crate::contact::{Computation, DEFAULT_TOLERANCE, Scene, State, Step};
+use crate::contact::{Computation, Scene, State, Step};
+use crate::equilibrium::DEFAULT_TOLERANCE;
+use crate::equilibrium::pressed::Pressed;
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, Meeting, StepContext};
@@ -34,8 +35,8 @@ impl StepControl {
     /// Tolerance of the solver that suits the tolerance in time, where no prescribed approach is to come. A tolerance of the settings that
     /// is stricter than the default was asked for, and counts if it is stricter than that, too.
     pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
-        let share = if scene.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
-        let own = scene.settings.tolerance;
+        let share = if scene.ground.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
+        let own = scene.ground.settings.tolerance;
         if own < DEFAULT_TOLERANCE { own } else { own.max(share * self.tolerance) }
     }
 
@@ -127,12 +128,11 @@ pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let is_turn = clock.last_dt > 0.0 && corner == Some(clock.time);
     let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
     let tilts = tried.trial.free.iter().any(Freedom::tilts);
-    let Pressed { cells, reach, .. } =
-        if tilts { tried.pressed(scene, &tried.state.indenter) } else { Pressed::default() };
-    let leave = cells < tried.state.current.contact_cells;
+    let Pressed { cells, reach, .. } = if tilts { tried.pressed(scene) } else { Pressed::default() };
+    let leave = cells < tried.state.held.current.contact_cells;
     let lever = |Extent { low, high }: Extent| {
         let lever = |axis: usize| {
-            let (length, width) = (scene.grid.cells()[axis] as f64, (high[axis] - low[axis]) as f64);
+            let (length, width) = (scene.ground.grid.cells()[axis] as f64, (high[axis] - low[axis]) as f64);
             if leave { length / width.max(1.0) } else { 0.5 * length / (width + 1.0) }
         };
         lever(0).max(lever(1)).max(1.0)

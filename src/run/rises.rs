@@ -45,7 +45,7 @@ pub(super) fn rises(scene: &Scene, history: &dyn LoadHistory, touch: f64, times:
     let (mut rises, mut again, mut last) = (Vec::new(), false, None);
     for &time in times {
         for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
-            let (approach, spring) = match load(history, time, scene.attraction.is_some())? {
+            let (approach, spring) = match load(history, time, scene.ground.attraction.is_some())? {
                 Load::Approach { approach: depth, .. } => (depth, 0.0),
                 Load::Spring { stiffness, drive: depth, .. } => (depth, 1.0 / stiffness),
                 Load::Force { .. } => {

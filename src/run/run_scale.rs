@@ -1,7 +1,7 @@
 //! The size of the loads and displacements of a run.
 
-use crate::contact::window::placement::resting_depth;
 use crate::contact::{Scene, State};
+use crate::equilibrium::window::placement::resting_depth;
 use crate::error::{Error, Result, within};
 use crate::hereditary::Meeting;
 use crate::load::{Load, LoadHistory};
@@ -64,7 +64,7 @@ impl RunScale {
         until: f64,
         tolerance: f64,
     ) -> Result<RunScale> {
-        let touch = state.indenter.first_touch().get(body).map_or(0.0, |motion| motion.approach);
+        let touch = state.held.indenter.first_touch().get(body).map_or(0.0, |motion| motion.approach);
         let now = state.clock.time;
         let span = until - now;
         let compliance_at = |time: f64| {
@@ -77,7 +77,7 @@ impl RunScale {
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
         let corners: Vec<f64> = history.breakpoints(now).take_while(|&next| next <= until).take(BREAKPOINTS).collect();
-        scale.tops = tops_of_run(history, [now, until], &corners, scene.attraction.is_some())?;
+        scale.tops = tops_of_run(history, [now, until], &corners, scene.ground.attraction.is_some())?;
         let mut times: Vec<f64> = equal.chain(corners).chain(scale.tops.iter().copied()).collect();
         times.sort_by(f64::total_cmp);
         scale.rises = rises(scene, history, touch, &times)?;
@@ -86,7 +86,7 @@ impl RunScale {
         let mut loads: Vec<(f64, Load)> = Vec::new();
         for time in times {
             for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
-                let load = load(history, time, scene.attraction.is_some())?;
+                let load = load(history, time, scene.ground.attraction.is_some())?;
                 scale.include(&load);
                 if !load.is_force() && loads.last().is_some_and(|(_, before)| before.is_force()) {
                     scale.switches.push(time);
@@ -104,7 +104,8 @@ impl RunScale {
         within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
         within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
         if scale.force > 0.0 && compliance > 0.0 {
-            scale.depth_over_compliance = resting_depth(scene, state, body, scale.force * compliance) / compliance;
+            scale.depth_over_compliance =
+                resting_depth(&scene.ground, &state.held, body, scale.force * compliance) / compliance;
         }
         let most = tolerance * scale.stress;
         scale.rises.iter_mut().for_each(|rise| rise.find_stiffness(scene, most));
@@ -153,7 +154,7 @@ impl RunScale {
         let deepest = springs.max_by(|(one, _), (other, _)| one.total_cmp(other));
         if let Some((drive, stiffness)) = deepest.filter(|&(drive, _)| drive > 0.0 && compliance > 0.0) {
             let force = stiffness * drive;
-            let depth = 2.0 * resting_depth(scene, state, body, force * compliance);
+            let depth = 2.0 * resting_depth(&scene.ground, &state.held, body, force * compliance);
             let part = drive / (drive + depth);
             self.width = force * compliance / (SECANT * depth) * part.sqrt();
             self.force = self.force.max(force * part.powf(1.5));

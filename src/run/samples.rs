@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::fields::{Fields, KeptFields};
 use crate::run::FieldReport;
 use crate::run::RunContact;
 use crate::run::follow::Run;
@@ -16,13 +17,22 @@ pub struct Sample<'a, C: RunContact = ViscoelasticContact> {
     report: StepReport,
     at_end: bool,
     is_asked_for: bool,
+    exact: Option<C::Exact>,
     field: Option<FieldReport>,
 }
 
+impl Sample<'_> {
+    /// The fields at this time: to the accuracy that was asked for ([`Run::fields_to`]), else those of the contact.
+    pub fn fields(&self) -> Fields<'_> {
+        self.exact.as_ref().map_or_else(|| self.contact.fields(), KeptFields::fields)
+    }
+}
+
 impl<C: RunContact> Sample<'_, C> {
-    /// The contact at this time.
+    /// The contact at this time. In space its pressure is that of the steps: [`Sample::fields`] may have a more accurate one. On
+    /// elastic states it is one of steps as fine as the fields need that were asked for.
     pub fn contact(&self) -> &C {
-        &self.contact
+        self.exact.as_ref().and_then(C::instead).unwrap_or(&self.contact)
     }
 
     /// The report of the step from the start of the run's step to this time, with the work that the sample took; its
@@ -93,18 +103,23 @@ impl<C: RunContact> Run<'_, C> {
                 let before = (end - same).next_down();
                 let before = if whole.dt == 0.0 { before } else { before.max(self.covered) };
                 let is_asked_for = self.sampled.after(before).is_some_and(|next| next <= end + same);
-                let field = if is_asked_for { self.with_field(self.contact(), whole.dt == 0.0) } else { Ok(None) };
-                return Some(field.map(|field| {
-                    let (contact, field) = field.map_or((None, None), |(contact, report)| (contact, Some(report)));
-                    let contact = contact.map_or(Cow::Borrowed(self.contact()), Cow::Owned);
-                    Sample { contact, report: whole, at_end: true, is_asked_for, field }
+                let (contact, jumps) = (self.contact(), whole.dt == 0.0);
+                let found = if is_asked_for { self.exact_field(contact, jumps) } else { Ok((None, None)) };
+                return Some(found.map(|(exact, field)| Sample {
+                    contact: Cow::Borrowed(contact),
+                    report: whole,
+                    at_end: true,
+                    is_asked_for,
+                    exact,
+                    field,
                 }));
             };
             // times of two rules that agree but for rounding are one
             time = next + rounding(next);
-            Some(self.field_within_step(next).map(|(contact, report, field)| {
+            Some(self.sample_within_step(next).and_then(|(contact, report)| {
                 let report = StepReport { time_error: whole.time_error, ..report };
-                Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true, field }
+                let (exact, field) = self.exact_within_step(&contact, next)?;
+                Ok(Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true, exact, field })
             }))
         })
     }
@@ -135,10 +150,25 @@ impl<C: RunContact> Run<'_, C> {
     /// # Errors
     /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
     pub fn within_step(&self, time: f64) -> Result<C> {
-        Ok(self.field_within_step(time)?.0)
+        let contact = self.sample_within_step(time)?.0;
+        let (exact, _) = self.exact_within_step(&contact, time)?;
+        Ok(exact.as_ref().and_then(C::instead).cloned().unwrap_or(contact))
     }
 
     pub(super) fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
         self.contact.within(&self.control, &self.histories, time)
+    }
+}
+
+impl Run<'_> {
+    /// The fields at a time within the last step of the run, its ends included: to the accuracy that was asked for
+    /// ([`Run::fields_to`]), else those of [`Run::within_step`].
+    ///
+    /// # Errors
+    /// As [`Run::within_step`].
+    pub fn fields_within_step(&self, time: f64) -> Result<KeptFields> {
+        let contact = self.sample_within_step(time)?.0;
+        let (exact, _) = self.exact_within_step(&contact, time)?;
+        Ok(exact.unwrap_or_else(|| contact.fields().keep()))
     }
 }

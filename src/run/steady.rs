@@ -102,7 +102,7 @@ impl ViscoelasticContact {
     ///     .build()?;
     /// let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(100.0)).with_tolerance(1.0e-2);
     /// contact.toward_steady(motion)?.run()?;
-    /// assert!(contact.lateral_force(&cylinder)[0] > 0.01 * contact.force());
+    /// assert!(contact.fields().lateral_force(&cylinder)[0] > 0.01 * contact.force());
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
@@ -262,6 +262,6 @@ impl<'a> SteadyRun<'a> {
     /// Cells between the ends of the contact along the axis of the motion.
     fn length_of_contact(&self) -> usize {
         let along = |Extent { low, high }| high[self.motion.axis.index()] + 1 - low[self.motion.axis.index()];
-        self.contact.extent_of_contact().map_or(1, along)
+        self.contact.fields().extent_of_contact().map_or(1, along)
     }
 }

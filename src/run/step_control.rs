@@ -120,14 +120,14 @@ impl StepControl {
         let (now, reduced) = (state.clock.time, state.clock.reduced_time);
         for (track, history) in self.tracks.iter_mut().zip(histories.each()).filter(|(track, _)| track.nodes.is_empty())
         {
-            track.nodes.push((reduced, history.checked_at(now, scene.attraction.is_some())?));
+            track.nodes.push((reduced, history.checked_at(now, scene.ground.attraction.is_some())?));
             self.since = reduced;
         }
         self.look_ahead(scene, state, histories, until)?;
-        for (body, (track, load)) in self.tracks.iter_mut().zip(&state.loads).enumerate() {
+        for (body, (track, load)) in self.tracks.iter_mut().zip(&state.held.loads).enumerate() {
             track.scale.include(load);
-            let (cells, pressure) = (state.current.contact_cells, &state.current.solution.pressure);
-            let is_apart = cells == 0 || scene.bodies > 1 && !state.presses(scene, pressure, body);
+            let (cells, pressure) = (state.held.current.contact_cells, &state.held.current.solution.pressure);
+            let is_apart = cells == 0 || scene.ground.bodies > 1 && !state.held.presses(&scene.ground, pressure, body);
             track.is_apart = is_apart && !state.attracts;
         }
         Ok(())
@@ -178,7 +178,7 @@ impl StepControl {
             let (dt, tolerance) = (time - now, self.tolerance);
             return Err(Error::Step(StepError::StepTooShort { time: now, dt, tolerance }));
         }
-        let (order, dashpot) = order_of(state, &scene.settings);
+        let (order, dashpot) = order_of(state, &scene.ground.settings);
         Ok(Proposal { time, wanted, unresolved, order, dashpot })
     }
 
@@ -200,9 +200,9 @@ impl StepControl {
             let reduced = scene.reduced_length([now, now + dt], dt)?;
             let creep = compliance(reduced);
             let mut deviation = if jumped { (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep } else { 0.0 };
-            let bodies = self.tracks.iter().zip(histories.each()).zip(&state.loads);
+            let bodies = self.tracks.iter().zip(histories.each()).zip(&state.held.loads);
             for ((track, history), start) in bodies.filter(|_| !jumped) {
-                let load = history.checked_before(now + dt, scene.attraction.is_some())?;
+                let load = history.checked_before(now + dt, scene.ground.attraction.is_some())?;
                 let (held, slope) = (track.scale.magnitude(start), turned(track).map_or(0.0, |(_, slope)| slope));
                 let change = (track.scale.magnitude(&load) - held - slope * reduced).abs();
                 let scale = track.scale.of_load(start, &load).max(held + change);

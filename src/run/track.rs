@@ -123,5 +123,5 @@ pub(super) fn is_held(history: &dyn LoadHistory, now: f64, time: f64) -> bool {
 
 /// Whether a body presses in a step that was computed. A call of all ranks.
 pub(super) fn presses(scene: &Scene, computed: &Computation, body: usize) -> bool {
-    computed.state.presses(scene, &computed.trial.solution.pressure, body)
+    computed.state.held.presses(&scene.ground, &computed.trial.solution.pressure, body)
 }

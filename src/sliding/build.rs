@@ -8,8 +8,10 @@ use super::bodies::Bodies;
 use super::creep::Creep;
 use super::layer_on_base::{LayerOnBase, THINNEST};
 use super::{SteadySliding, gmres};
-use crate::contact::{Builder, Frame, Limits, Warnings};
+use crate::contact::{Builder, Frame, Limits, Scene, Warnings};
+use crate::equilibrium::{Ground, Held, Region};
 use crate::error::{Error, Result, SlidingError, Special, coverage};
+use crate::fields::View;
 use crate::kernel::HalfSpace;
 use crate::memory;
 use crate::motion::CounterMotion;
@@ -98,7 +100,6 @@ impl Builder {
         mut self,
         modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,
     ) -> Result<SteadySliding> {
-        // the contact shows the state on an elastic body
         self = self.material(Material::incompressible(Elastic::new(0.25 * modulus(0.0).re)?));
         self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
     }
@@ -121,15 +122,13 @@ impl Builder {
         self.is_covered(Special::SteadyMotion)?;
         let motion = self.counter_motion;
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
-        self.steady = true;
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
-        let contact = self.build()?;
-        let (kernel, grid) = (contact.kernel(), contact.grid());
+        let (scene, indenter, missed) = self.parts()?;
+        let Scene { ground: Ground { grid, kernel, .. }, material, .. } = &scene;
         let periodic = kernel.periodic_axes();
         let ends = || (0..2).filter(|&axis| !periodic[axis]);
         let has_rows = periodic == [true; 2] || ends().any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
-        let jumps = jumps(&contact.initial_gap().above, grid.cells(), periodic);
-        let material = contact.material();
+        let jumps = jumps(&indenter.gap().above, grid.cells(), periodic);
         let (by_modulus, pair) = (modulus.is_some(), material.poisson_ratios().count() > 1);
         coverage::COEFFICIENTS.unless(|_| !has_rows)?;
         coverage::JUMPING_SHAPE.unless(|_| jumps)?;
@@ -166,7 +165,7 @@ impl Builder {
         let on_base = |base: Material| {
             let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
             let layer = layer.ok_or(coverage::BASE_OF_NO_LAYER.error())?;
-            let same = crate::Layer::bonded_to_material(layer.thickness(), contact.material(), &base)?;
+            let same = crate::Layer::bonded_to_material(layer.thickness(), material, &base)?;
             let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
             let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
             coverage::OTHER_BASE.unless(|_| other)?;
@@ -187,6 +186,10 @@ impl Builder {
         let relaxed = is_relaxed(&creep) && layer.as_ref().is_none_or(|layer| is_relaxed(&layer.base));
         let (kernel, rows) = (kernel.clone(), Default::default());
         let bodies = Arc::new(Bodies { kernel, creep, layer, rows, measured, relaxed, unmeasured_at_rest, warnings });
-        Ok(SteadySliding { contact, bodies, cancelled: None })
+        let mut held = Held::layout(Arc::new(indenter), Region::whole(grid, [false; 2]));
+        let displacement = vec![0.0; grid.len()];
+        held.current.solution.pressure.clone_from(&displacement);
+        let (scene, view) = (Arc::new(scene), View::default());
+        Ok(SteadySliding { scene, missed, held, displacement, view, bodies, cancelled: None })
     }
 }

@@ -1,4 +1,7 @@
 //! The contact problem of a steady motion: p ≥ 0, h ≥ 0, p h = 0 and the balance of the load.
+//!
+//! It is not left to the solver of equilibria: bodies that lose energy respond by an operator that is not symmetric, under which there is no
+//! energy to descend in and conjugate gradients do not end. GMRES solves on a set of cells, and sets follow each other until one stands.
 
 use std::collections::HashSet;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};

@@ -3,7 +3,7 @@
 //! In the frame of an indenter that moves steadily over creeping bodies nothing changes, and no time step is needed: a wave of the pressure
 //! displaces by the compliance of the bodies at the frequency at which it passes a point. [`SteadySliding`] finds the one state of
 //! contact of a velocity and a load, however long the relaxation times are. To step there takes as many steps as the longest of them:
-//! [`ViscoelasticContact::toward_steady`] is for watching the approach.
+//! [`ViscoelasticContact::toward_steady`](crate::ViscoelasticContact::toward_steady) is for watching the approach.
 //!
 //! All friction comes from hysteresis: the surfaces have none.
 
@@ -29,10 +29,15 @@ pub use sweep::{SlidingSweep, SlidingTable, SweptState};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{ViscoelasticContact, Warnings};
+use crate::contact::{Edge, Figures, Scene, Warnings};
+use crate::equilibrium::constraints::{find_free_motions, validate_loads};
+use crate::equilibrium::pressed::Pressed;
+use crate::equilibrium::{Held, Request, Trial};
 use crate::error::{Error, Result, StepError, coverage, finite};
+use crate::fields::{About, Fields, Surface, View};
+use crate::geometry::Missed;
 use crate::load::Load;
-use crate::solver::RigidMotion;
+use crate::solver::{Freedom, RigidMotion};
 use bodies::Bodies;
 use contact_problem::{Found, Problem};
 use operator::MovingBodies;
@@ -56,13 +61,18 @@ use operator::MovingBodies;
 ///     println!("{report}");
 ///     assert!(report.friction() > 0.0);
 /// }
-/// assert!(sliding.contact().contact_area() < 1.0e-6);
+/// assert!(sliding.fields().contact_area() < 1.0e-6);
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct SteadySliding {
-    /// Shows the state; it has no past, and takes no steps.
-    contact: ViscoelasticContact,
+    scene: Arc<Scene>,
+    /// What the grid misses of the waves of the shape.
+    missed: Missed,
+    /// The state found last.
+    held: Held,
+    displacement: Vec<f64>,
+    view: View,
     bodies: Arc<Bodies>,
     cancelled: Option<Arc<AtomicBool>>,
 }
@@ -116,15 +126,16 @@ impl SteadySliding {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
         coverage::SPRING.unless(|_| matches!(load, Load::Spring { .. }))?;
-        let (free, lowered) = self.contact.steady_motion(load)?;
+        let (free, lowered) = self.freedom(load)?;
         let mut bodies = self.moving(velocity, load)?;
-        let (grid, tolerance) = (self.contact.grid().clone(), self.contact.settings().tolerance);
-        let (gap, n2) = (self.contact.initial_gap(), grid.cells()[1]);
+        let ground = &self.scene.ground;
+        let (grid, tolerance) = (ground.grid.clone(), ground.settings.tolerance);
+        let (gap, n2) = (self.held.indenter.gap(), grid.cells()[1]);
         let datum = gap.datum;
         let lower = |(k, height): (usize, &f64)| height - lowered.at(grid.center(k / n2, k % n2));
         let heights: Vec<f64> = gap.above.iter().enumerate().map(lower).collect();
         let mean = heights.iter().sum::<f64>() / heights.len() as f64;
-        if !free.translation && mean <= 0.0 && self.contact.kernel().mean_is_held() {
+        if !free.translation && mean <= 0.0 && ground.kernel.mean_is_held() {
             let approach = lowered.approach + datum;
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest: approach + mean }));
         }
@@ -133,7 +144,7 @@ impl SteadySliding {
         let found = if free.translation && free.total == 0.0 {
             Found::apart(heights.len())
         } else {
-            problem.search(&mut bodies, self.contact.pressure())
+            problem.search(&mut bodies, &self.held.current.solution.pressure)
         };
         let Found { pressure, mut displacement, mut motion, residual, rounding, sets, converged } = found;
         if problem.is_cancelled() {
@@ -145,7 +156,7 @@ impl SteadySliding {
         if !converged {
             return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
         }
-        self.contact.check_edge(&pressure)?;
+        self.check_edge(&pressure)?;
         let (cell_area, transforms) = (grid.cell_area(), bodies.transforms);
         let spectrum = bodies.spectrum(&pressure);
         let lateral_force = passive_drag(&bodies, &spectrum, velocity)?.map(|force| force * cell_area);
@@ -155,18 +166,19 @@ impl SteadySliding {
         displacement.iter_mut().for_each(|u| *u -= excess);
         motion.approach -= excess;
         let motion = RigidMotion { approach: datum, tilt: [0.0; 2] } + lowered + motion;
-        let (mut warnings, mut figures) = self.contact.show_steady(load, motion, pressure, displacement);
+        let (mut warnings, mut figures) = self.take(load, motion, pressure, displacement);
         figures.unmeasured = Some(unmeasured.max(self.bodies.unmeasured_at_rest)).filter(|part| *part > UNMEASURED);
         warnings.set(Warnings::FREQUENCIES, figures.unmeasured.is_some());
         warnings |= self.bodies.warnings;
-        let gaps: Vec<f64> = self.contact.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
+        let fields = self.fields();
+        let gaps: Vec<f64> = fields.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
         Ok(SlidingReport {
             velocity,
-            force: self.contact.force(),
+            force: fields.force(),
             approach: motion.approach,
             lateral_force,
-            contact_cells: self.contact.contact_cells(),
-            contact_area: self.contact.contact_area(),
+            contact_cells: fields.contact_cells(),
+            contact_area: fields.contact_area(),
             mean_gap: gaps.iter().sum::<f64>() / gaps.len() as f64,
             residual,
             sets,
@@ -204,11 +216,11 @@ impl SteadySliding {
 
     /// The bodies under a pressure with this velocity, where a load has a steady state.
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
-        let (kernel, creep, forced) = (self.contact.kernel(), &self.bodies.creep, load.is_force());
+        let (kernel, creep, forced) = (&self.scene.ground.kernel, &self.bodies.creep, load.is_force());
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
         coverage::DRIFT.unless(|_| drifts)?;
         let bodies = self.bodies.moving(velocity)?;
-        let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.contact.grid().lengths());
+        let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.scene.ground.grid.lengths());
         let speed = if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() };
         let all = [Some(creep), self.bodies.layer.as_ref().map(|layer| &layer.base)].into_iter().flatten();
         let farthest = all.flat_map(|own| own.reaches(speed)).map(|(_, reach)| reach).fold(0.0, f64::max);
@@ -217,8 +229,63 @@ impl SteadySliding {
         Ok(bodies)
     }
 
-    /// The contact in the state found last, to read, draw and write. It has no past: its steps are refused.
-    pub fn contact(&self) -> &ViscoelasticContact {
-        &self.contact
+    /// The fields of the state found last, to read, draw and write. Moduli over frequency have no material to tell of.
+    pub fn fields(&self) -> Fields<'_> {
+        let (Scene { ground, material, .. }, held) = (&*self.scene, &self.held);
+        let surface = Surface { own: &self.displacement, far: None };
+        let about = About { material: Some(material), ..About::default() };
+        Fields { ground, held, surface, view: &self.view, kernel: None, about }
+    }
+
+    /// The motion that a load leaves free to the body, if it can be balanced, and the part that it prescribes, whose approach
+    /// counts from the datum of the gap.
+    fn freedom(&self, load: Load) -> Result<(Freedom, RigidMotion)> {
+        let (ground, Held { indenter, region, .. }) = (&self.scene.ground, &self.held);
+        let tolerance = ground.settings.tolerance;
+        let request = Request { time: 0.0, length: 0.0, loads: &[load], indenter, tolerance, cancelled: None };
+        validate_loads(ground, request)?;
+        let mut free = [Trial::NOTHING_FREE];
+        find_free_motions(ground, region, request, &mut free);
+        Ok((free[0], request.prescribed(0)))
+    }
+
+    /// Rejects a pressure at an edge of the grid that is not periodic, unless the settings allow it.
+    fn check_edge(&self, pressure: &[f64]) -> Result<()> {
+        let ground = &self.scene.ground;
+        let cells = self.held.region.positive_on_edge(pressure, ground.kernel.periodic_axes());
+        if cells == 0 || ground.settings.edge == Edge::Allow {
+            return Ok(());
+        }
+        let lengths = ground.grid.lengths();
+        Err(Error::Step(StepError::ContactAtEdge { time: 0.0, cells, lengths, needed: None }))
+    }
+
+    /// Makes a state the one found last; returns its warnings.
+    fn take(
+        &mut self,
+        load: Load,
+        motion: RigidMotion,
+        pressure: Vec<f64>,
+        displacement: Vec<f64>,
+    ) -> (Warnings, Figures) {
+        let (Scene { ground, limits, .. }, held) = (&*self.scene, &mut self.held);
+        (held.loads[0], held.current.motions[0], self.displacement) = (load, motion, displacement);
+        held.current.solution.pressure = pressure;
+        let pressed = Pressed::by(&held.current.solution.pressure, ground, &held.region, &held.indenter);
+        held.current.contact_cells = pressed.cells;
+        held.sum_up();
+        self.view.refresh(held);
+        let figures = Figures { modulus: limits.modulus, ..held.figures(ground, self.missed, &pressed) };
+        (held.warnings(ground, pressed.reach, &figures) | limits.warnings(0.0, 0.0), figures)
+    }
+
+    /// Scales the pressure to that under `load`, of a body with moduli `factor` times as great.
+    fn scale(&mut self, load: Load, factor: f64) {
+        if factor != 1.0 {
+            self.held.loads[0] = load;
+            self.held.current.solution.pressure.iter_mut().for_each(|p| *p *= factor);
+            self.held.sum_up();
+            self.view.refresh(&self.held);
+        }
     }
 }

@@ -96,7 +96,7 @@ impl SteadySliding {
             Some((law, kelvins)) => kelvins.iter().map(|&kelvin| shift(law, kelvin)).collect::<Result<_>>()?,
             None => vec![(None, 1.0, 1.0)],
         };
-        let in_proportion = self.bodies.layer.is_none() && self.contact.material().is_one_body_in_proportion();
+        let in_proportion = self.bodies.layer.is_none() && self.scene.material.is_one_body_in_proportion();
         if !in_proportion && shifts.iter().any(|(_, _, vertical)| *vertical != 1.0) {
             return Err(MaterialError::VerticalFactors { what: "a sweep over temperatures" }.into());
         }
@@ -126,8 +126,8 @@ impl SteadySliding {
                 *done += 1;
                 *ended = progress(&state, f64::from(*done) / count).is_break();
             }
-            own.contact.scale_steady(load, vertical);
-            Ok::<_, Error>((own.contact, states))
+            own.scale(load, vertical);
+            Ok::<_, Error>((own, states))
         };
         let mut found: Vec<_> = chains.iter().map(|_| None).collect();
         fork(0..chains.len(), true, [&mut found[..]], &cut, &|k, [own]| {
@@ -135,8 +135,8 @@ impl SteadySliding {
         });
         let mut table = SlidingTable::default();
         for found in found.into_iter().flatten() {
-            let (contact, states) = found?;
-            self.contact = contact;
+            let (last, states) = found?;
+            *self = last;
             table.0.extend(states);
         }
         Ok(table)

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use crate::contact::ViscoelasticContact;
+use crate::elastic::ElasticContact;
 use crate::error::{Error, Result};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
@@ -57,7 +58,7 @@ const MOST_OVERSTATED: f64 = 3.0;
 #[derive(Debug)]
 pub(super) struct Beside {
     repeated: Repeated,
-    elastic: ViscoelasticContact,
+    elastic: ElasticContact,
     tilt: [Tilt; 2],
     /// Level, depth and area of the elastic contacts that the curve goes through, and whether it matters.
     rows: Vec<[f64; 3]>,
@@ -99,9 +100,9 @@ impl Beside {
         }
         let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
         let tolerance = (OF_SOLVER * accuracy / (creep / MODERATE).clamp(1.0, MOST_TIGHTENED)).max(1e-9);
-        let mut elastic = contact.of_unit_compliance(tolerance)?;
-        elastic.step(0.0, Load::Force { normal: 0.0, tilt })?;
-        let rest = elastic.approach();
+        let mut elastic = contact.elastic(1.0, tolerance)?;
+        elastic.solve(Load::Force { normal: 0.0, tilt })?;
+        let rest = elastic.fields().approach();
         let mut top = 0.0_f64;
         if by_force {
             let mut states = ElasticStates::sphere(1.0)?;
@@ -110,8 +111,8 @@ impl Beside {
             top = MARGIN * Repeated::new(origin, course.history, course.until, accuracy)?.1;
         } else {
             for load in greatest(&all, course.softest_compliance()?) {
-                elastic.step(0.0, load)?;
-                top = top.max(MARGIN * elastic.force());
+                elastic.solve(load)?;
+                top = top.max(MARGIN * elastic.fields().force());
             }
         }
         if top == 0.0 {
@@ -143,16 +144,16 @@ impl Beside {
 
     /// Solves an elastic contact, and adds it to the curve.
     fn solve(&mut self, level: f64) -> Result<Solved> {
-        let report = self.elastic.step(0.0, Load::Force { normal: level, tilt: self.tilt })?;
+        let report = self.elastic.solve(Load::Force { normal: level, tilt: self.tilt })?;
         self.spent = [self.spent[0] + 1, self.spent[1] + report.convolutions];
-        let depth = if self.by_force { level.powf(2.0 / 3.0) } else { self.elastic.approach() - self.rest };
+        let depth = if self.by_force { level.powf(2.0 / 3.0) } else { self.elastic.fields().approach() - self.rest };
         let at = self.rows.partition_point(|row| row[0] < level);
         let is_new = |row: &[f64; 3]| (row[0] / level - 1.0).abs() > NEAREST && (row[1] > depth) == (row[0] > level);
         let fits = self.rows[at.saturating_sub(1)..].iter().take(2).all(is_new);
         if fits && depth > 0.0 {
-            self.rows.insert(at, [level, depth, self.elastic.contact_area()]);
+            self.rows.insert(at, [level, depth, self.elastic.fields().contact_area()]);
         }
-        Ok(Solved { level, pressure: Pressed::new(self.elastic.pressure()) })
+        Ok(Solved { level, pressure: Pressed::new(self.elastic.fields().pressure()) })
     }
 
     /// Nowhere may the pressure fall while the load grows.
@@ -321,7 +322,7 @@ impl Beside {
     fn superposed(&self, profile: &Profile, solved: &[&Solved]) -> Vec<f64> {
         let levels: Vec<f64> = solved.iter().map(|solved| solved.level).collect();
         let shares: Vec<f64> = profile.means(&levels).map(|(_, share)| share).collect();
-        let mut field = vec![0.0; self.elastic.grid().len()];
+        let mut field = vec![0.0; self.elastic.fields().grid().len()];
         for (k, solved) in solved.iter().enumerate() {
             solved.pressure.add_to(shares[k] - shares.get(k + 1).unwrap_or(&0.0), &mut field);
         }

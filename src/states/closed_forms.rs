@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::contact::depth_of_power;
+use crate::equilibrium::depth_of_power;
 use crate::error::{Result, positive, within};
 use crate::load::Tilt;
 use crate::solver::RigidMotion;

@@ -1,6 +1,7 @@
 //! A run beside another one in steps twice as long, whose difference tells the error of a field where levels do not.
 
-use crate::contact::{Scene, ViscoelasticContact};
+use crate::contact::ViscoelasticContact;
+use crate::equilibrium::Ground;
 use crate::error::Result;
 use crate::hereditary::{Interpolant, StepContext};
 use crate::load::LoadHistory;
@@ -25,7 +26,7 @@ pub(super) struct Coarser {
 impl Coarser {
     /// For a run that begins with this contact.
     pub(super) fn new(contact: &ViscoelasticContact, times: &[f64], is_adaptive: bool) -> Coarser {
-        let Scene { settings, attraction, .. } = &*contact.scene;
+        let Ground { settings, attraction, .. } = &contact.scene.ground;
         let interpolant = if is_adaptive { settings.adaptive_interpolant() } else { settings.interpolant() };
         let (in_halves, contact) = (is_adaptive && attraction.is_some(), Some(Box::new(contact.clone())));
         Coarser { contact, interpolant, times: times.to_vec(), in_halves, force: 0.0 }
@@ -58,7 +59,7 @@ impl Coarser {
     /// The error of the pressure of the run, where both have ended a step and something has pressed.
     pub(super) fn error_of(&self, run: &ViscoelasticContact) -> Option<f64> {
         let contact = self.contact.as_ref().filter(|contact| contact.time() == run.time())?;
-        let [off, sum] = run.pressure_beside(contact).map(|sum| sum * run.grid().cell_area());
+        let [off, sum] = run.fields().pressure_beside(contact.fields()).map(|sum| sum * run.grid().cell_area());
         let size = sum.max(LEAST_FORCE * self.force);
         (size > 0.0).then(|| off / size / (2f64.powf(ORDER) - 1.0))
     }

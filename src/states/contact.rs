@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::contact::{Estimated, Figures, Limits, StepReport, ViscoelasticContact, Warnings, impl_contact};
+use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings};
+use crate::elastic::ElasticContact;
 use crate::error::{Error, Result, StatesError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
@@ -41,7 +42,7 @@ pub(super) struct Scene {
     /// The states of the sweep, without those added in steps.
     pub(super) swept: Arc<ElasticStates>,
     /// Solves the state of each step.
-    elastic: Option<Arc<Mutex<ViscoelasticContact>>>,
+    elastic: Option<Arc<Mutex<ElasticContact>>>,
     pub(super) temperature: Option<TemperatureHistory>,
     pub(super) limits: Limits,
     pub(super) interpolant: Interpolant,
@@ -393,8 +394,6 @@ impl StatesContact {
         self.levels.groups().map(|(top, traction, _)| (top, traction)).take_while(|(top, _)| *top <= self.levels.level)
     }
 }
-
-impl_contact!(StatesContact, |_| None);
 
 debug_by!(self: StatesContact =>
     time: self.time, force: self.force(), approach: self.approach(), tilt: self.tilt(), level: self.level(), groups: self.groups());

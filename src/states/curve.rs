@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::Grid;
-use crate::contact::{Builder, Figures, Warnings};
+use crate::contact::{Figures, Warnings};
+use crate::elastic::ElasticBuilder;
 use crate::error::{Result, count_within, in_order, least_length, positive};
 use crate::load::{Tilt, load_point};
 use crate::numeric::{hermite, hermite_slope, root};
@@ -75,7 +76,7 @@ pub struct ElasticStates {
     /// The grid of the sweep.
     pub(crate) grid: Option<Grid>,
     /// What they were swept with, for states between them.
-    pub(super) scene: Option<Builder>,
+    pub(super) scene: Option<ElasticBuilder>,
     nodes: Vec<Node>,
 }
 

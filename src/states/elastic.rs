@@ -1,6 +1,7 @@
 //! The elastic contact of unit compliance that states are solved with.
 
-use crate::contact::{Figures, ViscoelasticContact, Warnings};
+use crate::contact::{Figures, Warnings};
+use crate::elastic::ElasticContact;
 use crate::error::{Result, StatesError};
 use crate::load::{Load, Tilt};
 use crate::states::curve::{ElasticState, ElasticStates};
@@ -13,33 +14,33 @@ pub(super) struct Solved {
 }
 
 /// The state of an elastic contact of unit compliance under a load, solved from the last one.
-pub(super) fn state_under(contact: &mut ViscoelasticContact, load: Load) -> Result<Solved> {
-    let report = contact.step(0.0, load)?;
-    let level = if let Load::Force { normal, .. } = load { normal } else { contact.force() };
-    let rounded = contact.computation.state.heights_are_lost(&contact.scene);
+pub(super) fn state_under(contact: &mut ElasticContact, load: Load) -> Result<Solved> {
+    let report = contact.solve(load)?;
+    let (rounded, fields) = (contact.heights_are_lost(), contact.fields());
+    let level = if let Load::Force { normal, .. } = load { normal } else { fields.force() };
     let free = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None });
-    let (stiffness, [compliance, tilt_rate @ ..]) = contact.stiffnesses(free)?;
+    let (stiffness, [compliance, tilt_rate @ ..]) = fields.stiffnesses(free)?;
     let state = ElasticState {
         level,
-        approach: contact.approach(),
-        tilt: contact.tilt(),
+        approach: fields.approach(),
+        tilt: fields.tilt(),
         stiffness,
         load_stiffness: 1.0 / compliance,
         tilt_rate,
-        area: contact.contact_area(),
-        cells: contact.contact_cells(),
-        patches: contact.patches()?.all.len(),
+        area: fields.contact_area(),
+        cells: fields.contact_cells(),
+        patches: fields.patches()?.all.len(),
         // warnings of its own modulus and solver do not apply to the contacts that are made of it, those of its shape do
         warnings: (report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING)
             | Warnings::of(&[(Warnings::ROUNDING, rounded)]),
         figures: Figures { modulus: None, ..report.figures },
     };
-    Ok(Solved { state, pressure: Pressed::new(contact.pressure()) })
+    Ok(Solved { state, pressure: Pressed::new(fields.pressure()) })
 }
 
 impl ElasticStates {
     /// An elastic contact of unit compliance on this surface, undisturbed.
-    pub(super) fn elastic_contact(&self) -> Result<ViscoelasticContact> {
+    pub(super) fn elastic_contact(&self) -> Result<ElasticContact> {
         self.scene.as_ref().ok_or(StatesError::NoScene)?.clone().build()
     }
 }

@@ -1,22 +1,11 @@
 //! Fields of a contact on elastic states.
 
 use crate::error::{Result, StatesError, within};
+use crate::fields::KeptFields;
 use crate::load::Load;
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 use crate::states::twin::Profile;
-
-/// Fields of a [`StatesContact`], one value for each cell of the grid of the sweep.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct StatesFields {
-    /// Contact pressure \[Pa\].
-    pub pressure: Vec<f64>,
-    /// Displacement of the surface, positive into the bodies \[m\].
-    pub displacement: Vec<f64>,
-    /// Gap between the deformed bodies \[m\]; +∞ where there is nothing to touch.
-    pub gap: Vec<f64>,
-}
 
 impl StatesContact {
     /// The pressure \[Pa\] from the states that the sweep kept
@@ -50,17 +39,16 @@ impl StatesContact {
     ///
     /// # Errors
     /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given as a table; as
-    /// [`ViscoelasticContact::step`](crate::ViscoelasticContact::step).
-    pub fn fields(&self, accuracy: f64) -> Result<StatesFields> {
+    /// [`ElasticContact::solve`](crate::elastic::ElasticContact::solve).
+    pub fn fields(&self, accuracy: f64) -> Result<KeptFields> {
         within("accuracy of the fields", accuracy, (0.0..=0.1).contains(&accuracy), "in [0, 0.1]")?;
         let states = self.states();
         let mut elastic = states.elastic_contact()?;
-        elastic.step(0.0, Load::Force { normal: 0.0, tilt: states.tilt })?;
-        let cells = elastic.grid().len();
-        let mut fields =
-            StatesFields { pressure: vec![0.0; cells], displacement: vec![0.0; cells], gap: vec![0.0; cells] };
-        elastic.gap_into(&mut fields.gap)?;
-        let (mut before, mut gap) = (fields.clone(), vec![0.0; cells]);
+        elastic.solve(Load::Force { normal: 0.0, tilt: states.tilt })?;
+        let cells = elastic.fields().grid().len();
+        let mut sums = [vec![0.0; cells], vec![0.0; cells]];
+        let (mut before, mut motion) = (sums.clone(), elastic.fields().motion(0));
+        let mut motion_before = motion;
         let (tractions, displacements) =
             (Profile::new(self.tractions()), Profile::new(self.levels.groups().map(|(top, _, w)| (top, w))));
         let mut levels = tractions.cuts(0.0, accuracy).0;
@@ -69,23 +57,23 @@ impl StatesContact {
         levels.dedup();
         let shares = tractions.means(&levels).zip(displacements.means(&levels));
         for ((level, traction), (_, displacement)) in shares {
-            elastic.step(0.0, Load::Force { normal: level, tilt: states.tilt })?;
-            elastic.gap_into(&mut gap)?;
-            let parts = [
-                (traction, &mut fields.pressure, &mut before.pressure, elastic.pressure()),
-                (displacement, &mut fields.displacement, &mut before.displacement, elastic.displacement()),
-                (displacement, &mut fields.gap, &mut before.gap, &gap),
-            ];
-            for (share, sum, before, now) in parts {
-                for ((sum, before), now) in sum.iter_mut().zip(before.iter_mut()).zip(now) {
-                    // nothing to touch stays nothing to touch
-                    *sum += if now.is_finite() { share * (now - *before) } else { 0.0 };
+            elastic.solve(Load::Force { normal: level, tilt: states.tilt })?;
+            let fields = elastic.fields();
+            let parts = [(traction, fields.pressure()), (displacement, fields.displacement())];
+            for ((share, now), (sum, before)) in parts.into_iter().zip(sums.iter_mut().zip(&mut before)) {
+                for ((sum, before), now) in sum.iter_mut().zip(before).zip(now) {
+                    *sum += share * (now - *before);
                     *before = *now;
                 }
             }
+            let now = fields.motion(0);
+            motion.approach += displacement * (now.approach - motion_before.approach);
+            (0..2).for_each(|axis| motion.tilt[axis] += displacement * (now.tilt[axis] - motion_before.tilt[axis]));
+            motion_before = now;
         }
-        fields.gap.iter_mut().for_each(|gap| *gap += self.levels.lift);
-        Ok(fields)
+        motion.approach -= self.levels.lift;
+        let [pressure, displacement] = sums;
+        Ok(elastic.fields().keep_with(pressure, displacement, motion, self.time()))
     }
 }
 

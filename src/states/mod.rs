@@ -38,6 +38,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
+mod as_contact;
 mod beside;
 mod closed_forms;
 mod coarser;
@@ -63,7 +64,6 @@ mod twin;
 pub use crate::error::StatesError;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
-pub use fields::StatesFields;
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
 pub(crate) use reach::{Loading, as_elastic, greatest};

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::{DEEP, Figures, STEEP, Warnings, depth_of_power};
+use crate::contact::{Figures, Warnings};
+use crate::equilibrium::{DEEP, STEEP, depth_of_power};
 use crate::states::curve::ElasticStates;
 
 /// Bodies of the shape c rⁿ with so great an exponent are flat, with an edge.

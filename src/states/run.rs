@@ -56,6 +56,11 @@ impl StatesContact {
 
 impl Driven for StatesContact {
     type Control = StatesControl;
+    type Exact = StatesContact;
+
+    fn instead(exact: &StatesContact) -> Option<&StatesContact> {
+        Some(exact)
+    }
 
     fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StatesControl) {
         let (_, tolerance) = stepping.lengths();

@@ -3,7 +3,9 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::{Scene, ViscoelasticContact};
+use crate::equilibrium::Ground;
 use crate::error::{Error, Result, StatesError, count_within};
+use crate::fields::KeptFields;
 use crate::load::{Load, LoadHistory};
 use crate::run::Run;
 use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
@@ -43,7 +45,7 @@ impl<'a> Run<'a> {
     /// alone: cells that joined in the last long step have the pressure of one moment, which is off by 1 to 30 %.
     ///
     /// Where the contact is a superposition of its elastic states ([`states`](crate::states)) the steps stay as they are, bitwise. A few
-    /// elastic contacts beside the run give the pressure of [`Sample::contact`](crate::run::Sample::contact) and [`Run::within_step`] at any
+    /// elastic contacts beside the run give the pressure of [`Sample::fields`](crate::run::Sample::fields) and [`Run::fields_within_step`] at any
     /// time: 6 for 1e-2 and 13 for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
     ///
     /// Where load points or tilts change, where bodies are several, attract each other or are
@@ -76,7 +78,7 @@ impl<'a> Run<'a> {
     ///     for sample in run.samples() {
     ///         let sample = sample?;
     ///         if let Some(field) = sample.field() {
-    ///             println!("{:.4e} Pa to {:?}", sample.contact().max_pressure(), field.error);
+    ///             println!("{:.4e} Pa to {:?}", sample.fields().max_pressure(), field.error);
     ///         }
     ///     }
     /// }
@@ -104,10 +106,10 @@ impl<'a> Run<'a, StatesContact> {
 impl FieldFinder<ViscoelasticContact> for InSpace {
     fn prepare(&mut self, contact: &ViscoelasticContact, request: &FieldRequest<'_>) -> Result<Prepared> {
         let FieldRequest { history, accuracy, start, until, times, is_adaptive } = *request;
-        let Scene { material, temperature, settings, attraction, .. } = &*contact.scene;
+        let Scene { ground: Ground { settings, attraction, .. }, material, temperature, .. } = &*contact.scene;
         let course = Loading { material, temperature: temperature.as_ref(), history, until };
         let state = &contact.computation.state;
-        let is_alone = contact.bodies() == 1 && attraction.is_none() && !state.region.is_shared();
+        let is_alone = contact.fields().bodies() == 1 && attraction.is_none() && !state.held.region.is_shared();
         let is_new = start == 0.0 || state.is_undisturbed();
         let kind = (settings.adaptive_interpolant(), start);
         let beside = (is_alone && is_new).then(|| Beside::new(contact, &course, accuracy, kind)).transpose();
@@ -144,12 +146,12 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         }
     }
 
-    fn with_field(
+    fn exact_field(
         &self,
         contact: &ViscoelasticContact,
         history: &dyn LoadHistory,
         after: bool,
-    ) -> Result<(Option<ViscoelasticContact>, FieldReport)> {
+    ) -> Result<(Option<KeptFields>, FieldReport)> {
         let mut report = FieldReport::default();
         let beside = match self {
             InSpace::Unknown => return Ok((None, report)),
@@ -164,7 +166,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             return Ok((None, report));
         };
         [report.elastic_contacts, report.convolutions] = found.spent;
-        let exact = contact.with_pressure(&found.pressure);
+        let exact = contact.fields().keep().with_pressure(&found.pressure);
         report.error = Some(found.error).filter(|error| exact.is_some() && error.is_finite());
         Ok((exact, report))
     }
@@ -181,7 +183,7 @@ impl FieldFinder<StatesContact> for OnStates {
         Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY })
     }
 
-    fn with_field(
+    fn exact_field(
         &self,
         contact: &StatesContact,
         history: &dyn LoadHistory,

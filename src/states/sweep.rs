@@ -1,4 +1,4 @@
-//! The elastic states of a scene, found by the stepper with an elastic body.
+//! The elastic states of a scene.
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -6,27 +6,27 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::{Builder, Settings, ViscoelasticContact};
+use crate::contact::Settings;
+use crate::elastic::{ElasticBuilder, ElasticContact};
 use crate::error::{Error, Result, StatesError, count_within, finite, positive, within};
 use crate::geometry::Geometry;
 use crate::kernel::{InfluenceKernel, Layer};
 use crate::load::{Load, Tilt, load_point};
-use crate::rheology::{Elastic, Material};
 use crate::solver::RigidMotion;
 use crate::states::curve::{ElasticState, ElasticStates};
 use crate::states::elastic::{Solved, state_under};
 use crate::states::pressed::Pressed;
 use crate::states::reach::{MARGIN, Reach};
 
-/// Finds the elastic states of a shape on a body, each by the stepper with an elastic body of unit compliance.
+/// Finds the elastic states of a shape on a body, each as an [`ElasticContact`] of unit compliance.
 ///
 /// A first pass takes levels that double. Then a state is added in the middle, in ln l, of two others, and more beside
 /// it where depth or slope differ from their interpolation by more than the accuracy times √(δ δ_last): small contacts
-/// have few cells, whose own error is larger. A sweep costs about as much as so many jumps of the load.
+/// have few cells, whose own error is larger. A sweep costs about as much as so many solutions.
 #[derive(Debug, Clone)]
 #[must_use = "a sweep does nothing until it is run"]
 pub struct Sweep {
-    builder: Builder,
+    builder: ElasticBuilder,
     layer: Option<Layer>,
     tilt: [Tilt; 2],
     accuracy: f64,
@@ -53,7 +53,8 @@ impl Sweep {
     pub fn new(grid: Grid, geometry: &dyn Geometry) -> Sweep {
         let settings = Settings::default().with_tolerance(1e-8);
         Sweep {
-            builder: ViscoelasticContact::builder(grid).geometry(geometry),
+            // C = 1 Pa⁻¹
+            builder: ElasticContact::builder(grid).geometry(geometry).modulus(1.0),
             layer: None,
             tilt: [Tilt::Fixed(0.0); 2],
             accuracy: 1e-4,
@@ -92,7 +93,7 @@ impl Sweep {
         self
     }
 
-    /// Settings of the stepper (default: those of [`Settings`] with a tolerance of 1e-8).
+    /// Settings of the elastic contact (default: those of [`Settings`] with a tolerance of 1e-8).
     pub fn settings(mut self, settings: Settings) -> Sweep {
         self.settings = settings;
         self
@@ -108,7 +109,7 @@ impl Sweep {
     /// Runs the sweep.
     ///
     /// # Errors
-    /// Those of [`Builder::build`] and [`ViscoelasticContact::step`]; [`StatesError::Shrinks`] if the pressure falls
+    /// Those of [`ElasticBuilder::build`] and [`ElasticContact::solve`]; [`StatesError::Shrinks`] if the pressure falls
     /// somewhere while the load grows; if the accuracy is outside \[1e-8, 0.1\], or the reach is not finite and
     /// positive.
     pub fn run(self, to: Reach) -> Result<Arc<ElasticStates>> {
@@ -134,14 +135,11 @@ impl Sweep {
             let (Tilt::Fixed(value) | Tilt::Free { at: value }) = tilt;
             finite("tilt or load point of a sweep", value)?;
         }
-        let nu = self.layer.as_ref().map_or(0.5, Layer::poisson_ratio);
-        // C = (1 − ν) J/2 = 1 Pa⁻¹
-        let unit = Material::constant_poisson(Elastic::new(0.5 * (1.0 - nu))?, nu)?;
-        let scene = self.builder.clone().material(unit).settings(self.settings);
+        let scene = self.builder.clone().settings(self.settings);
         let elastic = scene.clone().build()?;
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
         let at = load_point(self.tilt);
-        let grid = elastic.grid().clone();
+        let grid = elastic.fields().grid().clone();
         let mut solver = Solver {
             asked: &self,
             elastic,
@@ -189,7 +187,7 @@ impl Pair {
 /// The elastic contact that finds states.
 struct Solver<'a, P> {
     asked: &'a Sweep,
-    elastic: ViscoelasticContact,
+    elastic: ElasticContact,
     /// The load point.
     at: [f64; 2],
     rest: RigidMotion,
@@ -324,7 +322,8 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
 
     /// Σ |δp| of the pressure in the middle from the line through both others, over its load, or over a part of the greatest load.
     fn error_of_pressure(&self, [lower, middle, upper]: [&Solved; 3]) -> f64 {
-        let (grid, [low, level, high]) = (self.elastic.grid(), [lower, middle, upper].map(|solved| solved.state.level));
+        let (grid, [low, level, high]) =
+            (self.elastic.fields().grid(), [lower, middle, upper].map(|solved| solved.state.level));
         let (share, mut off) = ((level - low) / (high - low), vec![0.0; grid.len()]);
         for (solved, share) in [(lower, 1.0 - share), (upper, share), (middle, -1.0)] {
             solved.pressure.add_to(share, &mut off);

@@ -21,6 +21,8 @@ fn main() {
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
     println!("tilting steps allocate nothing: ok");
+    steps::elastic_solutions_allocate_nothing();
+    println!("elastic solutions allocate nothing: ok");
     threads::steps_on_threads_allocate_blocks_of_a_queue();
     println!("steps on threads allocate blocks of a queue: ok");
     ranks::warm_steps_of_ranks_allocate_nothing();

@@ -188,14 +188,14 @@ pub fn builders_announce_what_is_counted() {
         let what = format!(
             "{number}: {counted} counted, {told} told, {:?} cells of {}, {} bodies, {} terms, {:?}: {memory}",
             scene.grid.cells(),
-            contact.kernel(),
+            contact.fields().kernel(),
             scene.bodies,
             scene.terms,
             scene.settings
         );
         assert!(counted <= 1.05 * told + small, "{what}");
         // a window is as small as the contact at first, and may grow
-        let on_half_space = contact.kernel().to_string() == "half-space";
+        let on_half_space = contact.fields().kernel().to_string() == "half-space";
         let recursive = scene.settings.frame() == Frame::Bodies && memory.each_step == 0;
         let least = if scene.settings.window() && on_half_space && recursive { 0.0 } else { 0.95 };
         assert!(counted >= least * told - small, "{what}");

@@ -174,6 +174,13 @@ fn history(draws: &mut Draws, lengths: [f64; 2], tilts: [bool; 2], line: bool, j
     random_history(draws, control, 1.0, jumps).history
 }
 
+/// A kernel of one of twelve kinds, Poisson's ratio of its body, and a shape on it.
+pub fn shape_on_body(draws: &mut Draws, kind: u64) -> (Grid, InfluenceKernel, f64, Box<dyn Geometry>) {
+    let (grid, kernel, poisson) = random_kernel(draws, kind);
+    let shape = shape(draws, grid.cells()[1] == 1);
+    (grid, kernel, poisson, shape)
+}
+
 impl AnyScene {
     /// The scene of a seed.
     pub fn new(seed: u64) -> AnyScene {
@@ -297,20 +304,21 @@ impl AnyScene {
             Ok(reports.len() < MOST_STEPS)
         });
         let bits = |field: Vec<f64>| field.into_iter().map(f64::to_bits).collect::<Vec<_>>();
-        let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.gathered(field, 0)?.unwrap_or_default()));
-        let ([moment1, moment2], [tilt1, tilt2]) = (contact.moment(), contact.tilt());
-        let [force1, force2] = contact.lateral_force(&self.shape);
+        let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.fields().gathered(field, 0)?.unwrap_or_default()));
+        let ([moment1, moment2], [tilt1, tilt2]) = (contact.fields().moment(), contact.tilt());
+        let [force1, force2] = contact.fields().lateral_force(&self.shape);
         let mut probes = [-1.0; 3];
         if self.probed {
             // after a step that failed, the state before it is not kept
             let inside = contact.time() - if error.is_none() { 0.4 * length } else { 0.0 };
             let last = contact.within_step(inside)?;
-            probes = [contact.stiffness_over_modulus().unwrap_or(-1.0), last.force(), last.approach()];
+            probes = [contact.fields().stiffness_over_modulus().unwrap_or(-1.0), last.force(), last.approach()];
         }
-        let state = [contact.force(), contact.approach(), contact.max_pressure(), contact.contact_area(), probes[0]];
+        let state =
+            [contact.force(), contact.approach(), contact.fields().max_pressure(), contact.contact_area(), probes[0]];
         let turned = [moment1, moment2, tilt1, tilt2, force1, force2, probes[1], probes[2]];
         let numbers = state.into_iter().chain(turned).chain(budget).collect();
-        let fields = [whole(contact.pressure())?, whole(contact.displacement())?];
+        let fields = [whole(contact.pressure())?, whole(contact.fields().displacement())?];
         Ok(Course { reports, error: error.map(|error| error.to_string()), numbers: bits(numbers), fields })
     }
 }

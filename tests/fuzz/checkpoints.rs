@@ -44,7 +44,7 @@ fn build(scene: usize) -> viscocontact::Result<ViscoelasticContact> {
 }
 
 fn step(contact: &mut ViscoelasticContact, dt: f64, force: f64) -> viscocontact::Result<StepReport> {
-    let loads = vec![Load::force(force); contact.bodies()];
+    let loads = vec![Load::force(force); contact.fields().bodies()];
     contact.step(dt, &loads)
 }
 
@@ -111,7 +111,7 @@ fn checkpoint(source: &mut Source) -> Verdict {
         return unchanged(&before, &contact, &error).map(|()| Outcome::Refused);
     }
     known("resumed pressure", contact.pressure().iter().copied())?;
-    finite("resumed displacement", contact.displacement().iter().copied())?;
+    finite("resumed displacement", contact.fields().displacement().iter().copied())?;
     finite("resumed numbers", [contact.time(), contact.approach(), contact.force()])?;
     if source.chance(0.2) {
         let load = StepLoad::new(Load::force(0.1)).map_err(|error| error.to_string())?;

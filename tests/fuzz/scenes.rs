@@ -86,43 +86,45 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
     if contact.pressure().iter().any(|&p| p < 0.0) {
         return Err(format!("a negative pressure in {report:?} of {contact:?}: {:?}", contact.pressure()));
     }
-    finite("displacement", contact.displacement().iter().copied())?;
+    finite("displacement", contact.fields().displacement().iter().copied())?;
     let len = contact.grid().len();
     let mut field = vec![0.0; len];
-    contact.gap_into(&mut field).map_err(|error| error.to_string())?;
+    contact.fields().gap_into(&mut field).map_err(|error| error.to_string())?;
     known("gap", field.iter().copied())?;
     finite("sums", [contact.force(), contact.contact_area()])?;
-    finite("moment", contact.moment())?;
-    for body in (0..contact.bodies()).filter_map(|body| contact.body(body)) {
+    finite("moment", contact.fields().moment())?;
+    for body in (0..contact.fields().bodies()).filter_map(|body| contact.fields().body(body)) {
         finite("body", [body.approach, body.force].into_iter().chain(body.tilt))?;
         finite("moment of a body", body.moment)?;
     }
-    if let Some(space) = contact.mesh_error().unwrap() {
+    if let Some(space) = contact.fields().mesh_error().unwrap() {
         known("error of the mesh", [space.approach, space.area, space.singular].into_iter().chain(space.max_pressure))?;
     }
-    known("pressures", [contact.mean_pressure(), contact.max_pressure()])?;
-    if let Ok(patches) = contact.patches() {
+    known("pressures", [contact.mean_pressure(), contact.fields().max_pressure()])?;
+    if let Ok(patches) = contact.fields().patches() {
         let all = patches.all.iter();
         let of = |patch: &viscocontact::observe::Patch| [patch.area, patch.force, patch.centroid[0], patch.centroid[1]];
         known("patches", all.flat_map(of))?;
     }
-    for distribution in [contact.gap_distribution(5), contact.pressure_distribution(5)].into_iter().flatten() {
+    for distribution in
+        [contact.fields().gap_distribution(5), contact.fields().pressure_distribution(5)].into_iter().flatten()
+    {
         known("distribution", distribution.density.iter().copied())?;
         known("distribution", distribution.centers().chain([distribution.width, distribution.share_at_zero]))?;
     }
-    if let Ok(profile) = contact.profile(source.choose(&[Axis::X1, Axis::X2]), 0.0) {
+    if let Ok(profile) = contact.fields().profile(source.choose(&[Axis::X1, Axis::X2]), 0.0) {
         known("profile", profile.positions.into_iter().chain(profile.gap))?;
     }
-    if let Ok(Some(asymmetry)) = contact.asymmetry([0.0; 2]) {
+    if let Ok(Some(asymmetry)) = contact.fields().asymmetry([0.0; 2]) {
         known("asymmetry", asymmetry.center_of_pressure.into_iter().chain(asymmetry.skewness()))?;
     }
     if let Ok(within) = contact.within_step(time - 0.3 * dt) {
         finite("within", [within.time(), within.approach(), within.force()].into_iter().chain(within.tilt()))?;
         finite("pressure within", within.pressure().iter().copied())?;
-        finite("displacement within", within.displacement().iter().copied())?;
+        finite("displacement within", within.fields().displacement().iter().copied())?;
     }
     if source.chance(0.1) {
-        if let Ok(stiffness) = contact.stiffness_over_modulus() {
+        if let Ok(stiffness) = contact.fields().stiffness_over_modulus() {
             known("stiffness", [stiffness])?;
         }
         let text = Metadata::new("fuzz").json(contact);
@@ -156,7 +158,7 @@ fn steps(source: &mut Source, fitted: bool) -> Verdict {
     };
     let mut accepted = false;
     for _ in 0..source.count(1, 6) {
-        let loads: Vec<Load> = (0..contact.bodies()).map(|_| models::load(source, length, softness)).collect();
+        let loads: Vec<Load> = (0..contact.fields().bodies()).map(|_| models::load(source, length, softness)).collect();
         let (dt, before) = (length_of_step(source), state(&contact));
         if source.chance(0.05)
             && let Ok(shape) = models::geometry(source, length)

@@ -32,11 +32,14 @@ fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
             assert!(matches!(resumed.restore(&snapshot), Err(Error::OtherContact { .. })));
             resumed.resume(&path).unwrap();
             assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
-            assert_eq!((contact.pressure(), contact.displacement()), (resumed.pressure(), resumed.displacement()));
+            assert_eq!(
+                (contact.pressure(), contact.fields().displacement()),
+                (resumed.pressure(), resumed.fields().displacement())
+            );
             assert_eq!((contact.approach(), contact.tilt()), (resumed.approach(), resumed.tilt()));
             let ahead = |contact: &mut ViscoelasticContact| {
                 let reports: Vec<_> = (steps..steps + 8).map(|k| step(contact, k)).collect();
-                (reports, contact.pressure().to_vec(), contact.displacement().to_vec())
+                (reports, contact.pressure().to_vec(), contact.fields().displacement().to_vec())
             };
             let exact = ahead(&mut contact);
             assert!(ahead(&mut resumed) == exact, "{name}, saved after {steps}");
@@ -273,7 +276,8 @@ fn a_run_that_is_killed() {
     while let Some(report) = run.next_step().unwrap() {
         writeln!(log, "{:e} .", report.time).unwrap();
     }
-    let bits: Vec<u8> = contact.pressure().iter().chain(contact.displacement()).flat_map(|x| x.to_le_bytes()).collect();
+    let bits: Vec<u8> =
+        contact.pressure().iter().chain(contact.fields().displacement()).flat_map(|x| x.to_le_bytes()).collect();
     fs::write(folder.join("part"), bits).unwrap();
     fs::rename(folder.join("part"), done).unwrap();
 }

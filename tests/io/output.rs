@@ -42,7 +42,7 @@ fn stressed() -> (ViscoelasticContact, [f64; 3], StressVolume) {
     run(&mut contact, |_, _| ());
     let side = contact.grid().spacing().into_iter().fold(0.0, f64::max);
     let depths = [0.5 * side, side, 3.0 * side];
-    let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
+    let volume = contact.fields().stress().unwrap().in_volume(&depths).unwrap();
     (contact, depths, volume)
 }
 
@@ -50,10 +50,10 @@ fn values(contact: &ViscoelasticContact, field: Field) -> Vec<f64> {
     match field {
         // nothing attracts here
         Field::Pressure | Field::Traction => contact.pressure().to_vec(),
-        Field::Displacement => contact.displacement().to_vec(),
+        Field::Displacement => contact.fields().displacement().to_vec(),
         _ => {
             let mut gap = vec![0.0; contact.grid().len()];
-            contact.gap_into(&mut gap).unwrap();
+            contact.fields().gap_into(&mut gap).unwrap();
             gap
         }
     }
@@ -338,11 +338,11 @@ mod csv {
             assert_eq!(value("force [N]"), contact.force());
             assert_eq!(value("approach [m]"), contact.approach());
             assert_eq!([value("tilt 1 [rad]"), value("tilt 2 [rad]")], contact.tilt());
-            assert_eq!([value("moment 1 [N m]"), value("moment 2 [N m]")], contact.moment());
+            assert_eq!([value("moment 1 [N m]"), value("moment 2 [N m]")], contact.fields().moment());
             assert_eq!(value("contact area [m2]"), contact.contact_area());
             assert_eq!(value("contact cells"), contact.contact_cells() as f64);
             assert_eq!(value("mean pressure [Pa]"), contact.mean_pressure());
-            assert_eq!(value("max pressure [Pa]"), contact.max_pressure());
+            assert_eq!(value("max pressure [Pa]"), contact.fields().max_pressure());
             assert_eq!(value("iterations"), report.iterations as f64);
             assert_eq!(value("convolutions"), report.convolutions as f64);
             assert_eq!(value("preconditioner applications"), report.preconditioner_applications as f64);
@@ -410,7 +410,7 @@ fn a_run_for_other_readers() {
         write_npy(folder.join(format!("frame_{frame:06}.npy")), grid, &values(contact, Field::Gap)).unwrap();
         fs::write(folder.join("scene.json"), scene().json(contact)).unwrap();
         let depths = [1.0, 1.5, 3.5].map(|sides| sides * contact.grid().spacing()[0].max(contact.grid().spacing()[1]));
-        let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
+        let volume = contact.fields().stress().unwrap().in_volume(&depths).unwrap();
         write_stress(folder.join(format!("frame_{frame:06}.vtr")), Format::Vtk, contact, &volume, &scene()).unwrap();
         dump("depths", &depths);
         let components: Vec<f64> = volume.values.iter().flat_map(Stress::components).collect();

@@ -141,7 +141,7 @@ fn pressure_is_blank_out_of_contact() {
     let map = Map::pressure(&contact).unwrap();
     let known = map.values().iter().filter(|p| p.is_finite()).count();
     assert_eq!(known, contact.contact_cells());
-    assert_eq!(map.range, [0.0, contact.max_pressure()]);
+    assert_eq!(map.range, [0.0, contact.fields().max_pressure()]);
     assert_eq!(map.title, "t = 0 s");
     let gap = Map::gap(&contact).unwrap();
     assert_eq!([gap.range[0], gap.values().len() as f64], [0.0, 768.0]);
@@ -236,7 +236,7 @@ fn bad_pictures_are_refused_by_name() {
         assert!(field(map.draw()).ends_with("end of the colour scale"));
     }
     let contact = |side: f64| contact_of(&sphere(), Grid::square(8, side).unwrap(), maxwell(), Settings::default());
-    let section = contact(1.0).stress().unwrap().on_section(Axis::X1, 0.0, &[0.1, 0.2]).unwrap();
+    let section = contact(1.0).fields().stress().unwrap().on_section(Axis::X1, 0.0, &[0.1, 0.2]).unwrap();
     assert!(Map::section(&contact(1.0), &section, Stress::tresca, "q").is_ok());
     let empty = Chart::new("", "x", "y", Legend::UpperLeft);
     let mut far = empty.clone();

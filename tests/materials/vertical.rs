@@ -156,7 +156,7 @@ fn sweeps_at_temperatures_have_the_moduli_there() {
             ];
             assert!(pairs.iter().all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{kelvin}: {found:?} {expected:?}");
             if k + 1 == table.states().len() {
-                let [shown, own] = [swept.contact(), own.contact()];
+                let [shown, own] = [swept.fields(), own.fields()];
                 assert!((shown.force() / own.force() - 1.0).abs() < 1e-5 && shown.load() == load);
                 assert!((shown.max_pressure() / own.max_pressure() - 1.0).abs() < 1e-4);
             }

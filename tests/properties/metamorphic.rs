@@ -34,7 +34,7 @@ proptest! {
             steps: steps.collect(),
         };
         let (one, other) = (end(&scene, tight()), other.run(tight()).unwrap());
-        let (pressure, displacement) = (field(other.pressure(), 1.0 / stress), field(other.displacement(), 1.0 / length));
+        let (pressure, displacement) = (field(other.pressure(), 1.0 / stress), field(other.fields().displacement(), 1.0 / length));
         assert_ends_like(&one, &pressure, &displacement, other.approach() / length)?;
     }
 
@@ -57,7 +57,7 @@ proptest! {
             if exchange { j * n1 + i } else { i * n2 + j }
         };
         let back = |field: &[f64]| (0..n1 * n2).map(|k| field[place(k / n2, k % n2)]).collect::<Vec<_>>();
-        assert_ends_like(&one, &back(other.pressure()), &back(other.displacement()), other.approach())?;
+        assert_ends_like(&one, &back(other.pressure()), &back(other.fields().displacement()), other.approach())?;
     }
 
     /// On a wider grid, off the middle by whole cells.
@@ -76,7 +76,7 @@ proptest! {
             let [i, j] = [(k / n2) as i32 + 4 + shift[0], (k % n2) as i32 + 4 + shift[1]];
             field[i as usize * wide[1] + j as usize]
         }).collect::<Vec<_>>();
-        assert_ends_like(&one, &here(other.pressure()), &here(other.displacement()), other.approach())?;
+        assert_ends_like(&one, &here(other.pressure()), &here(other.fields().displacement()), other.approach())?;
     }
 
     /// A gap that is wider everywhere is approached by as much more.
@@ -101,7 +101,7 @@ proptest! {
         ];
         for settings in others {
             let other = scene.run(settings).unwrap();
-            assert_ends_like(&one, other.pressure(), other.displacement(), other.approach())?;
+            assert_ends_like(&one, other.pressure(), other.fields().displacement(), other.approach())?;
         }
     }
 
@@ -115,7 +115,7 @@ proptest! {
             both.step(dt, load).unwrap();
         }
         let one = end(&scene, tight());
-        assert_ends_like(&one, both.pressure(), both.displacement(), both.approach())?;
+        assert_ends_like(&one, both.pressure(), both.fields().displacement(), both.approach())?;
     }
 }
 
@@ -161,7 +161,7 @@ mod threads {
     }
 
     fn bits(contact: &ViscoelasticContact) -> Vec<u64> {
-        [contact.pressure(), contact.displacement()].concat().iter().map(|x| x.to_bits()).collect()
+        [contact.pressure(), contact.fields().displacement()].concat().iter().map(|x| x.to_bits()).collect()
     }
 
     fn whole() -> Settings {

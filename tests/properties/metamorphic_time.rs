@@ -27,9 +27,9 @@ fn record(scene: &Scenario, steps: &[(f64, Load)]) -> Record {
     let mut contact = scene.builder().settings(settings).build().unwrap();
     let mut record = Record { force: vec![0.0], approach: vec![contact.approach()], work: Vec::new() };
     for &(dt, load) in steps {
-        let (pressure, displacement) = (contact.pressure().to_vec(), contact.displacement().to_vec());
+        let (pressure, displacement) = (contact.pressure().to_vec(), contact.fields().displacement().to_vec());
         let report = contact.step(dt, load).unwrap();
-        let now = contact.pressure().iter().zip(contact.displacement());
+        let now = contact.pressure().iter().zip(contact.fields().displacement());
         let before = pressure.iter().zip(&displacement);
         let work: f64 = now.zip(before).map(|((q, w), (p, u))| 0.5 * (p + q) * (w - u)).sum();
         record.force.push(report.force);
@@ -62,7 +62,7 @@ proptest! {
         let mut late = scene.clone();
         late.steps.insert(0, (wait * time(&scene), Load::force(0.0)));
         let other = late.run(tight()).unwrap();
-        assert_ends_like(&one, other.pressure(), other.displacement(), other.approach())?;
+        assert_ends_like(&one, other.pressure(), other.fields().displacement(), other.approach())?;
         prop_assert!((other.time() - one.contact.time() - late.steps[0].0).abs() <= 1e-12 * other.time());
     }
 
@@ -128,7 +128,7 @@ proptest! {
             Scenario { shape: punch.clone() as _, steps, ..scene.clone() }.run(linear().with_tolerance(1e-12)).unwrap()
         };
         let [one, two, four] = [1, 2, 4].map(run);
-        let (coarse, fine) = (difference(two.displacement(), one.displacement()), difference(four.displacement(), two.displacement()));
+        let (coarse, fine) = (difference(two.fields().displacement(), one.fields().displacement()), difference(four.fields().displacement(), two.fields().displacement()));
         prop_assert!(coarse < 0.05, "{coarse:e}");
         prop_assert!(fine <= coarse / 3.5 + 1e-10, "order {:.2}: {coarse:e} {fine:e}", (coarse / fine).log2());
     }
@@ -164,9 +164,9 @@ mod frames {
                     field[at(k / n2, 0, n1) as usize * n2 + at(k % n2, 1, n2) as usize]
                 }).collect::<Vec<_>>();
                 assert_same("pressure", moving.pressure(), &moved(still.pressure()), 0.0, 1e-6)?;
-                assert_same("displacement", moving.displacement(), &moved(still.displacement()), 0.0, 1e-7)?;
+                assert_same("displacement", moving.fields().displacement(), &moved(still.fields().displacement()), 0.0, 1e-7)?;
                 assert_same("approach", &[moving.approach()], &[along.step.approach], 0.0, 1e-7)?;
-                let lateral = moving.lateral_force(&shape);
+                let lateral = moving.fields().lateral_force(&shape);
                 assert_same("lateral force", &lateral, &along.lateral_force, along.step.force, 1e-6)?;
             }
         }

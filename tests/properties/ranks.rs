@@ -89,8 +89,9 @@ fn default_settings_keep_the_promises_of_ranks() {
             let steps =
                 loads.iter().map(|&depth| contact.step(0.3, Load::approach(depth)).map(|report| format!("{report:?}")));
             let reports: Vec<String> = steps.collect::<Result<_, _>>().unwrap();
-            let fields = [contact.pressure(), contact.displacement()].map(|field| contact.gathered(field, 0).unwrap());
-            (reports, contact.force().to_bits(), contact.max_pressure().to_bits(), fields)
+            let fields = [contact.pressure(), contact.fields().displacement()]
+                .map(|field| contact.fields().gathered(field, 0).unwrap());
+            (reports, contact.force().to_bits(), contact.fields().max_pressure().to_bits(), fields)
         };
         let whole = |builder: Builder| builder.settings(Settings::default().with_window(false)).build().unwrap();
         let alone = course(&mut whole(builder()), &loads);

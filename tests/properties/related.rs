@@ -52,7 +52,7 @@ pub fn end(scene: &Scenario, settings: Settings) -> End {
         end.contact.step(dt, load).unwrap();
         let greatest = |field: &[f64], most: f64| field.iter().fold(most, |most, value| most.max(value.abs()));
         end.pressure = greatest(end.contact.pressure(), end.pressure);
-        end.displacement = greatest(end.contact.displacement(), end.displacement);
+        end.displacement = greatest(end.contact.fields().displacement(), end.displacement);
     }
     end
 }
@@ -60,6 +60,6 @@ pub fn end(scene: &Scenario, settings: Settings) -> End {
 /// Whether a state is the same as one that was reached in a run, given its fields and its approach.
 pub fn assert_ends_like(one: &End, pressure: &[f64], displacement: &[f64], approach: f64) -> Result<(), TestCaseError> {
     assert_same("pressure", one.contact.pressure(), pressure, one.pressure, 1e-6)?;
-    assert_same("displacement", one.contact.displacement(), displacement, one.displacement, 1e-7)?;
+    assert_same("displacement", one.contact.fields().displacement(), displacement, one.displacement, 1e-7)?;
     assert_same("approach", &[one.contact.approach()], &[approach], one.displacement, 1e-7)
 }

@@ -75,7 +75,7 @@ fn a_force_beside_the_middle_turns_a_punch() {
         .unwrap();
     for force in [3.0, 1.0, -0.5] {
         let report = punch.step(1.0, Load::eccentric_force(force, at)).unwrap();
-        let moment = punch.moment();
+        let moment = punch.fields().moment();
         assert!((report.force - force).abs() < 1e-9, "{report}");
         assert!((0..2).all(|axis| (moment[axis] - force * at[axis]).abs() < 1e-6), "{force}: {moment:?}");
         assert!(report.tilt[0] * force > 0.0 && report.tilt[1] * force < 0.0, "{report:?}");
@@ -95,7 +95,7 @@ fn what_is_not_covered_is_refused() {
             set(Settings::default().with_time_rule(TimeRule::Rectangle)),
             builder(1.0).another_body(&Sphere::new(1.0).unwrap()).build().err(),
             builder(1.0).build().unwrap().step(1.0, free).err(),
-            builder(1.0).build().unwrap().stress().err(),
+            builder(1.0).build().unwrap().fields().stress().err(),
         ]
         .map(|error| (error, "where surfaces attract each other")),
     );

@@ -16,10 +16,10 @@ use viscocontact::prelude::*;
 fn stored(contact: &ViscoelasticContact) -> f64 {
     let cells = contact.grid().len();
     let (mut traction, mut gap) = (vec![0.0; cells], vec![0.0; cells]);
-    contact.traction_into(&mut traction).unwrap();
-    contact.gap_into(&mut gap).unwrap();
-    let displaced = traction.iter().zip(contact.displacement()).map(|(q, u)| 0.5 * q * u);
-    let attracted = gap.iter().map(|h| contact.attraction().unwrap().energy(h.max(0.0)));
+    contact.fields().traction_into(&mut traction).unwrap();
+    contact.fields().gap_into(&mut gap).unwrap();
+    let displaced = traction.iter().zip(contact.fields().displacement()).map(|(q, u)| 0.5 * q * u);
+    let attracted = gap.iter().map(|h| contact.fields().attraction().unwrap().energy(h.max(0.0)));
     (displaced.sum::<f64>() - attracted.sum::<f64>()) * contact.grid().cell_area()
 }
 

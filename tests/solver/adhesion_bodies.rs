@@ -87,7 +87,7 @@ fn neither_symmetry_threads_nor_the_unit_of_time_change_a_state() {
                     contact.step(if way.warm { step * shift } else { step }, Load::approach(approach)).unwrap();
                     check(&format!("{name}, step {k}"), &contact, &*law, elastic);
                     let mut traction = vec![0.0; contact.grid().len()];
-                    contact.traction_into(&mut traction).unwrap();
+                    contact.fields().traction_into(&mut traction).unwrap();
                     all.extend(traction);
                 }
             };

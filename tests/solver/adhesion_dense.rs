@@ -126,7 +126,7 @@ fn elastic_rough_adhesion_is_the_least_energy_of_a_dense_matrix() {
             let expected = dense.traction(&gap, &rigid);
             contact.step(1.0, Load::approach(approach)).unwrap();
             let mut found = vec![0.0; ALL];
-            contact.traction_into(&mut found).unwrap();
+            contact.fields().traction_into(&mut found).unwrap();
             let greatest = law.traction(0.0);
             let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / greatest;
             // the two may jump in neighbouring steps

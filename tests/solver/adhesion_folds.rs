@@ -61,7 +61,7 @@ impl Pair {
         fine.step(0.0, rough.load()).unwrap();
         let [rough, fine] = [rough, fine].map(|contact| {
             let mut traction = vec![0.0; contact.grid().len()];
-            contact.traction_into(&mut traction).unwrap();
+            contact.fields().traction_into(&mut traction).unwrap();
             traction
         });
         rough.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / self.greatest

@@ -109,8 +109,8 @@ impl Scene {
 pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attraction, elastic: bool) {
     let cells = contact.grid().len();
     let (mut traction, mut gap, mut image) = (vec![0.0; cells], vec![0.0; cells], vec![0.0; cells]);
-    contact.traction_into(&mut traction).unwrap();
-    contact.gap_into(&mut gap).unwrap();
+    contact.fields().traction_into(&mut traction).unwrap();
+    contact.fields().gap_into(&mut gap).unwrap();
     let (greatest, range) = (law.traction(0.0), law.range());
     for k in (0..cells).filter(|&k| gap[k].is_finite()) {
         let (z, h) = (contact.pressure()[k], gap[k]);
@@ -129,9 +129,13 @@ pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attract
         assert!(off < 1e-9 * scale * contact.grid().cell_area() + rounding, "{name}: {force} {balance}");
     }
     if elastic {
-        contact.kernel().convolve(&traction, &mut image, &mut contact.kernel().workspace().unwrap()).unwrap();
+        contact
+            .fields()
+            .kernel()
+            .convolve(&traction, &mut image, &mut contact.fields().kernel().workspace().unwrap())
+            .unwrap();
         let most = image.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-        for (v, u) in image.iter().zip(contact.displacement()) {
+        for (v, u) in image.iter().zip(contact.fields().displacement()) {
             // bodies apart keep the rounding of earlier steps
             assert!((v - u).abs() < 1e-4 * most + 1e-12, "{name}: {v} {u}");
         }

@@ -10,7 +10,7 @@ use viscocontact::prelude::*;
 /// Whether the bodies are apart, from the fields and the law.
 fn is_apart(contact: &ViscoelasticContact, energy: impl Fn(f64) -> f64) -> bool {
     let mut gap = vec![0.0; contact.grid().len()];
-    contact.gap_into(&mut gap).unwrap();
+    contact.fields().gap_into(&mut gap).unwrap();
     let narrowest = gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0);
     contact.pressure().iter().all(|p| *p == 0.0) && energy(narrowest) <= 0.01 * energy(0.0)
 }

@@ -25,7 +25,7 @@ fn end(material: Material, count: u32) -> Vec<f64> {
         contact.step(1.0 / f64::from(count), Load::approach(approach)).unwrap();
     }
     let mut traction = vec![0.0; contact.grid().len()];
-    contact.traction_into(&mut traction).unwrap();
+    contact.fields().traction_into(&mut traction).unwrap();
     traction
 }
 

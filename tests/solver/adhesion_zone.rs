@@ -74,7 +74,7 @@ fn contact_ends_where_the_wall_presses() {
     let errors = [24, 48, 96].map(|cells| {
         let mut contact = ball(cells, 8.0, elastic(), LAWS[0].2()).build().unwrap();
         contact.step(1.0, Load::approach(1.4006335)).unwrap();
-        let error = contact.mesh_error().unwrap_err();
+        let error = contact.fields().mesh_error().unwrap_err();
         assert!(matches!(error, Error::NotCovered { special: Special::Attraction, .. }), "{error}");
         contact.contact_area() / (4.0 * PI) - 1.0
     });
@@ -111,9 +111,9 @@ fn net_traction_is_shown_beside_the_pressure() {
     let mut contact = ball(32, 8.0, elastic(), LAWS[0].2()).build().unwrap();
     contact.step(1.0, Load::approach(1.0)).unwrap();
     assert_eq!(Field::of(&contact), Field::ALL);
-    let profile = contact.profile(Axis::X1, 0.0).unwrap();
+    let profile = contact.fields().profile(Axis::X1, 0.0).unwrap();
     let mut traction = vec![0.0; contact.grid().len()];
-    contact.traction_into(&mut traction).unwrap();
+    contact.fields().traction_into(&mut traction).unwrap();
     assert!((0..32).all(|i| profile.traction[i] == traction[32 * i + 16]));
     assert!(profile.pressure.iter().all(|p| *p >= 0.0) && profile.traction.iter().any(|q| *q < -0.1));
     let [net, wall] = [Map::traction(&contact).unwrap(), Map::pressure(&contact).unwrap()];
@@ -122,7 +122,7 @@ fn net_traction_is_shown_beside_the_pressure() {
     let mut plain = contact_of(&Sphere::new(1.0).unwrap(), grid, elastic(), Settings::default());
     plain.step(1.0, Load::force(1.0)).unwrap();
     assert_eq!(Field::of(&plain), &Field::ALL[..3]);
-    let profile = plain.profile(Axis::X1, 0.0).unwrap();
+    let profile = plain.fields().profile(Axis::X1, 0.0).unwrap();
     assert_eq!(profile.pressure, profile.traction);
-    assert!(plain.passes().is_none() && plain.traction_into(&mut traction[1..]).is_err());
+    assert!(plain.passes().is_none() && plain.fields().traction_into(&mut traction[1..]).is_err());
 }

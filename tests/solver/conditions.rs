@@ -9,10 +9,10 @@ use viscocontact::prelude::*;
 pub(super) fn moved(contact: &ViscoelasticContact, bodies: usize) -> f64 {
     let lengths = contact.grid().lengths();
     let lowered = |body| {
-        let BodyState { approach, tilt, .. } = contact.body(body).unwrap();
+        let BodyState { approach, tilt, .. } = contact.fields().body(body).unwrap();
         approach.abs() + tilt[0].abs() * lengths[0] + tilt[1].abs() * lengths[1]
     };
-    let deepest = contact.displacement().iter().copied().fold(0.0, f64::max);
+    let deepest = contact.fields().displacement().iter().copied().fold(0.0, f64::max);
     deepest + (0..bodies).map(lowered).fold(0.0, f64::max)
 }
 
@@ -26,10 +26,10 @@ pub(super) fn assert_contact_conditions(
     name: &str,
 ) {
     let mut gap = vec![0.0; contact.grid().len()];
-    contact.gap_into(&mut gap).unwrap();
+    contact.fields().gap_into(&mut gap).unwrap();
     let cells = contact.contact_cells().max(1) as f64;
     let (mut closed, mut scale) = (0.0, 0.0);
-    for ((&p, &h), &u) in contact.pressure().iter().zip(&gap).zip(contact.displacement()) {
+    for ((&p, &h), &u) in contact.pressure().iter().zip(&gap).zip(contact.fields().displacement()) {
         assert!(p >= 0.0, "{name}");
         if p > 0.0 {
             closed += h * h;
@@ -44,7 +44,7 @@ pub(super) fn assert_contact_conditions(
     let deepest = gap.iter().copied().fold(0.0, f64::min);
     assert!(deepest >= -10.0 * tolerance * scale - rounding, "{name}: penetration {deepest:e}, displacement {scale:e}");
     for (body, load) in loads.iter().enumerate() {
-        let BodyState { approach, tilt, force, moment, .. } = contact.body(body).unwrap();
+        let BodyState { approach, tilt, force, moment, .. } = contact.fields().body(body).unwrap();
         match *load {
             Load::Force { normal, .. } => assert!((force - normal).abs() <= 1e-12 * normal, "{name}: {force} {load}"),
             Load::Approach { approach: given, tilt: at } => {

@@ -105,11 +105,11 @@ fn every_poissons_ratio_and_shape_of_cell_gives_hertz() {
 
 /// K p is carried from guess to guess: on an elastic body u = C K p shows whether it is still K p.
 fn drift(contact: &ViscoelasticContact, fresh: &mut [f64]) -> f64 {
-    let kernel = contact.kernel();
+    let kernel = contact.fields().kernel();
     kernel.convolve(contact.pressure(), fresh, &mut kernel.workspace().unwrap()).unwrap();
     let scale = fresh.iter().copied().fold(0.0, f64::max);
     let c = contact.material().contact_compliance(0.0);
-    contact.displacement().iter().zip(fresh.iter()).map(|(u, v)| (u / c - v).abs()).fold(0.0, f64::max) / scale
+    contact.fields().displacement().iter().zip(fresh.iter()).map(|(u, v)| (u / c - v).abs()).fold(0.0, f64::max) / scale
 }
 
 fn elastic_sphere(cells: usize) -> ViscoelasticContact {
@@ -181,9 +181,15 @@ fn periodic_steps_of_a_viscoelastic_body_do_not_drift() {
             contact.step(1e-2, Load::force(0.6 + 0.3 * phase.sin())).unwrap();
             // the longest retardation time is about 20 s
             if step == 200 * period {
-                (settled, approach) = (contact.displacement().to_vec(), contact.approach());
+                (settled, approach) = (contact.fields().displacement().to_vec(), contact.approach());
             } else if step > 200 * period && step % (10 * period) == 0 {
-                let far = contact.displacement().iter().zip(&settled).map(|(u, v)| (u - v).abs()).fold(0.0, f64::max);
+                let far = contact
+                    .fields()
+                    .displacement()
+                    .iter()
+                    .zip(&settled)
+                    .map(|(u, v)| (u - v).abs())
+                    .fold(0.0, f64::max);
                 worst = worst.max((far + (contact.approach() - approach).abs()) / approach);
             }
         }
@@ -205,12 +211,12 @@ fn a_load_removed_and_restored_a_thousand_times_leaves_nothing() {
     assert_abs_diff_eq!(contact.force() / 0.5, 1.0, epsilon = 1e-12);
     assert!(contact.contact_cells() > 50);
     contact.step(0.0, Load::force(0.0)).unwrap();
-    let left = contact.displacement().iter().copied().fold(0.0, f64::max);
+    let left = contact.fields().displacement().iter().copied().fold(0.0, f64::max);
     // each step of many relaxation times leaves the share τ/Δ
     let mut forgotten = left;
     for _ in 0..3 {
         contact.step(1e3, Load::force(0.0)).unwrap();
-        let now = contact.displacement().iter().map(|u| u.abs()).fold(0.0, f64::max);
+        let now = contact.fields().displacement().iter().map(|u| u.abs()).fold(0.0, f64::max);
         assert!(now < 1e-3 * forgotten, "{forgotten:e} {now:e}");
         forgotten = now;
     }
@@ -265,8 +271,13 @@ fn steps_at_the_ends_are_numbers_or_refused() {
                             Ok(_) => accepted += 1,
                             Err(_) => refused += 1,
                         }
-                        let numbers = [contact.force(), contact.approach(), contact.moment()[0], contact.moment()[1]];
-                        let fields = contact.pressure().iter().chain(contact.displacement());
+                        let numbers = [
+                            contact.force(),
+                            contact.approach(),
+                            contact.fields().moment()[0],
+                            contact.fields().moment()[1],
+                        ];
+                        let fields = contact.pressure().iter().chain(contact.fields().displacement());
                         let finite = numbers.iter().chain(fields).all(|value| value.is_finite());
                         assert!(finite, "{dt:e} s, {load:?}, {width:e} m: {contact:?}");
                     }
@@ -289,7 +300,7 @@ fn moments_beyond_numbers_are_refused() {
     let error = contact.step(0.0, Load::force(1.0e220)).unwrap_err();
     assert!(matches!(error, Error::Step(StepError::Overflow { what: "the moment of the force", .. })), "{error}");
     contact.step(0.0, Load::force(1.0e215)).unwrap();
-    assert_abs_diff_eq!(contact.moment()[0], 0.3e305, epsilon = 0.1 * 0.3e305);
+    assert_abs_diff_eq!(contact.fields().moment()[0], 0.3e305, epsilon = 0.1 * 0.3e305);
 }
 
 /// Pressures so small that their squares vanish: a pull among them is still a pull.

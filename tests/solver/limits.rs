@@ -94,9 +94,9 @@ fn loads_on_the_rim_of_the_hull_are_carried() {
                 let ([x, y], p) = (center(k), contact.pressure()[k]);
                 carried += p * grid.cell_area();
                 moment += p * grid.cell_area() * ((x - at[0]) + (y - at[1]));
-                deepest = deepest.max(contact.displacement()[k]);
+                deepest = deepest.max(contact.fields().displacement()[k]);
                 if face(x, y) {
-                    let height = gap(x, y) + contact.displacement()[k]
+                    let height = gap(x, y) + contact.fields().displacement()[k]
                         - (contact.approach() + contact.tilt()[0] * x + contact.tilt()[1] * y);
                     apart = apart.max(if p > 0.0 { height.abs() } else { -height });
                 }
@@ -140,7 +140,7 @@ fn bodies_that_just_touch_at_a_pivot_carry_no_load() {
                 [0.0, draws.between(-1.0e-5, 3.0e-5), draws.power_of_ten(-12.0, -5.0), below * draws.between(0.9, 1.1)]
                     [draws.below(4)];
             contact.step(dt, Load::Approach { approach, tilt }).unwrap();
-            let greatest = contact.max_pressure();
+            let greatest = contact.fields().max_pressure();
             assert!(greatest == 0.0 || greatest > 1e-6, "seed {seed}, approach {approach:e}: {greatest:e}");
             touching += usize::from(greatest == 0.0);
             pressed += usize::from(greatest > 0.0);

@@ -49,7 +49,7 @@ fn bytes_on_the_wire_are_those_of_the_formula() {
         sent.lock().unwrap().clear();
         let report = contact.step(0.2, Load::force(1.0)).unwrap();
         let exchanged = sent.lock().unwrap().clone();
-        (report, contact.rows().len(), exchanged)
+        (report, contact.fields().rows().len(), exchanged)
     })
     .unwrap();
     // transforms along x2 of 512 cells, padded; and of 256, mirrored, two rows of which are as many numbers as one
@@ -98,8 +98,8 @@ fn profiles_are_those_of_one_process() {
         let lines = [(Axis::X1, 0.3e-3), (Axis::X2, -0.5e-3), (Axis::X2, 0.1e-3), (Axis::X1, -1.5e-3)];
         let look = |mut contact: ViscoelasticContact| {
             contact.step(0.0, Load::force(1.0)).unwrap();
-            assert_eq!(contact.profile(Axis::X1, 1.6e-3).unwrap_err().kind(), ErrorKind::Value);
-            lines.map(|(axis, at)| contact.profile(axis, at).unwrap())
+            assert_eq!(contact.fields().profile(Axis::X1, 1.6e-3).unwrap_err().kind(), ErrorKind::Value);
+            lines.map(|(axis, at)| contact.fields().profile(axis, at).unwrap())
         };
         let alone = look(build().build().unwrap());
         assert!(alone[..3].iter().all(|profile| profile.pressure.iter().any(|&p| p > 0.0)));
@@ -321,12 +321,12 @@ fn a_loss_at_any_call_is_an_error_and_leaves_the_contact_as_it_was() {
                 assert_eq!(run.contact().time(), 0.2 + time);
                 run.next_step().map(|_| ())
             });
-            let looking = losing(&mut || contact.stiffness_over_modulus().map(|_| ()))
-                + losing(&mut || contact.profile(Axis::X1, 0.0).map(|_| ()))
-                + losing(&mut || contact.gathered(contact.pressure(), 1).map(|_| ()));
+            let looking = losing(&mut || contact.fields().stiffness_over_modulus().map(|_| ()))
+                + losing(&mut || contact.fields().profile(Axis::X1, 0.0).map(|_| ()))
+                + losing(&mut || contact.fields().gathered(contact.pressure(), 1).map(|_| ()));
             // what returns no error is NaN, and the next call returns it
             calls_left.store(0, Ordering::Relaxed);
-            assert!(contact.max_pressure().is_nan() && contact.contact_area().is_nan());
+            assert!(contact.fields().max_pressure().is_nan() && contact.contact_area().is_nan());
             calls_left.store(usize::MAX, Ordering::Relaxed);
             assert_eq!(contact.step(0.1, Load::force(1.0)), Err(Error::Ranks(RanksError::Left { rank: 1 })));
             contact.step(0.1, Load::force(1.0)).unwrap();
@@ -367,11 +367,11 @@ fn what_is_not_shared_is_refused_by_name() {
         let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener()).ranks(ranks).build().unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
         not_covered([
-            (contact.patches().err(), RANKS),
-            (contact.stress().err(), RANKS),
+            (contact.fields().patches().err(), RANKS),
+            (contact.fields().stress().err(), RANKS),
             (contact.set_geometry(&Sphere::new(1.0).unwrap()).err(), RANKS),
-            (contact.pressure_distribution(10).err(), RANKS),
-            (contact.mesh_error().err(), RANKS),
+            (contact.fields().pressure_distribution(10).err(), RANKS),
+            (contact.fields().mesh_error().err(), RANKS),
             // the load would have to unfold the fields
             (contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).err(), RANKS),
         ]);

@@ -49,12 +49,12 @@ fn frames_agree_on_a_half_space() {
             let rows = |contact: &ViscoelasticContact, i: usize| contact.pressure()[i * 24..(i + 1) * 24].to_vec();
             let here = rows(&moving, i as usize);
             let there = usize::try_from(k).map_or(vec![0.0; 24], |k| rows(&fixed, k));
-            let greatest = fixed.max_pressure();
+            let greatest = fixed.fields().max_pressure();
             assert!(here.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-5 * greatest), "step {step}, row {i}");
         }
         assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7, "{step}");
     }
-    assert!(moving.lateral_force(&at(1.25e-3))[0] > 0.01 * moving.force());
+    assert!(moving.fields().lateral_force(&at(1.25e-3))[0] > 0.01 * moving.force());
 }
 
 /// What force and lateral force do at a contact is what the pressure does at the surface: Σ p Δu = W Δω + F Δs, to second
@@ -69,10 +69,12 @@ fn the_work_of_the_loads_is_the_work_at_the_surface() {
         let mut contact = builder(&grid, &travel.shape_at(0.0).unwrap(), Frame::Bodies).build().unwrap();
         contact.step(0.0, load).unwrap();
         let (mut inside, mut outside) = (0.0, 0.0);
-        let state = |contact: &ViscoelasticContact| (contact.pressure().to_vec(), contact.displacement().to_vec());
+        let state =
+            |contact: &ViscoelasticContact| (contact.pressure().to_vec(), contact.fields().displacement().to_vec());
         for _ in 0..steps {
             let (p, u) = state(&contact);
-            let before = (contact.lateral_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
+            let before =
+                (contact.fields().lateral_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
             let from = travel.position(contact.time()).unwrap();
             let report = contact.step_along(&travel, dt, load).unwrap();
             let (q, w) = state(&contact);
@@ -248,11 +250,11 @@ fn power_counts_the_rim_of_a_punch() {
     contact.step(0.0, Load::force(100.0)).unwrap();
     let (mut along, mut inside, start) = (0.0, 0.0, contact.approach());
     for _ in 0..40 {
-        let (p, u) = (contact.pressure().to_vec(), contact.displacement().to_vec());
+        let (p, u) = (contact.pressure().to_vec(), contact.fields().displacement().to_vec());
         let dt = grid.spacing()[0] / 0.05;
         let report = contact.step_along(&travel, dt, Load::force(100.0)).unwrap();
         along += report.power * dt;
-        let ends = p.iter().zip(contact.pressure()).zip(u.iter().zip(contact.displacement()));
+        let ends = p.iter().zip(contact.pressure()).zip(u.iter().zip(contact.fields().displacement()));
         inside += ends.map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum::<f64>() * grid.cell_area();
         assert_eq!(report.lateral_force[0], 0.0);
     }
@@ -285,6 +287,6 @@ fn motions_without_contact_are_refused() {
     for _ in 0..40 {
         two.step_over([1, 0], 1.0e-3, loads).unwrap();
     }
-    assert_abs_diff_eq!(two.body(1).unwrap().force / 10.0, 1.0, epsilon = 1e-9);
+    assert_abs_diff_eq!(two.fields().body(1).unwrap().force / 10.0, 1.0, epsilon = 1e-9);
     assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongLength { .. })));
 }

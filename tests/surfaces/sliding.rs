@@ -76,7 +76,7 @@ fn slow_and_fast_motions_are_elastic() {
     for load in [Load::force(40.0), Load::approach(-1e-4)] {
         for (speed, compliance) in velocities {
             let report = sliding.at([0.61 * speed, 0.79 * speed], load).unwrap();
-            let contact = sliding.contact();
+            let contact = sliding.fields();
             let body = Material::incompressible(Elastic::new(1.0 / compliance).unwrap());
             let mut elastic = on_waves(32, body).build().unwrap();
             elastic.step(0.0, load).unwrap();
@@ -106,7 +106,7 @@ fn random_motions_are_those_of_a_dense_problem() {
             .at(velocity, Load::force(scene.force))
             .unwrap_or_else(|error| panic!("{number} {scene:?}: {error}"));
         let exact = scene.reference(Time::Exact).expect("the dense problem has a solution");
-        let contact = sliding.contact();
+        let contact = sliding.fields();
         // the dense problem has the cells about the middle of the contact, along the motion
         let (grid, count) = (contact.grid(), exact.pressure.len() / scene.across);
         let [n1, n2] = grid.cells();
@@ -155,12 +155,12 @@ fn a_steady_state_is_read_like_a_contact() {
     sliding.at([0.0; 2], load).unwrap();
     let mut still = builder(Material::incompressible(Elastic::new(1e5).unwrap())).build().unwrap();
     still.step(0.0, load).unwrap();
-    let gap = |contact: &ViscoelasticContact| {
+    let gap = |contact: Fields<'_>| {
         let mut gap = vec![0.0; grid.len()];
         contact.gap_into(&mut gap).unwrap();
         gap
     };
-    let readings = |contact: &ViscoelasticContact| -> Vec<(&'static str, Vec<f64>)> {
+    let readings = |contact: Fields<'_>| -> Vec<(&'static str, Vec<f64>)> {
         let (patches, profile) = (contact.patches().unwrap(), contact.profile(Axis::X2, 0.1).unwrap());
         let stress = contact.stress().unwrap().at(&[[0.0, 0.0, 0.1], [0.1, 0.2, 0.3]]).unwrap();
         let file = crate::common::Temporary::file("steady_gap.npy");
@@ -183,7 +183,7 @@ fn a_steady_state_is_read_like_a_contact() {
             ("stiffness", vec![contact.stiffness_over_modulus().unwrap()]),
         ]
     };
-    let both: Vec<_> = readings(sliding.contact()).into_iter().zip(readings(&still)).collect();
+    let both: Vec<_> = readings(sliding.fields()).into_iter().zip(readings(still.fields())).collect();
     assert_eq!(both.len(), 13);
     for ((what, found), (_, exact)) in both {
         let scale = exact.iter().fold(0.0_f64, |most, own| most.max(own.abs()));
@@ -192,7 +192,7 @@ fn a_steady_state_is_read_like_a_contact() {
     }
     let [ahead, back] = [1.0, -1.0].map(|sign: f64| {
         let report = sliding.at([0.5 * sign, 0.0], Load::eccentric_force(500.0, [0.03 * sign, -0.02])).unwrap();
-        let contact = sliding.contact();
+        let contact = sliding.fields();
         let cells = contact.pressure().iter().enumerate().map(|(k, p)| (*p, grid.center(k / 48, k % 48)));
         let moments = cells
             .fold([0.0; 3], |[f, m1, m2], (p, [x1, x2])| [f + p, m1 + p * (x1 - 0.03 * sign), m2 + p * (x2 + 0.02)]);
@@ -223,12 +223,12 @@ fn a_search_is_ended_by_another_thread() {
     let mut sliding = wavy(32).cancelled_by(Arc::clone(&flag));
     flag.store(false, Ordering::Relaxed);
     sliding.at([0.0; 2], Load::force(10.0)).unwrap();
-    let pressure = sliding.contact().pressure().to_vec();
+    let pressure = sliding.fields().pressure().to_vec();
     flag.store(true, Ordering::Relaxed);
     let swept = sliding.sweep(&SlidingSweep::new([velocity], [load])).map(drop);
     for ended in [sliding.at(velocity, load).map(drop), swept] {
         assert!(matches!(ended, Err(Error::Cancelled { .. })), "{ended:?}");
-        assert_eq!(sliding.contact().pressure(), pressure, "the state found last is kept");
+        assert_eq!(sliding.fields().pressure(), pressure, "the state found last is kept");
     }
     flag.store(false, Ordering::Relaxed);
     // a sweep whose report of progress sets the flag ends within the next state
@@ -259,7 +259,7 @@ fn what_is_not_steady_is_refused() {
     let kernel = InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).unwrap();
     let mut sliding = periodic().build_sliding().unwrap();
     let before = sliding.at([1.0, 0.0], Load::force(1.0)).unwrap();
-    let pressure = sliding.contact().pressure().to_vec();
+    let pressure = sliding.fields().pressure().to_vec();
     let mut at = |velocity: f64, load: Load| sliding.at([velocity, 0.0], load).err();
     not_covered([
         (periodic().material(fluid).build_sliding().err(), "a body that flows is not covered in steady motion"),
@@ -283,14 +283,12 @@ fn what_is_not_steady_is_refused() {
         (at(f64::NAN, Load::force(1.0)), "velocity along x1"),
         (at(1.0, Load::force(-1.0)), "normal force"),
     ]);
-    assert_eq!(sliding.contact().pressure(), pressure);
+    assert_eq!(sliding.fields().pressure(), pressure);
     let apart = sliding.at([1.0, 0.0], Load::force(0.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.friction() == 0.0 && before.friction() > 0.0);
     // an approach that does not touch leaves nothing undetermined
     let apart = periodic().build_sliding().unwrap().at([1.0, 0.0], Load::approach(-2.0)).unwrap();
     assert!(apart.contact_cells == 0 && apart.force == 0.0 && apart.residual == 0.0, "{apart:?}");
-    let mut stepped = sliding.contact().clone();
-    not_covered([(stepped.step(1.0, Load::force(1.0)).err(), "a step is not covered in steady motion")]);
     // memory: stated before, in proportion to the cells
     let memory = |cells: usize| {
         let grid = Grid::square(cells, 1.0).unwrap();

@@ -44,7 +44,7 @@ fn bodies(periodic: bool, cells: [usize; 2], creep: Creep, nu: f64) -> Bodies {
 
 /// How far a state is from the contact problem of the influences together, in tolerances, and its drag from the sum of theirs, of itself.
 fn errors(influences: &[Influence], gap: &[f64], sliding: &SteadySliding, report: &SlidingReport) -> [f64; 3] {
-    let contact = sliding.contact();
+    let contact = sliding.fields();
     let (p, area) = (contact.pressure(), contact.grid().cell_area());
     let each: Vec<_> = influences.iter().map(|own| own.displacement(p)).collect();
     let height = |k: usize| each.iter().map(|u| u[k]).sum::<f64>() + gap[k] - report.approach;

@@ -207,7 +207,7 @@ fn strips_and_layers_are_those_of_a_dense_problem() {
             Err(error) => panic!("{number} {scene:?}: {error}"),
         };
         let exact = scene.dense().solve_by(&scene.table()).expect("the dense problem has a solution");
-        let contact = sliding.contact();
+        let contact = sliding.fields();
         let [_, n2] = contact.grid().cells();
         let ([n, m], pressure) = (scene.cells, contact.pressure());
         let own = |k: usize| {
@@ -383,7 +383,7 @@ fn a_half_space_may_flow() {
         }
     }
     let exact = dense.solve_by(&table).unwrap();
-    let lateral = sliding.contact().lateral_force(&shape)[0] / force;
+    let lateral = sliding.fields().lateral_force(&shape)[0] / force;
     let errors = [report.approach / exact.approach - 1.0, lateral / exact.friction - 1.0];
     println!("{errors:?} {report}");
     assert!(errors.iter().all(|error| error.abs() < 1e-6), "{errors:?}");

@@ -176,7 +176,7 @@ struct Errors {
 }
 
 fn errors(scene: &Scene, influence: &Influence, load: Load, sliding: &SteadySliding, report: &SlidingReport) -> Errors {
-    let (contact, gap) = (sliding.contact(), scene.gap());
+    let (contact, gap) = (sliding.fields(), scene.gap());
     let (p, grid) = (contact.pressure(), contact.grid());
     let n2 = grid.cells()[1];
     assert!(p.iter().all(|p| *p >= 0.0));
@@ -304,9 +304,9 @@ fn states_are_those_of_their_problem_whatever_came_before() {
             let own = errors(&scene, &influence, load, &chain, &report);
             // two states within ε of their problem differ by d with d·A d ≤ ε (Σ p + Σ p′)
             let differ: Vec<f64> =
-                chain.contact().pressure().iter().zip(anew.contact().pressure()).map(|(a, b)| a - b).collect();
+                chain.fields().pressure().iter().zip(anew.fields().pressure()).map(|(a, b)| a - b).collect();
             let energy: f64 = influence.displacement(&differ).iter().zip(&differ).map(|(u, p)| u * p).sum();
-            let sums: f64 = [&chain, &anew].map(|own| own.contact().pressure().iter().sum::<f64>()).iter().sum();
+            let sums: f64 = [&chain, &anew].map(|own| own.fields().pressure().iter().sum::<f64>()).iter().sum();
             let same = if sums > 0.0 { energy / (sums * own.unit * scene.tolerance) } else { 0.0 };
             let force = if report.force == fresh.force {
                 0.0

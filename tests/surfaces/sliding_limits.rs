@@ -24,7 +24,7 @@ fn a_rolling_cylinder_is_hunters() {
         let report = sliding.at(velocity, Load::force(force)).unwrap();
         println!("l/w {}, {cells} cells: {} sets, {} transforms", reach / half, report.sets, report.transforms);
         assert!(report.transforms <= 600);
-        [report.friction(), sliding.contact().lateral_force(&cylinder)[0] / force]
+        [report.friction(), sliding.fields().lateral_force(&cylinder)[0] / force]
     };
     // the closed form (`RollingCylinder`) with 40 digits: of a long memory most cancel
     for (over_half, exact, most) in [
@@ -148,7 +148,7 @@ fn a_flat_face_under_a_force_is_that_under_its_approach() {
     for eccentricity in [0.0, 0.2e-3] {
         let exact = RigidPunch::new(radius, modulus, force, eccentricity).unwrap();
         let report = sliding.at([0.0; 2], Load::eccentric_force(force, [eccentricity, 0.0])).unwrap();
-        let tilt = sliding.contact().tilt()[0];
+        let tilt = sliding.fields().tilt()[0];
         println!("{eccentricity}: {} {}, {tilt} {}", report.approach, exact.approach, exact.tilt);
         assert!((report.approach / exact.approach - 1.0).abs() < 0.02, "{report:?}");
         assert!((tilt.abs() - exact.tilt.abs()).abs() <= 0.05 * exact.tilt.abs() + 1e-12, "{tilt} {exact:?}");

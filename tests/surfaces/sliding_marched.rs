@@ -74,7 +74,7 @@ impl Scene {
             SteadyMotion::new(self.axis, self.velocity, load).with_tolerance(3e-4).with_max_distance(Some(100.0));
         marched.toward_steady(motion).and_then(|run| run.run()).unwrap_or_else(|error| panic!("{self:?}: {error}"));
         // from the slope of the shape in both
-        [&marched, sliding.contact()]
+        [marched.fields(), sliding.fields()]
             .map(|own| self.velocity * own.lateral_force(&shape)[self.axis.index()] / own.force())
     }
 }

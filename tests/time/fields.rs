@@ -109,12 +109,12 @@ impl Population {
                 found += 1;
                 let size = (exact.pressure.iter().sum::<f64>() * area).max(0.01 * greatest);
                 if size == 0.0 {
-                    assert!(sample.contact().pressure().iter().all(|pressure| *pressure == 0.0));
+                    assert!(sample.fields().pressure().iter().all(|pressure| *pressure == 0.0));
                     self.apart += 1;
                     continue;
                 }
                 let off: Vec<f64> =
-                    exact.pressure.iter().zip(sample.contact().pressure()).map(|(a, b)| (a - b).abs()).collect();
+                    exact.pressure.iter().zip(sample.fields().pressure()).map(|(a, b)| (a - b).abs()).collect();
                 let over = off.iter().sum::<f64>() * area / size / accuracy;
                 let greatest = |field: &[f64]| field.iter().copied().fold(0.0, f64::max);
                 let squares = |field: &[f64]| field.iter().map(|p| p * p).sum::<f64>().sqrt();
@@ -223,7 +223,7 @@ fn fields_of_states_are_as_exact_as_asked() {
                     let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).abs()).sum();
                     sum / exact.iter().sum::<f64>() / accuracy
                 };
-                few.push(off(&contact.fields(accuracy).unwrap().pressure), "");
+                few.push(off(contact.fields(accuracy).unwrap().fields().pressure()), "");
                 kept.push(off(&contact.pressure().unwrap()), "");
             }
         }
@@ -265,7 +265,7 @@ fn fields_leave_the_steps_as_they_are() {
             for sample in run.samples().map(Result::unwrap).filter(|sample| fields && sample.is_asked_for()) {
                 let of_step = run.contact().force();
                 assert!(sample.field().is_some_and(|field| field.error.is_some_and(|error| error <= 1e-2)));
-                sums.push((sample.contact().time(), sample.contact().force(), of_step));
+                sums.push((sample.contact().time(), sample.fields().force(), of_step));
             }
         }
         assert_eq!(run.error_budget().field.is_some(), fields);
@@ -297,7 +297,7 @@ fn fields_are_found_again_after_a_resumption() {
                 break;
             }
             let asked = run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for());
-            found.extend(asked.map(|sample| (sample.contact().time(), sample.contact().pressure().to_vec())));
+            found.extend(asked.map(|sample| (sample.contact().time(), sample.fields().pressure().to_vec())));
         }
         if !resumes && steps < usize::MAX {
             run.save(&*file).unwrap();
@@ -443,7 +443,7 @@ fn fields_of_contacts_that_shrink_are_found_by_graded_steps() {
             let mut run = run.fields_to(accuracy).unwrap();
             while run.next_step().unwrap().is_some() {
                 for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-                    let off = fields[found].iter().zip(sample.contact().pressure()).map(|(a, b)| (a - b).abs());
+                    let off = fields[found].iter().zip(sample.fields().pressure()).map(|(a, b)| (a - b).abs());
                     let over = off.sum::<f64>() / fields[found].iter().sum::<f64>() / accuracy;
                     let field = sample.field().unwrap();
                     assert_eq!(field.elastic_contacts, 0);
@@ -495,17 +495,18 @@ fn what_follows_a_run_has_its_fields() {
         let mut run = run.sample_at(&asked[..]).unwrap().fields_to(accuracy).unwrap();
         while run.next_step().unwrap().is_some() {
             for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-                let (contact, time) = (sample.contact(), sample.contact().time());
+                let (shown, contact, time) = (sample.fields(), sample.contact(), sample.contact().time());
                 let exact = &fields.iter().find(|field| field.time == time).unwrap().pressure;
-                let frame = numbers_of(&series.record(contact).unwrap(), "pressure");
+                let frame = numbers_of(&series.record(shown).unwrap(), "pressure");
                 history.record(contact);
                 // cells out of contact are blank in a map
-                let map = Map::pressure(contact).unwrap();
+                let map = Map::pressure(shown).unwrap();
                 let drawn: Vec<f64> = map.values().iter().map(|p| if p.is_nan() { 0.0 } else { *p }).collect();
-                assert!(frame == contact.pressure() && drawn == frame, "{name}");
-                assert_eq!(history.column(HistoryColumn::MaxPressure).last(), Some(&contact.max_pressure()));
+                assert!(frame == shown.pressure() && drawn == frame, "{name}");
+                assert_eq!(history.column(HistoryColumn::MaxPressure).last(), Some(&contact.fields().max_pressure()));
                 let size = exact.iter().sum::<f64>().max(0.01 * greatest / scene.grid().cell_area());
-                for field in [&frame[..], run.within_step(time).unwrap().pressure()] {
+                let within = run.fields_within_step(time).unwrap();
+                for field in [&frame[..], within.fields().pressure()] {
                     let off: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).abs()).sum();
                     assert!(off <= 2.0 * accuracy * size, "{name} at {time}: {:e}", off / size);
                 }
@@ -542,7 +543,7 @@ fn histories_of_the_stress_follow_fields() {
             let mut run = if fields { run.fields_to(accuracy).unwrap() } else { run };
             while run.next_step().unwrap().is_some() {
                 for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for() || !fields) {
-                    recorded.record(sample.contact()).unwrap();
+                    recorded.record(sample.fields()).unwrap();
                 }
             }
             recorded.reduced_pressure()

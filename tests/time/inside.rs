@@ -58,8 +58,8 @@ const QUANTITIES: [&str; 5] = ["approach", "force", "tilt", "greatest pressure",
 fn seen(contact: &ViscoelasticContact) -> Seen {
     let [tilt1, tilt2] = contact.tilt();
     let half = 0.5 * contact.grid().lengths()[0];
-    let values = [contact.approach(), contact.force(), half * (tilt1 + tilt2), contact.max_pressure()];
-    let least = contact.displacement().iter().copied().fold(f64::INFINITY, f64::min);
+    let values = [contact.approach(), contact.force(), half * (tilt1 + tilt2), contact.fields().max_pressure()];
+    let least = contact.fields().displacement().iter().copied().fold(f64::INFINITY, f64::min);
     Seen { values, pressure: contact.pressure().to_vec(), least }
 }
 
@@ -160,12 +160,12 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
             let mut twin = start.clone();
             let share = (time - start.time()) / report.dt;
             let between = |a: f64, b: f64| a + share * (b - a);
-            let loads: Vec<Load> = (0..contact.bodies())
+            let loads: Vec<Load> = (0..contact.fields().bodies())
                 .map(|body| {
                     if let Load::Approach { approach, .. } = contact.load() {
                         return Load::approach(between(start.approach(), approach));
                     }
-                    let [before, after] = [&start, &contact].map(|contact| contact.body(body).unwrap().force);
+                    let [before, after] = [&start, &contact].map(|contact| contact.fields().body(body).unwrap().force);
                     match (start.load().tilt(), contact.load().tilt()) {
                         (
                             [Tilt::Free { at: a1 }, Tilt::Free { at: a2 }],

@@ -145,7 +145,7 @@ fn press(kind: usize, by: f64, touch: f64) -> [Load; 2] {
 
 /// The same state, asked for in another way.
 fn changed(kind: usize, contact: &ViscoelasticContact) -> Load {
-    let (force, [m1, m2]) = (contact.force(), contact.moment());
+    let (force, [m1, m2]) = (contact.force(), contact.fields().moment());
     match kind {
         0 => Load::approach_and_tilt(contact.approach(), contact.tilt()),
         1 => Load::force_and_tilt(force, contact.tilt()),
@@ -171,7 +171,10 @@ fn difference(a: &ViscoelasticContact, b: &ViscoelasticContact) -> [f64; 2] {
         let most = a.iter().chain(b).fold(least, |most, x| x.abs().max(most));
         a.iter().zip(b).map(|(a, b)| (a - b).abs() / most).fold(0.0, f64::max)
     };
-    [relative(a.pressure(), b.pressure(), 1.0e3), relative(a.displacement(), b.displacement(), 1.0e-2 * DEPTH)]
+    [
+        relative(a.pressure(), b.pressure(), 1.0e3),
+        relative(a.fields().displacement(), b.fields().displacement(), 1.0e-2 * DEPTH),
+    ]
 }
 
 proptest! {
@@ -281,7 +284,7 @@ proptest! {
             let error = twin.clone().follow(&history, Stepping::fixed(DT), 1.0).next_step().unwrap_err();
             prop_assert!(matches!(error, Error::Step(StepError::NoElasticResponse { .. })), "{error}");
         }
-        prop_assert_eq!((contact.pressure(), contact.displacement()), (twin.pressure(), twin.displacement()));
+        prop_assert_eq!((contact.pressure(), contact.fields().displacement()), (twin.pressure(), twin.fields().displacement()));
         let load = Load::force(0.4 * FORCE);
         prop_assert_eq!(contact.step(DT, load), twin.step(DT, load));
     }
@@ -317,7 +320,7 @@ proptest! {
             let mut state = Vec::new();
             while let Some(report) = run.next_step().unwrap() {
                 if report.time == 2.7 {
-                    state = run.contact().displacement().to_vec();
+                    state = run.contact().fields().displacement().to_vec();
                 }
             }
             state
@@ -392,12 +395,12 @@ fn lifted_indenters_move_at_once() {
         (along.step_along(&travel, 0.0, Load::force(0.1)).err(), "needs an elastic response"),
         (over.step_over([cells(-1.0e-3), 0], 0.0, Load::force(0.1)).err(), "needs an elastic response"),
     ]);
-    let before = along.displacement().to_vec();
+    let before = along.fields().displacement().to_vec();
     along.step_along(&travel, 0.0, lifted).unwrap();
     over.step_over([cells(-1.0e-3), 0], 0.0, lifted).unwrap();
     assert!((along.contact_cells(), over.contact_cells()) == (0, 0));
     // the symmetry is given up, and with it goes a rounding
-    assert!(along.displacement().iter().zip(&before).all(|(u, before)| (u - before).abs() < 1e-12 * DEPTH));
+    assert!(along.fields().displacement().iter().zip(&before).all(|(u, before)| (u - before).abs() < 1e-12 * DEPTH));
     for _ in 0..2 {
         along.step_along(&travel, DT, Load::force(0.1)).unwrap();
         over.step_over([0, 0], DT, Load::force(0.1)).unwrap();

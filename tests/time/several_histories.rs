@@ -86,7 +86,7 @@ impl Several {
     }
 
     fn answers(&self, contact: &ViscoelasticContact) -> Answers {
-        let bodies = (0..self.places.len()).map(|body| contact.body(body).unwrap());
+        let bodies = (0..self.places.len()).map(|body| contact.fields().body(body).unwrap());
         bodies.map(|state| [state.force, state.approach]).collect()
     }
 
@@ -229,7 +229,7 @@ fn runs_of_several_bodies_have_what_others_have() {
 
     // an event of the last body
     let last = scene.places.len() - 1;
-    let force = move |contact: &ViscoelasticContact| contact.body(last).unwrap().force;
+    let force = move |contact: &ViscoelasticContact| contact.fields().body(last).unwrap().force;
     let most = force(&contact);
     let mut contact = start();
     let run = contact.follow_each(&histories, Stepping::adaptive(1e-2), 1.0).unwrap();

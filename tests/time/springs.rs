@@ -92,7 +92,7 @@ fn springs_carry_what_their_approach_leads_to() {
                 .collect();
             let mut given = contact.clone();
             let report = contact.step(dt, &loads).unwrap_or_else(|error| panic!("{name} step {step}: {error}"));
-            let bodies: Vec<_> = (0..loads.len()).map(|body| contact.body(body).unwrap()).collect();
+            let bodies: Vec<_> = (0..loads.len()).map(|body| contact.fields().body(body).unwrap()).collect();
             let mut approaches = Vec::new();
             for ((load, state), &tilt) in loads.iter().zip(&bodies).zip(&tilts) {
                 let Load::Spring { stiffness, drive, .. } = *load else { unreachable!() };
@@ -107,7 +107,7 @@ fn springs_carry_what_their_approach_leads_to() {
             work[0] += report.convolutions;
             let Ok(reference) = given.step(dt, &approaches) else { continue };
             work[1] += reference.convolutions;
-            let most = given.max_pressure().max(contact.max_pressure());
+            let most = given.fields().max_pressure().max(contact.fields().max_pressure());
             if report.force == 0.0 || most == 0.0 {
                 continue;
             }

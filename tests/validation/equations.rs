@@ -57,11 +57,11 @@ fn run(material: Material) -> Run {
     for (dt, force, at) in STEPS {
         contact.step(dt, Load::eccentric_force(force, at)).unwrap();
         let mut gap = vec![f64::NAN; grid.len()];
-        contact.gap_into(&mut gap).unwrap();
+        contact.fields().gap_into(&mut gap).unwrap();
         states.push(State {
             time: contact.time(),
             pressure: contact.pressure().to_vec(),
-            displacement: contact.displacement().to_vec(),
+            displacement: contact.fields().displacement().to_vec(),
             gap,
             approach: contact.approach(),
             tilt: contact.tilt(),

@@ -12,7 +12,7 @@ use crate::common::{Draws, elastic, from_environment};
 /// Cells across the contact of the cells that `own` holds for, if they are few: 4/π times the mean chord, along one axis or the other, at most
 /// their extent.
 fn few(contact: &ViscoelasticContact, own: impl Fn([f64; 2]) -> bool) -> Option<f64> {
-    let (grid, periodic) = (contact.grid(), contact.kernel().periodic_axes());
+    let (grid, periodic) = (contact.grid(), contact.fields().kernel().periodic_axes());
     let cells = grid.cells();
     let touches =
         |cell: [usize; 2]| contact.pressure()[cell[0] * cells[1] + cell[1]] > 0.0 && own(grid.center(cell[0], cell[1]));
@@ -82,12 +82,14 @@ fn a_body_on_few_cells_is_warned_of_beside_others() {
         let name = format!("scene {number}, {widths:?} on {n}: {report}");
         assert_same(&report, fewest, &name);
         let errors = (0..count)
-            .map(|body| error(contact.body(body).unwrap().approach, fine.body(body).unwrap().approach))
+            .map(|body| {
+                error(contact.fields().body(body).unwrap().approach, fine.fields().body(body).unwrap().approach)
+            })
             .fold(0.0, f64::max);
         assert!(errors.is_finite(), "{name}");
         assert!(fewest.is_some() || errors < 5e-3, "{name}: {errors}");
         warned += u32::from(fewest.is_some());
-        match contact.mesh_error().unwrap() {
+        match contact.fields().mesh_error().unwrap() {
             Some(estimate) => {
                 assert!(errors < 4.0 * estimate.approach, "{name}: {errors} for {estimate}");
                 resolved += 1;
@@ -137,7 +139,7 @@ fn patches_of_few_cells_on_average_are_warned_of() {
         *count += 1;
         (0..2).for_each(|k| (greatest[k], sum[k]) = (greatest[k].max(errors[k]), sum[k] + errors[k]));
         assert!(errors.iter().all(|error| error.is_finite()), "{name}");
-        if let Some(estimate) = contact.mesh_error().unwrap() {
+        if let Some(estimate) = contact.fields().mesh_error().unwrap() {
             let estimates = [estimate.area, estimate.approach];
             let holds = errors.iter().zip(estimates).all(|(error, estimate)| *error < 4.0 * estimate);
             assert!(holds, "{name}: {errors:?} for {estimate}");

@@ -186,8 +186,8 @@ impl Shape {
             dt = loading.duration / (loading.shares.len() - 1).max(1) as f64;
         }
         let main = if loading.by_force { contact.approach() } else { contact.force() };
-        let values = [main, contact.max_pressure(), contact.contact_area()];
-        Ok(Observed { values, pressure: contact.pressure().to_vec(), estimate: contact.mesh_error()? })
+        let values = [main, contact.fields().max_pressure(), contact.contact_area()];
+        Ok(Observed { values, pressure: contact.pressure().to_vec(), estimate: contact.fields().mesh_error()? })
     }
 
     /// The scene on both meshes, under a load that both bear.

@@ -2,6 +2,7 @@
 
 mod adhesion_theories;
 mod analytic;
+mod elastic;
 mod energies;
 mod equations;
 mod few_cells;

@@ -22,7 +22,7 @@ fn a_fixed_contact_loses_what_the_complex_compliance_says() {
         let force = Oscillation { mean, amplitude: 0.5, frequency };
         let mut punch = punch(Settings::default());
         let loss = force.follow(&mut punch, 32, 1e-5).unwrap().loss();
-        let exact = force.loss_of_fixed_contact(&creep, 0.5 * punch.stiffness_over_modulus().unwrap());
+        let exact = force.loss_of_fixed_contact(&creep, 0.5 * punch.fields().stiffness_over_modulus().unwrap());
         assert!((loss / exact - 1.0).abs() < 1e-3, "{frequency} Hz: {loss} {exact}");
     }
 }
@@ -73,7 +73,7 @@ fn given_steps_lose_order_on_a_broad_spectrum() {
                 cycle.approaches.push(punch.approach());
             }
         }
-        cycle.loss() / force.loss_of_fixed_contact(&creep, 0.5 * punch.stiffness_over_modulus().unwrap()) - 1.0
+        cycle.loss() / force.loss_of_fixed_contact(&creep, 0.5 * punch.fields().stiffness_over_modulus().unwrap()) - 1.0
     };
     for (frequency, at_64, order) in
         [(1.0e-7, -8.0e-3, 1.4..1.6), (1.0e-3, -1.8e-3, 1.9..2.2), (10.0, -3.3e-5, 2.9..3.3)]

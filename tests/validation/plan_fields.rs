@@ -84,7 +84,7 @@ fn deliver(scene: &Scene, shape: Shape, times: &[f64]) -> Result<Option<Vec<[f64
         for sample in run.samples() {
             let sample = sample?;
             if sample.is_asked_for() {
-                let error = profiles.next().unwrap().error(&plan.grid, sample.contact().pressure());
+                let error = profiles.next().unwrap().error(&plan.grid, sample.fields().pressure());
                 errors.push([error / plan.accuracy.target(), error / plan.mesh_error.pressure_field]);
             }
         }
@@ -141,7 +141,7 @@ fn fields(
         for sample in run.samples() {
             let sample = sample?;
             if sample.is_asked_for() {
-                found.push((sample.contact().time(), sample.contact().pressure().to_vec()));
+                found.push((sample.contact().time(), sample.fields().pressure().to_vec()));
             }
         }
     }

@@ -312,7 +312,7 @@ fn ends_of(scene: &Scene, mut run: Run<'_, ViscoelasticContact>) -> Result<(Vec<
         let [main, radius] = observed(scene, run.contact());
         // the radius of a few cells is not known
         states.push((report.time, [main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]));
-        highest = highest.max(run.contact().max_pressure());
+        highest = highest.max(run.contact().fields().max_pressure());
     }
     Ok((states, highest))
 }

@@ -135,8 +135,8 @@ fn errors_of_the_mesh_are_estimated_on_lines() {
         let mut contact = contact(&grid, kernel, &shape, Settings::default().with_tolerance(1e-9));
         contact.step(0.0, Load::force(2.0e4)).unwrap();
         let half_width = (4.0 * 2.0e4 * 0.02 / (PI * E_STAR)).sqrt();
-        let error = (contact.max_pressure() / (2.0 * 2.0e4 / (PI * half_width)) - 1.0).abs();
-        let estimate = contact.mesh_error().unwrap().unwrap().max_pressure.unwrap();
+        let error = (contact.fields().max_pressure() / (2.0 * 2.0e4 / (PI * half_width)) - 1.0).abs();
+        let estimate = contact.fields().mesh_error().unwrap().unwrap().max_pressure.unwrap();
         assert!((0.2 * error..20.0 * error).contains(&estimate), "{cells}: {estimate} {error}");
         estimate
     });
@@ -145,5 +145,5 @@ fn errors_of_the_mesh_are_estimated_on_lines() {
     let flat = FnGeometry::new(|_, _| 0.0);
     let mut full = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &flat, Settings::default());
     full.step(0.0, Load::force(1.0)).unwrap();
-    assert_eq!(full.mesh_error(), Ok(None));
+    assert_eq!(full.fields().mesh_error(), Ok(None));
 }

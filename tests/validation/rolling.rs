@@ -37,7 +37,7 @@ impl Rolled {
     }
 
     fn friction(&self) -> f64 {
-        self.contact.lateral_force(&self.shape)[0] / self.contact.force()
+        self.contact.fields().lateral_force(&self.shape)[0] / self.contact.force()
     }
 
     fn width(&self) -> f64 {

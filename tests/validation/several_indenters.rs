@@ -9,7 +9,7 @@ use viscocontact::prelude::*;
 const SCENE: Indenters = Indenters { punch: 0.3e-3, sphere: 10.0e-3, distance: 1.0e-3, cells: 48 };
 
 fn approaches(contact: &ViscoelasticContact) -> Vec<f64> {
-    (0..contact.bodies()).map(|body| contact.body(body).unwrap().approach).collect()
+    (0..contact.fields().bodies()).map(|body| contact.fields().body(body).unwrap().approach).collect()
 }
 
 /// Held forces on three punches and a sphere: no contact shrinks, so that the approaches are those of an elastic body of
@@ -64,7 +64,7 @@ fn punches_pressed_in_turn_superpose() {
             assert!((computed / exact - 1.0).abs() < 2e-4, "turn {turn}: {computed} {exact}");
         }
         let elastic = SCENE.elastic(1.0e-6, &forces).unwrap();
-        let greatest = elastic.max_pressure();
+        let greatest = elastic.fields().max_pressure();
         for (computed, exact) in contact.pressure().iter().zip(elastic.pressure()) {
             assert!((computed - exact).abs() < 1e-5 * greatest, "turn {turn}: {computed} {exact}");
         }
@@ -89,7 +89,7 @@ fn lateral_forces_of_two_indenters_are_opposite() {
             .build()
             .unwrap();
         contact.step(0.0, [own.3, other.3].map(Load::force)).unwrap();
-        contact.lateral_force(&Shifted::new(Sphere::new(own.1).unwrap(), [own.2, 0.0]).unwrap())
+        contact.fields().lateral_force(&Shifted::new(Sphere::new(own.1).unwrap(), [own.2, 0.0]).unwrap())
     };
     let (left, right) = ([5.0e-3, -0.6e-3, 0.1], [10.0e-3, 0.6e-3, 0.2]);
     let (on_left, on_right) = (lateral(left, right), lateral(right, left));

@@ -38,7 +38,7 @@ fn a_ball_yields_where_hertz_says() {
     for (nu, value, depth) in [(0.3, 0.620_041, 0.480_87), (0.5, 0.532_697, 0.547_87)] {
         let (contact, hertz) = ball(256, nu);
         let (a, peak) = (hertz.contact_radius, hertz.pressure(0.0));
-        let found = contact.stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::von_mises).unwrap();
+        let found = contact.fields().stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::von_mises).unwrap();
         let error = found.value / (value * peak) - 1.0;
         let [x1, x2, x3] = found.position.map(|x| x / a);
         println!("ν = {nu}: von Mises {error:.1e}, depth {:.1e} a, aside {x1:.1e} {x2:.1e}", x3 - depth);
@@ -46,7 +46,7 @@ fn a_ball_yields_where_hertz_says() {
         assert!((x3 - depth).abs() < 1e-4 && x1.abs() < 1e-6 && x2.abs() < 1e-6, "{nu}: {:?}", found.position);
         assert!(!found.at_end_of_depths && found.stress.von_mises() == found.value);
         // on the axis two principal stresses are equal: Tresca is von Mises, and of the same place
-        let tresca = contact.stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::tresca).unwrap();
+        let tresca = contact.fields().stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::tresca).unwrap();
         assert!((tresca.value / found.value - 1.0).abs() < 1e-6, "{}", tresca.value);
     }
 }
@@ -56,8 +56,12 @@ fn a_ball_yields_where_hertz_says() {
 fn the_greatest_stress_converges() {
     let error = |cells: usize| {
         let (contact, hertz) = ball(cells, 0.3);
-        let found =
-            contact.stress().unwrap().greatest(&depths(12, 1.2 * hertz.contact_radius), Stress::von_mises).unwrap();
+        let found = contact
+            .fields()
+            .stress()
+            .unwrap()
+            .greatest(&depths(12, 1.2 * hertz.contact_radius), Stress::von_mises)
+            .unwrap();
         (found.value / (0.620_041 * hertz.pressure(0.0)) - 1.0).abs()
     };
     let errors = [32, 128].map(error);
@@ -72,7 +76,7 @@ fn stress_on_the_axis_is_hertzs() {
     for nu in [0.0, 0.3, 0.5] {
         let (contact, hertz) = ball(256, nu);
         let (a, peak) = (hertz.contact_radius, hertz.pressure(0.0));
-        let stress = contact.stress().unwrap();
+        let stress = contact.fields().stress().unwrap();
         for zeta in [0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 5.0, 30.0] {
             let found = stress.at(&[[0.0, 0.0, zeta * a]]).unwrap()[0];
             let normal = peak / (1.0 + zeta * zeta);
@@ -102,7 +106,7 @@ fn a_cylinder_yields_where_hertz_says() {
         let shape = FnGeometry::new(move |x1, x2| [x1, x2][axis].powi(2) / (2.0 * RADIUS));
         let mut contact = builder_of(&shape, grid, elastic(nu)).kernel(kernel).build().unwrap();
         contact.step(0.0, Load::force(per_length)).unwrap();
-        let stress = contact.stress().unwrap();
+        let stress = contact.fields().stress().unwrap();
         let found = stress.greatest(&depths(12, 1.5 * a), Stress::tresca).unwrap();
         let error = 0.5 * found.value / (0.300_283 * peak) - 1.0;
         assert!(error.abs() < 1e-3, "{error:e}");
@@ -128,7 +132,7 @@ fn a_plane_carries_the_force() {
     let grid = Grid::square(192, 24.0 * hertz.contact_radius).unwrap();
     let mut wide = contact_of(&Sphere::new(RADIUS).unwrap(), grid, contact.material().clone(), Settings::default());
     wide.step(0.0, Load::force(0.5)).unwrap();
-    let stress = wide.stress().unwrap();
+    let stress = wide.fields().stress().unwrap();
     for over_a in [0.5, 1.0, 2.0] {
         let z = over_a * hertz.contact_radius;
         let plane = stress.on_plane(z).unwrap();
@@ -156,8 +160,8 @@ fn stress_does_not_depend_on_the_window() {
     for (dt, force) in [(0.0, 0.005), (0.5, 0.02), (0.0, 0.1), (2.0, 0.1), (4.0, 0.1)] {
         let [touched, _] = [&mut part, &mut whole].map(|c| c.step(dt, Load::force(force)).unwrap().contact_cells);
         sizes.push(touched);
-        let peak = whole.max_pressure();
-        let [one, other] = [&part, &whole].map(|contact| contact.stress().unwrap());
+        let peak = whole.fields().max_pressure();
+        let [one, other] = [&part, &whole].map(|contact| contact.fields().stress().unwrap());
         let depths = [0.1e-3, 0.4e-3];
         let [one_volume, other_volume] = [&one, &other].map(|stress| stress.in_volume(&depths).unwrap());
         for (a, b) in one_volume.values.iter().zip(&other_volume.values) {
@@ -179,11 +183,11 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
         let rolled = roll(&scene, direction, 5.0 * scene.reach);
         let contact = &rolled.contact;
         let depths: Vec<f64> = (1..30).map(|k| 0.05 * a * f64::from(k)).collect();
-        let peak = contact.stress().unwrap().greatest(&depths, Stress::tresca).unwrap();
-        let middle = contact.asymmetry([rolled.at, 0.0]).unwrap().unwrap().center_of_pressure[0];
-        let section = contact.stress().unwrap().on_section(Axis::X1, 0.0, &depths).unwrap();
+        let peak = contact.fields().stress().unwrap().greatest(&depths, Stress::tresca).unwrap();
+        let middle = contact.fields().asymmetry([rolled.at, 0.0]).unwrap().unwrap().center_of_pressure[0];
+        let section = contact.fields().stress().unwrap().on_section(Axis::X1, 0.0, &depths).unwrap();
         // left and right of the point of the greatest stress, at its depth
-        let of = |x: f64| contact.stress().unwrap().at(&[[x, 0.0, peak.position[2]]]).unwrap()[0].tresca();
+        let of = |x: f64| contact.fields().stress().unwrap().at(&[[x, 0.0, peak.position[2]]]).unwrap()[0].tresca();
         let at = peak.position[0];
         let skew = [0.5, 1.0].map(|steps| of(at + direction * steps * a) - of(at - direction * steps * a));
         let greatest = section.map(Stress::tresca).into_iter().fold(0.0, f64::max);
@@ -204,18 +208,19 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
 fn the_counter_body_has_its_own_poisson_ratio() {
     let builder = builder_of(&Sphere::new(RADIUS).unwrap(), Grid::square(24, 2.0e-3).unwrap(), maxwell());
     let contact = builder.clone().build().unwrap();
-    assert_eq!(contact.stress_in_counter_body().unwrap_err(), Error::Missing { part: "counter_body" });
+    assert_eq!(contact.fields().stress_in_counter_body().unwrap_err(), Error::Missing { part: "counter_body" });
     let other = Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
     let mut contact = builder.counter_body(other).build().unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
-    let expected =
-        |nu| SubsurfaceStress::new(contact.kernel(), contact.pressure(), nu).unwrap().on_plane(0.2e-3).unwrap();
+    let expected = |nu| {
+        SubsurfaceStress::new(contact.fields().kernel(), contact.pressure(), nu).unwrap().on_plane(0.2e-3).unwrap()
+    };
     let close = |one: Vec<Stress>, other: Vec<Stress>| {
-        let peak = contact.max_pressure();
+        let peak = contact.fields().max_pressure();
         one.iter().zip(&other).all(|(a, b)| (a.s11 - b.s11).abs().max((a.s33 - b.s33).abs()) < 1e-13 * peak)
     };
-    assert!(close(contact.stress().unwrap().on_plane(0.2e-3).unwrap(), expected(0.5)));
-    let below = contact.stress_in_counter_body().unwrap().on_plane(0.2e-3).unwrap();
+    assert!(close(contact.fields().stress().unwrap().on_plane(0.2e-3).unwrap(), expected(0.5)));
+    let below = contact.fields().stress_in_counter_body().unwrap().on_plane(0.2e-3).unwrap();
     assert!(close(below.clone(), expected(0.3)));
     assert!(!close(below, expected(0.5)));
 }
@@ -234,13 +239,14 @@ fn a_changing_poisson_ratio_is_the_closed_form() {
     };
     let check = |contact: &ViscoelasticContact, history: &StressHistory, share: f64| {
         for (r, p) in history.reduced_pressure().iter().zip(contact.pressure()) {
-            assert!((r - share * p).abs() < 1e-6 * contact.max_pressure(), "{r:e} {share} {p:e}");
+            assert!((r - share * p).abs() < 1e-6 * contact.fields().max_pressure(), "{r:e} {share} {p:e}");
         }
         let nu = 0.5 * (1.0 - share);
-        let exact = SubsurfaceStress::new(contact.kernel(), contact.pressure(), nu).unwrap().on_plane(0.5e-3).unwrap();
+        let exact =
+            SubsurfaceStress::new(contact.fields().kernel(), contact.pressure(), nu).unwrap().on_plane(0.5e-3).unwrap();
         for (found, exact) in history.stress(contact).unwrap().on_plane(0.5e-3).unwrap().iter().zip(exact) {
             for (found, exact) in found.components().iter().zip(exact.components()) {
-                assert!((found - exact).abs() < 1e-6 * contact.max_pressure(), "{found:e} {exact:e}");
+                assert!((found - exact).abs() < 1e-6 * contact.fields().max_pressure(), "{found:e} {exact:e}");
             }
         }
     };
@@ -260,7 +266,7 @@ fn a_changing_poisson_ratio_is_the_closed_form() {
         check(&contact, &history, first * late / t * (1.0 - (-t / late).exp()));
     }
     // without a history the contact refuses
-    let error = contact.stress().unwrap_err();
+    let error = contact.fields().stress().unwrap_err();
     assert!(matches!(error, Error::Material(MaterialError::ChangingPoisson { body: 0 })), "{error}");
     let late = StressHistory::new(&contact).unwrap_err();
     assert!(matches!(late, Error::OutOfRange { field: "pressure where the history of the stress begins", .. }));
@@ -297,6 +303,7 @@ fn a_constant_poisson_ratio_needs_no_history() {
     let mut history = StressHistory::new(&contact).unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
     history.record(&contact).unwrap();
-    let planes = [contact.stress().unwrap(), history.stress(&contact).unwrap()].map(|s| s.on_plane(0.2e-3).unwrap());
+    let planes =
+        [contact.fields().stress().unwrap(), history.stress(&contact).unwrap()].map(|s| s.on_plane(0.2e-3).unwrap());
     assert_eq!(planes[0], planes[1]);
 }

@@ -223,7 +223,7 @@ impl Scene {
         self.floor.step(args.dt, &loads)?;
 
         let [(ball_force, _), (block_force, moment)] = self.forces();
-        let [x, y] = self.floor.lateral_force(&cap);
+        let [x, y] = self.floor.fields().lateral_force(&cap);
         // all pressure under the ball acts towards its centre
         self.pressure[0] = Push { force: Vector::new(-x, -y, ball_force), torque: Vector::ZERO };
         self.pressure[1] = Push::at(block_force * Vector::Z, face, block);
@@ -235,7 +235,7 @@ impl Scene {
 
     /// Forces of the floor on ball and box [N], and moments about the middle of the grid [N·m].
     fn forces(&self) -> [(f64, [f64; 2]); 2] {
-        [0, 1].map(|k| self.floor.body(k).map_or((0.0, [0.0; 2]), |body| (body.force, body.moment)))
+        [0, 1].map(|k| self.floor.fields().body(k).map_or((0.0, [0.0; 2]), |body| (body.force, body.moment)))
     }
 
     fn weights(&self) -> [f64; 2] {

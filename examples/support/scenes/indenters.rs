@@ -105,7 +105,7 @@ impl ClosedFaces {
     /// From elastic contacts: one with all forces equal to `least` \[N\], and one for each punch with the force `most`.
     pub fn new(scene: &Indenters, least: f64, most: f64) -> Result<ClosedFaces> {
         let approaches = |contact: ViscoelasticContact| {
-            [0, 1, 2].map(|body| contact.body(body).map_or(f64::NAN, |body| body.approach))
+            [0, 1, 2].map(|body| contact.fields().body(body).map_or(f64::NAN, |body| body.approach))
         };
         let compliance = 1.0e-6;
         let rest = approaches(scene.elastic(compliance, &[least; 3])?);

@@ -186,7 +186,7 @@ fn profiles(
         for sample in run.samples() {
             let sample = sample?;
             if sample.is_asked_for() {
-                pressures.push(sample.contact().pressure().to_vec());
+                pressures.push(sample.fields().pressure().to_vec());
                 convolutions += sample.field().map_or(0, |field| field.convolutions);
             }
         }

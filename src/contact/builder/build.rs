@@ -5,22 +5,25 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
-use crate::contact::builder::memory::{symmetry_of, windowed};
+use crate::contact::builder::memory::windowed;
+use crate::contact::builder::shared_gap::SharedGap;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
-use crate::contact::distributed::gap::SharedGap;
 use crate::contact::read::limits::Limits;
 use crate::contact::{
-    Builder, Computation, Frame, Indenter, Memory, Region, Scene, Settings, Solver, State, TimeRule,
-    ViscoelasticContact,
+    Builder, Computation, Frame, Memory, Scene, Settings, Solver, State, TimeRule, ViscoelasticContact,
 };
-use crate::error::{AdhesionError, Error, KernelError, Result, Special, StepError, coverage};
-use crate::error::{count_within, length, positive, unless_failed};
+use crate::elastic::ElasticContact;
+use crate::equilibrium::ground::check_bodies;
+use crate::equilibrium::indenter::even_axes_of;
+use crate::equilibrium::{Ground, Indenter, Region};
+use crate::error::{AdhesionError, Error, Result, Special, StepError, coverage};
+use crate::error::{length, positive, unless_failed};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::{History, Weighting};
-use crate::kernel::{InfluenceKernel, Layer};
+use crate::kernel::Layer;
 use crate::parallel::{Ranks, Rows};
-use crate::rheology::{Elastic, Material};
+use crate::rheology::Material;
 
 impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
@@ -28,7 +31,7 @@ impl Builder {
     /// # Errors
     /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is
     /// out of range, the kernel was made for another grid or cannot be made for its cells
-    /// ([`InfluenceKernel::half_space`]), or the rectangle rule was chosen for a rheology without elastic response.
+    /// ([`InfluenceKernel::half_space`](crate::InfluenceKernel::half_space)), or the rectangle rule was chosen for a rheology without elastic response.
     ///
     /// If the kernel belongs to a layer, and the material has another Poisson's ratio, or one that is not constant, or a
     /// counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
@@ -49,12 +52,7 @@ impl Builder {
             let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
             let (scene, history) = self.scene(bodies)?;
             let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
-            let region = if windowed(&scene, &history) {
-                // without load, each body is above the cell that it would touch first
-                Region::around(&self.grid, folded, Region::lowest_cells(&self.grid, indenter.gap(), bodies), 0.0)
-            } else {
-                Region::whole(&self.grid, folded)
-            };
+            let region = scene.ground.first_region(folded, &indenter, windowed(&scene, &history));
             scene.check_memory(&history, &region, 0)?;
             let missed = self.missed(&scene);
             return Ok(assemble(scene, &history, Arc::new(indenter), region, missed));
@@ -72,9 +70,20 @@ impl Builder {
         })
     }
 
+    /// The constants of a contact in one process, its indenter, and what the grid misses of the waves of its shapes.
+    pub(crate) fn parts(mut self) -> Result<(Scene, Indenter, Missed)> {
+        self.validate()?;
+        let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
+        let bodies = gaps.len();
+        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
+        let (scene, _) = self.scene(bodies)?;
+        let missed = self.missed(&scene);
+        Ok((scene, indenter, missed))
+    }
+
     /// What the grid misses of the waves of the shapes.
     fn missed(&self, scene: &Scene) -> Missed {
-        Missed::of(&self.waves, &self.grid, scene.kernel.periodic_axes())
+        Missed::of(&self.waves, &self.grid, scene.ground.kernel.periodic_axes())
     }
 
     /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
@@ -153,18 +162,14 @@ impl Builder {
         self.validate()?;
         let ((scene, history), cells) = (self.scene(self.gaps.len())?, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|(_, gap)| gap.as_ref().ok()).collect();
-        let folded = gaps.filter(|_| self.settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
+        let folded = gaps.filter(|_| self.settings.symmetry).map_or([false; 2], |gaps| even_axes_of(&gaps, cells));
         Ok(scene.most_memory(&history, folded))
     }
 
     /// Rejects settings out of range, and no rigid body or too many.
     fn validate(&self) -> Result<()> {
         self.settings.validate()?;
-        let bodies = self.gaps.len();
-        if bodies == 0 {
-            return Err(Error::Missing { part: "geometry" });
-        }
-        count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")?;
+        check_bodies(self.gaps.len())?;
         let specials = [
             (self.attraction.is_some(), Special::Attraction),
             (self.settings.frame == Frame::Indenter, Special::FixedToIndenter),
@@ -179,14 +184,8 @@ impl Builder {
             material = material.against(other);
         }
         material.validate()?;
-        let kernel = match &self.kernel {
-            Some(kernel) if *kernel.grid() != self.grid => {
-                let [kernel, contact] = [kernel.grid(), &self.grid].map(|grid| (grid.cells(), grid.spacing()));
-                return Err(KernelError::WrongGrid { kernel, contact }.into());
-            }
-            Some(kernel) => Arc::clone(kernel),
-            None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
-        };
+        let ground = Ground::of(&self.grid, self.kernel.as_ref(), self.settings, bodies)?;
+        let kernel = &ground.kernel;
         if let Some(layer) = kernel.layer_of() {
             Layer::check_material(layer.poisson_ratio(), &material.poisson_ratios().collect::<Vec<_>>())?;
         }
@@ -198,17 +197,13 @@ impl Builder {
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
         let softening =
             self.attraction.as_deref().map(|law| resolved_softening(law, &material, &self.grid)).transpose()?;
+        let attraction = self.attraction.clone();
+        let ground = Ground { softening: softening.unwrap_or(0.0), attraction, ..ground };
         let scene = Scene {
-            grid: self.grid.clone(),
-            kernel,
+            ground,
             limits: Limits::of(&material),
             material,
-            settings: self.settings,
             temperature: self.temperature.clone(),
-            softening: softening.unwrap_or(0.0),
-            attraction: self.attraction.clone(),
-            steady: self.steady,
-            bodies,
             #[cfg(feature = "checkpoint")]
             built: Built::default(),
         };
@@ -217,22 +212,16 @@ impl Builder {
 }
 
 impl ViscoelasticContact {
-    /// The undisturbed contact of an elastic body of unit compliance with the same indenter, solved to `tolerance`.
+    /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but for mirror images.
     ///
     /// # Errors
     /// If there is no memory for it.
-    pub(crate) fn of_unit_compliance(&self, tolerance: f64) -> Result<ViscoelasticContact> {
-        let (own, material) = (&*self.scene, Material::incompressible(Elastic::new(0.25)?));
-        let settings = Settings { tolerance, time_rule: TimeRule::Exponential, ..own.settings };
-        let history = history_by(&settings, &material, own.kernel.periodic_axes())?;
-        let (limits, temperature, steady) = (Limits::of(&material), None, false);
-        let scene =
-            Scene { material, limits, settings, temperature, attraction: None, softening: 0.0, steady, ..own.clone() };
-        let indenter = Arc::clone(&self.computation.state.indenter);
-        let folded = if settings.symmetry { indenter.even_axes(&scene.grid) } else { [false; 2] };
-        let region = Region::whole(&scene.grid, folded);
-        scene.check_memory(&history, &region, 0)?;
-        Ok(assemble(scene, &history, indenter, region, self.missed))
+    pub(crate) fn elastic(&self, compliance: f64, tolerance: f64) -> Result<ElasticContact> {
+        let own = &self.scene.ground;
+        let settings = own.settings.with_tolerance(tolerance).with_window(false);
+        let ground = Ground { settings, attraction: None, softening: 0.0, ..own.clone() };
+        let indenter = Arc::clone(&self.computation.state.held.indenter);
+        ElasticContact::new(Arc::new(ground), compliance, indenter, self.missed)
     }
 }
 
@@ -255,7 +244,7 @@ fn assemble(
 ) -> ViscoelasticContact {
     #[cfg(feature = "checkpoint")]
     let scene = Scene { built: Built::new(indenter.gap(), &region.of_gap()), ..scene };
-    let attracts = scene.attraction.is_some();
+    let attracts = scene.ground.attraction.is_some();
     let computation = Computation::new(&scene, State::at_rest(indenter, region, history, attracts));
     ViscoelasticContact::new(scene, computation, missed)
 }

@@ -3,17 +3,14 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::contact::indenter::even_axes;
 use crate::contact::step::attraction::Attracted;
-use crate::contact::window::placement::MAX_WINDOW_FRACTION;
-use crate::contact::{Indenter, Region, Scene, Solver, State, Trial};
-use crate::error::{Result, count_within};
+use crate::contact::{Scene, State};
+use crate::equilibrium::window::placement::MAX_WINDOW_FRACTION;
+use crate::equilibrium::{Indenter, Region, Trial};
+use crate::error::Result;
 use crate::geometry::Gap;
 use crate::hereditary::History;
-use crate::kernel::HalfSpace;
 use crate::memory;
-use crate::parallel::Rows;
-use crate::solver::{Bands, Extension};
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
 ///
@@ -24,8 +21,8 @@ use crate::solver::{Bands, Extension};
 /// | state and trial step | 73 |
 /// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken |
 /// | displacement outside a window | 16, and the history again |
-/// | solver | 29, as [`Solver::PolonskyKeer`]; for each body 0.02 more |
-/// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
+/// | solver | 29, as [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer); for each body 0.02 more |
+/// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer): a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
 /// | attraction between surfaces | 68: its traction at both ends of a step and in the trial, 24, what its steps work in, 40, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
@@ -87,50 +84,35 @@ impl Scene {
     pub(in crate::contact) fn memory_on(&self, history: &History, region: &Region) -> Memory {
         // a rank without rows is counted as one row
         let cells = region.cells().map(|count| count.max(1));
-        let (count, shown) = (cells[0].saturating_mul(cells[1]), region.shown_len());
-        let (all, n) = (shown as u128, count as u128);
-        let gap = if self.bodies > 1 { 10 } else { 8 };
-        let attracts = self.attraction.is_some();
-        // the whole gap, which ranks do not have; its computed part; the pressure on the grid
-        let whole = if region.is_shared() { 0 } else { gap * all };
-        let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
-        let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
+        let (count, attracts) = (cells[0].saturating_mul(cells[1]), self.ground.attraction.is_some());
+        let [grid, solver, kernel] = self.ground.bytes_on(region);
+        let indenter = Arc::new(Indenter::new(Gap::default(), self.ground.bodies));
         let layout = State::layout(indenter, region.clone(), history, attracts);
         let passes = if attracts { Attracted::BYTES_PER_CELL } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
-        let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
-        let [kernel, inverse, near] = self.kernel.bytes(&rows, region.folded());
-        // three fields, a mark, and runs of cells
-        let own = (24 + 1 + 4) * n + Bands::bytes(&Rows::all(cells), self.bodies) as u128;
-        let solver = match self.settings.solver {
-            Solver::ActiveSet => own + inverse + Extension::bytes(&rows),
-            Solver::PolonskyKeer => own,
-        };
-        let saturated = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
+        let of_cells = |bytes: usize| u64::try_from(bytes as u128 * count as u128).unwrap_or(u64::MAX);
         Memory {
             computed_cells: count,
-            grid: saturated(grid),
-            state: saturated((per_cell - of_history + Trial::BYTES_PER_CELL + passes) as u128 * n),
-            history: saturated(of_history as u128 * n),
-            solver: saturated(solver),
-            kernel: saturated(kernel + if attracts { near } else { 0 }),
-            each_step: if history.grows() { saturated(8 * n) } else { 0 },
+            grid,
+            state: of_cells(per_cell - of_history + Trial::BYTES_PER_CELL + passes),
+            history: of_cells(of_history),
+            solver,
+            kernel,
+            each_step: if history.grows() { of_cells(8) } else { 0 },
         }
     }
 
     /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
     pub(in crate::contact) fn check_memory(&self, history: &History, region: &Region, besides: u64) -> Result<()> {
         let memory = self.memory_on(history, region);
-        let cells = memory.computed_cells;
-        let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
-        count_within("cells that are computed", cells, u32::try_from(cells).is_ok(), allowed)?;
+        self.ground.check_cells(region)?;
         memory::check("the contact", u128::from(memory.total()) + u128::from(besides))
     }
 
     /// The most bytes that the contact can take while the axes `folded` stay so.
     pub(in crate::contact) fn most_memory(&self, history: &History, folded: [bool; 2]) -> Memory {
-        let all = Region::whole(&self.grid, folded);
+        let all = Region::whole(&self.ground.grid, folded);
         let whole = self.memory_on(history, &all);
         if !windowed(self, history) {
             return whole;
@@ -138,30 +120,14 @@ impl Scene {
         // the largest window, beyond which it is all of the grid
         let [rows, columns] = all.cells();
         let rows = (rows as f64 * MAX_WINDOW_FRACTION).ceil() as usize;
-        let window = self.memory_on(history, &Region::of_size(&self.grid, folded, [rows, columns]));
+        let window = self.memory_on(history, &Region::of_size(&self.ground.grid, folded, [rows, columns]));
         if window.total() > whole.total() { window } else { whole }
     }
 }
 
-/// Whether only a part of the grid is computed: under pressures on half-spaces only, since the displacement outside a window is
-/// bounded for these alone.
+/// Whether only a part of the grid is computed.
 pub(in crate::contact) fn windowed(scene: &Scene, history: &History) -> bool {
-    let half_space = scene.kernel.half_space_below() == Some(HalfSpace::LoadedOnGrid);
-    scene.settings.window && scene.attraction.is_none() && history.has_far_field() && half_space
-}
-
-/// Axes about whose middle the gap of all bodies together is even, bitwise.
-pub(in crate::contact) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
-    // the lowest body, and the first of several as low
-    let lowest = |k: usize| {
-        let own = gaps.iter().map(|gap| gap[k]).enumerate();
-        own.fold((0, f64::INFINITY), |lowest, (body, h)| if h < lowest.1 { (body, h) } else { lowest })
-    };
-    let datum = gaps.iter().flat_map(|gap| gap.iter()).copied().fold(f64::INFINITY, f64::min);
-    even_axes(cells, |k, mirror| {
-        let (own, image) = (lowest(k), lowest(mirror));
-        own.0 == image.0 && own.1 - datum == image.1 - datum
-    })
+    history.has_far_field() && crate::equilibrium::windowed(&scene.ground)
 }
 
 #[cfg(test)]

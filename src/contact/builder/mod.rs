@@ -2,6 +2,7 @@
 
 pub(in crate::contact) mod build;
 pub(in crate::contact) mod memory;
+mod shared_gap;
 
 use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
@@ -45,8 +46,6 @@ pub struct Builder {
     pub(crate) ranks: Option<Arc<dyn Ranks>>,
     /// Whether the grid was chosen by a plan, for surfaces that do not attract each other.
     pub(crate) planned: bool,
-    /// Whether the contact shows steady motions, and takes no steps.
-    pub(crate) steady: bool,
 }
 
 /// Rows of the grid, and a gap on them if there was memory for it.
@@ -69,7 +68,6 @@ impl ViscoelasticContact {
             settings: Settings::default(),
             ranks: None,
             planned: false,
-            steady: false,
         }
     }
 }
@@ -185,7 +183,7 @@ impl Builder {
     /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate ([`adhesion`](crate::adhesion)). A
     /// scene without one costs nothing more.
     ///
-    /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`ViscoelasticContact::traction_into`] the net traction, which carries
+    /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries
     /// the force and displaces the bodies. The whole grid is computed, [`Settings::window`] does not count. A contact that tries to come off
     /// under a given force fails with [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a
     /// spring it comes off within a step.

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::Region;
+use crate::equilibrium::Region;
 use crate::geometry::Gap;
 use crate::rheology::Material;
 use crate::sum::{MOMENTS, add_to_moments};

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use std::ops::Range;
 
 use super::{Input, Output};
-use crate::contact::{Region, State};
+use crate::contact::State;
+use crate::equilibrium::Region;
 use crate::error::CheckpointError;
 use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
@@ -32,14 +33,16 @@ impl<'a> FieldWriter<'a> {
 
     /// Writes all fields of a state.
     pub(super) fn state(&mut self, state: &State) {
-        let rows = state.region.rows();
+        let rows = state.held.region.rows();
         state.each(&mut |field| {
             if let Role::Work = field.role {
                 return;
             }
             for which in 0..field.per_cell {
                 let own = |cells: Range<usize>| {
-                    runs([field.per_cell, which], state.region.len(), cells).flat_map(|run| &field.values[run]).copied()
+                    runs([field.per_cell, which], state.held.region.len(), cells)
+                        .flat_map(|run| &field.values[run])
+                        .copied()
                 };
                 self.rows(&rows, own);
             }

@@ -14,7 +14,7 @@ use crate::parallel::Rows;
 
 const MAGIC: &[u8; 8] = b"VISCOCHK";
 /// Raised with every change of the contents.
-pub(crate) const VERSION: u32 = 18;
+pub(crate) const VERSION: u32 = 19;
 /// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: usize = 20;

@@ -14,7 +14,8 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::contact::{Computation, Indenter, State, ViscoelasticContact};
+use crate::contact::{Computation, State, ViscoelasticContact};
+use crate::equilibrium::{Held, Indenter};
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;
@@ -34,7 +35,7 @@ pub(crate) trait SavedRun: Clone + Serialize + DeserializeOwned {
 impl ViscoelasticContact {
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(crate) fn save_with<P: SavedRun>(&self, path: &Path, progress: Option<&P>) -> Result<()> {
-        let State { region, indenter, .. } = &self.computation.state;
+        let Held { region, indenter, .. } = &self.computation.state.held;
         let above = &indenter.gap().above;
         region.rows().replace_file(path, |out| {
             let saved = Saved::of(self, progress);
@@ -45,7 +46,7 @@ impl ViscoelasticContact {
             });
             let mut fields = FieldWriter::new(begun);
             fields.state(&self.computation.state);
-            let (gap, n2) = (saved.gap_region(self), self.scene.grid.cells()[1]);
+            let (gap, n2) = (saved.gap_region(self), self.scene.ground.grid.cells()[1]);
             let place = |k| if gap.is_shared() { k } else { gap.cell(k)[0] * n2 + gap.cell(k)[1] };
             fields.rows(&gap.rows(), |cells| cells.map(|k| above[place(k)]));
             fields.finish()
@@ -54,7 +55,7 @@ impl ViscoelasticContact {
 
     /// Puts a saved state in the place of this one, and returns the run that saved it.
     pub(crate) fn resume_with<P: SavedRun>(&mut self, path: &Path) -> Result<Option<P>> {
-        let rows = self.computation.state.region.rows();
+        let rows = self.computation.state.held.region.rows();
         rows.unless_lost(|| {
             let (mut state, progress) = self.read(path, &rows)?;
             state.sum_up();
@@ -65,7 +66,7 @@ impl ViscoelasticContact {
             let computation = Computation::new(&self.scene, state);
             rows.intact()?;
             self.computation = computation;
-            self.view.refresh(&self.computation.state);
+            self.view.refresh(&self.computation.state.held);
             Ok(progress)
         })
     }
@@ -85,9 +86,10 @@ impl ViscoelasticContact {
         let saved = all.of(saved)?;
 
         let own = &self.computation.state;
-        let (region, gap_region) = (saved.state.region.clone().shared_like(&own.region), saved.gap_region(self));
+        let (region, gap_region) =
+            (saved.state.held.region.clone().shared_like(&own.held.region), saved.gap_region(self));
         let read = read_state(&mut file, &saved.state, &region).and_then(|state| {
-            let Gap { datum, owner, .. } = saved.state.indenter.gap().clone();
+            let Gap { datum, owner, .. } = saved.state.held.indenter.gap().clone();
             let gap = Gap { datum, owner, above: file.rows(&gap_region.rows())? };
             check_fields(&state, &gap).map(|()| (state, gap))
         });
@@ -95,14 +97,15 @@ impl ViscoelasticContact {
         let indenter = if region.is_shared() {
             let moved = difference(&Built::new(&gap, &region).shape, &self.scene.built.shape).is_some();
             all.of(if moved { Err(moved_indenter()) } else { Ok(()) })?;
-            own.indenter.with_gap_on(&region, gap)
+            own.held.indenter.with_gap_on(&region, gap)
         } else {
-            let mut whole = vec![0.0; self.scene.grid.len()];
+            let mut whole = vec![0.0; self.scene.ground.grid.len()];
             gap_region.show(&gap.above, &mut whole);
             gap.above = whole;
-            Indenter::new(gap, self.scene.bodies)
+            Indenter::new(gap, self.scene.ground.bodies)
         };
-        Ok((State { indenter: Arc::new(indenter), ..state }, saved.progress.map(Cow::into_owned)))
+        let held = Held { indenter: Arc::new(indenter), ..state.held };
+        Ok((State { held, ..state }, saved.progress.map(Cow::into_owned)))
     }
 }
 

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::scene_fingerprint::Fingerprint;
 use crate::contact::builder::memory::windowed;
 use crate::contact::checkpoint::SavedRun;
-use crate::contact::{Clock, Equilibrium, Region, State, ViscoelasticContact};
+use crate::contact::{Clock, State, ViscoelasticContact};
+use crate::equilibrium::{Equilibrium, Held, Region};
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::Role;
@@ -28,20 +29,20 @@ pub(super) struct Saved<'a, P: SavedRun> {
 
 impl<'a, P: SavedRun> Saved<'a, P> {
     pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a P>) -> Saved<'a, P> {
-        let (state, grid) = (&contact.computation.state, &contact.scene.grid);
-        let folded = state.region.folded();
-        let all = if state.region.is_shared() { Region::whole(grid, folded) } else { state.region.clone() };
+        let (state, grid) = (&contact.computation.state, &contact.scene.ground.grid);
+        let folded = state.held.region.folded();
+        let all = if state.held.region.is_shared() { Region::whole(grid, folded) } else { state.held.region.clone() };
         Saved {
             scene: Fingerprint::of(&contact.scene),
             state: state.map(&all, &mut |_| Vec::new()),
-            gap_folded: state.indenter.keeps_folded(folded, grid),
+            gap_folded: state.held.indenter.keeps_folded(folded, grid),
             progress: progress.map(Cow::Borrowed),
         }
     }
 
     /// The part of the grid that the gap is saved on; the local rows of it if ranks share out the contact.
     pub(super) fn gap_region(&self, contact: &ViscoelasticContact) -> Region {
-        Region::whole(&contact.scene.grid, self.gap_folded).shared_like(&contact.computation.state.region)
+        Region::whole(&contact.scene.ground.grid, self.gap_folded).shared_like(&contact.computation.state.held.region)
     }
 
     /// Number of values that a file has after this.
@@ -52,14 +53,15 @@ impl<'a, P: SavedRun> Saved<'a, P> {
                 per_cell += field.per_cell;
             }
         });
-        (per_cell as u64).saturating_mul(self.state.region.len() as u64) + self.gap_region(contact).rows().len() as u64
+        (per_cell as u64).saturating_mul(self.state.held.region.len() as u64)
+            + self.gap_region(contact).rows().len() as u64
     }
 
     /// Rejects what a contact cannot go on from.
     pub(super) fn check(&self, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
         self.scene.require(&contact.scene)?;
         check(&self.state, contact)?;
-        let (cells, region) = (contact.scene.grid.cells(), &self.state.region);
+        let (cells, region) = (contact.scene.ground.grid.cells(), &self.state.held.region);
         if (0..2).any(|axis| self.gap_folded[axis] && !cells[axis].is_multiple_of(2)) {
             return malformed("a symmetry that its grid cannot have");
         }
@@ -68,7 +70,7 @@ impl<'a, P: SavedRun> Saved<'a, P> {
         if self.progress.as_deref().is_some_and(|progress| !progress.fits()) {
             return malformed("a run that no contact can continue");
         }
-        if contact.computation.state.region.is_shared() {
+        if contact.computation.state.held.region.is_shared() {
             if !region.covers() {
                 let saved = "a window of the grid (set Settings::window to false before it is saved)";
                 return Err(other_scene("computed region", saved, "the whole grid, which ranks share out"));
@@ -115,18 +117,18 @@ pub(crate) fn check_clocks(
 /// Rejects a state on no cells that is not one of the contact.
 fn check(state: &State, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
     let (scene, built) = (&contact.scene, &contact.computation.state.history);
-    let State { clock, loads, indenter, region, history, current, previous, start, .. } = state;
-    let (bodies, gap, covers) = (scene.bodies, indenter.gap(), region.covers());
-    if state.attracts != scene.attraction.is_some() {
+    let State { held: Held { loads, indenter, region, current, .. }, clock, history, previous, start, .. } = state;
+    let (bodies, gap, covers) = (scene.ground.bodies, indenter.gap(), region.covers());
+    if state.attracts != scene.ground.attraction.is_some() {
         return malformed("another attraction");
     }
-    if !region.is_of(&scene.grid) || !(covers || windowed(scene, built)) {
+    if !region.is_of(&scene.ground.grid) || !(covers || windowed(scene, built)) {
         return malformed("its region is not part of the grid");
     }
     let motions = |Equilibrium { solution, motions, .. }: &Equilibrium| [solution.motions.len(), motions.len()];
     let of_a_body = |&owner: &_| usize::from(owner) < bodies;
     let owners = match &gap.owner {
-        Some(owner) => bodies > 1 && owner.len() == scene.grid.len() && owner.iter().all(of_a_body),
+        Some(owner) => bodies > 1 && owner.len() == scene.ground.grid.len() && owner.iter().all(of_a_body),
         None => bodies == 1,
     };
     let fits = [loads.len(), start.loads.len(), indenter.bodies()] == [bodies; 3]
@@ -154,7 +156,7 @@ pub(super) fn check_fields(state: &State, gap: &Gap) -> Result<(), CheckpointErr
         let counts = matches!(field.role, Role::Lasting { .. }) || state.history.start_is_kept();
         finite &= !counts || field.values.iter().all(|value| value.is_finite());
     });
-    let pressures = state.current.solution.pressure.iter().all(|&p| p >= 0.0);
+    let pressures = state.held.current.solution.pressure.iter().all(|&p| p >= 0.0);
     if finite && pressures && gap.above.iter().all(|&gap| gap >= 0.0) { Ok(()) } else { unsound() }
 }
 

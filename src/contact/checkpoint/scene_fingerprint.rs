@@ -68,21 +68,21 @@ pub(super) struct Fingerprint([Mark; 14]);
 
 /// The properties that are compared, by name.
 fn marks(scene: &Scene) -> [(&'static str, Mark); 14] {
-    let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.settings;
-    let ([n1, n2], [d1, d2]) = (scene.grid.cells(), scene.grid.spacing());
+    let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.ground.settings;
+    let ([n1, n2], [d1, d2]) = (scene.ground.grid.cells(), scene.ground.grid.spacing());
     [
         ("grid", Mark::Text(format!("{n1} × {n2} cells of {d1:e} m × {d2:e} m"))),
-        ("number of rigid bodies", Mark::Text(scene.bodies.to_string())),
-        ("kernel", Mark::Text(scene.kernel.to_string())),
+        ("number of rigid bodies", Mark::Text(scene.ground.bodies.to_string())),
+        ("kernel", Mark::Text(scene.ground.kernel.to_string())),
         ("Settings::time_rule", Mark::Text(format!("{time_rule:?}"))),
         ("Settings::frame", Mark::Text(format!("{frame:?}"))),
         ("Settings::symmetry", Mark::Text(symmetry.to_string())),
         ("Settings::window", Mark::Text(window.to_string())),
         ("Settings::series_tolerance", Mark::Text(format!("{series_tolerance:e}"))),
         ("temperature", Mark::Text(format!("{:?}", scene.temperature))),
-        ("influence", Mark::Numbers(scene.kernel.mark())),
+        ("influence", Mark::Numbers(scene.ground.kernel.mark())),
         ("contact compliance", scene.built.creep(&scene.material).clone()),
-        ("attraction", Mark::Numbers(scene.attraction.as_deref().map(of_attraction).unwrap_or_default())),
+        ("attraction", Mark::Numbers(scene.ground.attraction.as_deref().map(of_attraction).unwrap_or_default())),
         ("geometry", Mark::Numbers(scene.built.shape.clone())),
         ("assignment of cells to rigid bodies", Mark::Text(scene.built.owners.clone())),
     ]
@@ -109,8 +109,8 @@ impl Fingerprint {
 mod tests {
     use super::difference;
     use crate::Grid;
-    use crate::contact::Region;
     use crate::contact::checkpoint::built::Built;
+    use crate::equilibrium::Region;
     use crate::geometry::Gap;
     use crate::parallel::{Rows, Threads};
 

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::contact::{Indenter, State, Step, StepReport, ViscoelasticContact};
+use crate::contact::{State, Step, StepReport, ViscoelasticContact};
+use crate::equilibrium::{Held, Indenter};
 use crate::error::{Result, count_within, coverage};
 use crate::geometry::Gap;
 use crate::load::Load;
@@ -20,7 +21,7 @@ pub struct TravelReport {
     /// Position of the shape at the start of the step \[m\].
     pub from: [f64; 2],
     /// Lateral force that moves the shape \[N\], see
-    /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
+    /// [`Fields::lateral_force`](crate::fields::Fields::lateral_force).
     pub lateral_force: [f64; 2],
     /// Mean power over the step that the lateral motion feeds into the bodies \[W\]: the work of the pressure on the
     /// surface, less the work of force and moments. It equals lateral force times velocity, but includes the rim of a
@@ -42,7 +43,7 @@ impl ViscoelasticContact {
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
         self.covers(coverage::STEP_ALONG_PATH)?;
         let only = "1: several are moved by ViscoelasticContact::set_geometries before a step";
-        count_within("rigid bodies of a step along a path", self.bodies(), self.bodies() == 1, only)?;
+        count_within("rigid bodies of a step along a path", self.fields().bodies(), self.fields().bodies() == 1, only)?;
         let loads = [load];
         let requested = self.request_next(dt, &loads)?;
         let [from, position] = [travel.position(self.time())?, travel.position(self.time() + dt)?];
@@ -50,21 +51,21 @@ impl ViscoelasticContact {
         let gap = Gap::new(vec![travel.gap(&shape, self.grid())?], self.grid())?;
         let before = self.load_and_motion();
         let step = self.take(Step { indenter: Arc::new(Indenter::new(gap, 1)), ..requested })?;
-        let lateral_force = self.lateral_force(&shape);
+        let lateral_force = self.fields().lateral_force(&shape);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
 
     /// Force and moments of the first body, and the parts of its motion on which they do work.
     pub(in crate::contact) fn load_and_motion(&self) -> [[f64; 3]; 2] {
-        let ([moment1, moment2], [tilt1, tilt2]) = (self.moment(), self.tilt());
+        let ([moment1, moment2], [tilt1, tilt2]) = (self.fields().moment(), self.tilt());
         [[self.force(), moment1, moment2], [self.approach(), tilt1, tilt2]]
     }
 
     /// Work of the lateral motion in the last step \[J\]: the work of the pressure, Σ p Δu, less the work of force and
     /// moments, from load and motion before the step.
     fn work_along(&self, [load, motion]: [[f64; 3]; 2]) -> f64 {
-        let State { region, history, current, previous, .. } = &self.computation.state;
+        let State { held: Held { region, current, .. }, history, previous, .. } = &self.computation.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
         let displacements = history.trial().iter().zip(history.displacement());
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();

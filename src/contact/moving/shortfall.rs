@@ -1,6 +1,7 @@
 //! What the state of a moving contact lacks of its steady state.
 
 use crate::contact::{Computation, State, Unsteady, ViscoelasticContact};
+use crate::equilibrium::Held;
 use crate::rheology::CreepSpectrum;
 
 /// A contact on its way to a steady state by steps of one cell.
@@ -35,7 +36,7 @@ impl Shortfall<'_> {
     /// what is left of a slow term passes through the contact, and its mean through zero.
     pub(crate) fn outstanding(&mut self) -> f64 {
         let Computation { state, window, .. } = &mut self.contact.computation;
-        let pressure = &state.current.solution.pressure;
+        let pressure = &state.held.current.solution.pressure;
         let Some(source) = state.history.outstanding(self.creep, self.cell, pressure) else { return 0.0 };
         let mut change = vec![0.0; source.len()];
         window.kernel.apply(&source, &mut change, &mut window.work);
@@ -46,7 +47,8 @@ impl Shortfall<'_> {
     /// factor e. Where the bodies do not come round, nothing is left after one length of the grid.
     pub(crate) fn slowest(&self, distance: f64) -> (f64, f64) {
         let (axis, grid) = (self.axis(), self.contact.grid());
-        let most = if self.contact.kernel().periodic_axes()[axis] { f64::INFINITY } else { grid.lengths()[axis] };
+        let most =
+            if self.contact.fields().kernel().periodic_axes()[axis] { f64::INFINITY } else { grid.lengths()[axis] };
         let left = |&(compliance, time): &(f64, f64)| compliance * (-distance / self.reach(time)).exp();
         let slowest = self.creep.terms().iter().max_by(|a, b| left(a).total_cmp(&left(b)));
         slowest.map_or((0.0, 0.0), |&(_, time)| (time, self.reach(time).min(most)))
@@ -67,8 +69,9 @@ impl Shortfall<'_> {
     /// times what is missing where v λ is longer than the grid.
     pub(crate) fn left_grid(&self, tolerance: f64) -> Option<Unsteady> {
         let (axis, contact) = (self.axis(), &*self.contact);
-        let (side, count, kernel) = (contact.grid().spacing()[axis], contact.grid().cells()[axis], contact.kernel());
-        let (line, extent) = (kernel.periodic_axes()[1 - axis], contact.extent_of_contact()?);
+        let (side, count, kernel) =
+            (contact.grid().spacing()[axis], contact.grid().cells()[axis], contact.fields().kernel());
+        let (line, extent) = (kernel.periodic_axes()[1 - axis], contact.fields().extent_of_contact()?);
         if kernel.periodic_axes()[axis] {
             return None;
         }
@@ -89,7 +92,7 @@ impl Shortfall<'_> {
             let mut change = Change::default();
             for &(compliance, time) in self.creep.terms() {
                 let (l, weight) =
-                    (self.reach(time), compliance * contact.force() * contact.computation.state.current.sum);
+                    (self.reach(time), compliance * contact.force() * contact.computation.state.held.current.sum);
                 let decay = (-distance / l).exp();
                 let e1 = decay * (l / distance).ln_1p();
                 let (lifted, tilted) = if line {
@@ -112,7 +115,7 @@ impl Shortfall<'_> {
 
     /// Change of approach or lateral force, whichever changes more in relation.
     fn relative(&self, by: Change) -> f64 {
-        let State { history, current, .. } = &self.contact.computation.state;
+        let State { held: Held { current, .. }, history, .. } = &self.contact.computation.state;
         let whole = self.change_by(history.displacement(), |value| value).slope.abs();
         let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
         share(by.lift, current.sum * self.contact.approach().abs()).max(share(by.slope, whole))
@@ -120,10 +123,10 @@ impl Shortfall<'_> {
 
     /// What a change of the displacement does, by a measure of its values and slopes.
     fn change_by(&self, displacement: &[f64], measure: impl Fn(f64) -> f64) -> Change {
-        let State { region, current, .. } = &self.contact.computation.state;
+        let Held { region, current, .. } = &self.contact.computation.state.held;
         let (axis, grid) = (self.axis(), self.contact.grid());
         let (count, unit) = (region.cells()[axis], if axis == 0 { region.cells()[1] } else { 1 });
-        let periodic = self.contact.kernel().periodic_axes()[axis];
+        let periodic = self.contact.fields().kernel().periodic_axes()[axis];
         let mut change = Change::default();
         for (k, &p) in current.solution.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             let m = k / unit % count;

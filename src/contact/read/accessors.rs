@@ -1,21 +1,11 @@
 //! Read-only accessors.
 
-use std::ops::Range;
-use std::sync::Arc;
-
-use crate::adhesion::Attraction;
+use crate::Grid;
 use crate::contact::step::attraction::PassReport;
-use crate::contact::{BodyState, Frame, Region, Scene, Settings, State, ViscoelasticContact};
-use crate::error::{Result, Special, coverage, exact_length};
-use crate::extent::Extent;
-use crate::kernel::InfluenceKernel;
+use crate::contact::{Settings, ViscoelasticContact};
+use crate::error::{Result, coverage};
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
-use crate::solver::RigidMotion;
-use crate::{Grid, memory, sum};
-
-/// Of bodies apart, the part of the work of separation that is left.
-const UNDONE: f64 = 0.01;
 
 impl ViscoelasticContact {
     /// Time \[s\], initially 0.
@@ -34,14 +24,9 @@ impl ViscoelasticContact {
         self.scene.temperature.as_ref()
     }
 
-    /// The grid of every field.
-    pub fn grid(&self) -> &Grid {
-        &self.scene.grid
-    }
-
     /// The settings of the contact.
     pub fn settings(&self) -> &Settings {
-        &self.scene.settings
+        &self.scene.ground.settings
     }
 
     /// The material of the bodies. For a rheology without exact exponential series it contains the series fitted over
@@ -50,198 +35,63 @@ impl ViscoelasticContact {
         &self.scene.material
     }
 
-    /// The influence kernel, to share with other contacts.
-    pub fn kernel(&self) -> &Arc<InfluenceKernel> {
-        &self.scene.kernel
-    }
-
     /// The load of the last step, on the first body.
     pub fn load(&self) -> Load {
-        self.computation.state.loads[0]
+        self.computation.state.held.loads[0]
     }
 
-    /// Contact pressure \[Pa\], one value per cell, ≥ 0 (Eq. 2 of the [paper](crate::paper)); on the local
-    /// [rows](ViscoelasticContact::rows) where ranks share them out.
+    /// The grid of every field.
+    pub fn grid(&self) -> &Grid {
+        self.fields().grid()
+    }
+
+    /// [`Fields::pressure`](crate::fields::Fields::pressure) \[Pa\], one value per cell.
     pub fn pressure(&self) -> &[f64] {
-        self.view.pressure(&self.computation.state)
+        self.fields().pressure()
     }
 
-    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell (Eq. 10 of the
-    /// [paper](crate::paper)); on the local [rows](ViscoelasticContact::rows) where ranks share them out.
-    ///
-    /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its
-    /// result.
-    pub fn displacement(&self) -> &[f64] {
-        self.view.displacement(&self.scene, &self.computation.state)
-    }
-
-    /// Writes the gap between the deformed bodies, Eq. 1 of the [paper](crate::paper), into `out` \[m\]: zero in
-    /// contact to within the tolerance, +∞ where the indenter has no surface.
-    ///
-    /// # Errors
-    /// If `out` does not hold one value per cell, or there is no memory for the displacement on the whole grid, where
-    /// only a region is computed.
-    pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
-        let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.computation.state);
-        let State { region, indenter, current, history, .. } = state;
-        exact_length("gap", out.len(), region.shown_len())?;
-        let initial = indenter.gap();
-        let gap = |k: usize, u: f64, center: [f64; 2]| {
-            let RigidMotion { approach, tilt } = current.motions[initial.owner(k)];
-            let lowered = RigidMotion { approach: approach - initial.datum, tilt };
-            initial.above[k] + u - lowered.at(center)
-        };
-        if region.is_shared() {
-            let own = history.displacement().iter().enumerate().map(|(k, &u)| gap(k, u, region.center(k)));
-            region.show(&own.collect::<Vec<_>>(), out);
-            return Ok(());
-        }
-        if !region.is_shown() && self.view.displacement.get().is_none() {
-            let whole = Region::whole(grid, region.folded());
-            let [kernel, ..] = kernel.bytes(&whole.rows(), whole.folded());
-            let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
-            memory::check("the displacement on the whole grid", kernel + fields)?;
-        }
-        let n2 = grid.cells()[1];
-        for (k, (h, &u)) in out.iter_mut().zip(self.displacement()).enumerate() {
-            *h = gap(k, u, grid.center(k / n2, k % n2));
-        }
-        Ok(())
-    }
-
-    /// Whether the bodies are apart: no cell is in contact, and where surfaces attract each other
-    /// ([`Builder::attraction`](crate::contact::Builder::attraction)) 99 % of the work of separation is done at the narrowest gap.
-    /// Surfaces without a cell in contact still pull.
-    pub fn is_separated(&self) -> bool {
-        let far = |law: &Arc<dyn Attraction>| {
-            let narrowest = self.gap().map(|gap| gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0));
-            narrowest.is_ok_and(|gap| law.energy(gap) <= UNDONE * law.work())
-        };
-        self.contact_cells() == 0 && self.scene.attraction.as_ref().is_none_or(far)
-    }
-
-    /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach at first
-    /// touch.
-    pub fn approach(&self) -> f64 {
-        self.computation.state.current.motions[0].approach
-    }
-
-    /// Tilt (α1, α2) of the (first) body \[rad\]: it lowers the surface by ω + α1 x1 + α2 x2.
-    pub fn tilt(&self) -> [f64; 2] {
-        self.computation.state.current.motions[0].tilt
-    }
-
-    /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls harder than the wall presses.
+    /// [`Fields::force`](crate::fields::Fields::force), the normal force on all bodies \[N\].
     pub fn force(&self) -> f64 {
-        let State { region, current, .. } = &self.computation.state;
-        current.sum * region.cell_area()
+        self.fields().force()
     }
 
-    /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\], Eq. 5 of the [paper](crate::paper).
-    pub fn moment(&self) -> [f64; 2] {
-        self.sums(|_| true).1
+    /// [`Fields::approach`](crate::fields::Fields::approach) of the (first) body \[m\].
+    pub fn approach(&self) -> f64 {
+        self.fields().approach()
     }
 
-    /// Number of cells in contact (p > 0).
+    /// [`Fields::tilt`](crate::fields::Fields::tilt) of the (first) body \[rad\].
+    pub fn tilt(&self) -> [f64; 2] {
+        self.fields().tilt()
+    }
+
+    /// [`Fields::contact_area`](crate::fields::Fields::contact_area) \[m²\].
+    pub fn contact_area(&self) -> f64 {
+        self.fields().contact_area()
+    }
+
+    /// [`Fields::contact_cells`](crate::fields::Fields::contact_cells), the number of cells in contact.
     pub fn contact_cells(&self) -> usize {
-        self.computation.state.current.contact_cells
-    }
-
-    /// The smallest rectangle of cells of the whole grid that holds the contact; `None` without contact.
-    pub(crate) fn extent_of_contact(&self) -> Option<Extent> {
-        let State { region, current, .. } = &self.computation.state;
-        region.reach(&current.solution.pressure)
-    }
-
-    /// Number of rigid bodies.
-    pub fn bodies(&self) -> usize {
-        self.scene.bodies
-    }
-
-    /// The state of the rigid body of this index, in the order of the builder; `None` if there are fewer bodies.
-    pub fn body(&self, body: usize) -> Option<BodyState> {
-        let State { indenter, current, .. } = &self.computation.state;
-        let RigidMotion { approach, tilt } = *current.motions.get(body)?;
-        let (force, moment, contact_cells) = self.sums(|k| indenter.gap().owner(k) == body);
-        Some(BodyState { approach, tilt, force, moment, contact_cells })
-    }
-
-    /// Force, moments and number of cells in contact over the cells for which `counts` holds. Where surfaces attract each other, there is one
-    /// body, and all its cells pull.
-    fn sums(&self, counts: impl Fn(usize) -> bool + Sync) -> (f64, [f64; 2], usize) {
-        let State { region, current, .. } = &self.computation.state;
-        let (grid, pressure, [_, m2]) = (region.grid(), &current.solution.pressure, region.cells());
-        let n2 = self.scene.grid.cells()[1];
-        let part = |band: Range<usize>| {
-            let mut sums = [0.0; 4];
-            for i in band.start / m2..band.end / m2 {
-                let (mut force, mut moment) = (0.0, 0.0);
-                let [row, first] = region.cell(i * m2);
-                let counted = |j: &usize| pressure[i * m2 + j] > 0.0 && counts(row * n2 + first + j);
-                for j in (0..m2).filter(counted) {
-                    let p = pressure[i * m2 + j];
-                    (force, moment, sums[3]) = (force + p, moment + p * grid.coordinate(1, j), sums[3] + 1.0);
-                }
-                let pulling = current.solution.attraction.get(i * m2..(i + 1) * m2).unwrap_or_default();
-                for (j, s) in pulling.iter().enumerate() {
-                    (force, moment) = (force - s, moment - s * grid.coordinate(1, j));
-                }
-                sums = [sums[0] + force, sums[1] + force * grid.coordinate(0, i), sums[2] + moment, sums[3]];
-            }
-            sums
-        };
-        let [force, moment1, moment2, cells] = region.rows().merge(part, sum::add);
-        let area = region.cell_area();
-        // the moments of mirror images cancel
-        let moment = |axis: usize, sum: f64| if region.folded()[axis] { 0.0 } else { sum * area };
-        (force * area, [moment(0, moment1), moment(1, moment2)], region.images() * cells as usize)
-    }
-
-    /// The attraction between the surfaces ([`Builder::attraction`](crate::contact::Builder::attraction)).
-    pub fn attraction(&self) -> Option<&dyn Attraction> {
-        self.scene.attraction.as_deref()
-    }
-
-    /// Writes the net traction between the bodies into `out` \[Pa\], one value per cell: the [pressure](ViscoelasticContact::pressure) of the
-    /// wall less the attraction, < 0 where the bodies pull at each other. It carries the force, and displaces the bodies.
-    ///
-    /// # Errors
-    /// If `out` does not hold one value per cell.
-    pub fn traction_into(&self, out: &mut [f64]) -> Result<()> {
-        let State { region, current, .. } = &self.computation.state;
-        exact_length("traction", out.len(), region.shown_len())?;
-        if current.solution.attraction.is_empty() {
-            out.copy_from_slice(self.pressure());
-        } else {
-            region.show(&current.solution.attraction, out);
-            out.iter_mut().zip(self.pressure()).for_each(|(traction, pressure)| *traction = pressure - *traction);
-        }
-        Ok(())
+        self.fields().contact_cells()
     }
 
     /// How the passes of the step tried last went; `None` without attraction, and before the first step.
     pub fn passes(&self) -> Option<PassReport> {
-        self.computation.trial.passes.as_ref().map(|passes| passes.report)
+        self.computation.attracted.as_ref().map(|passes| passes.report)
     }
 
     /// Refuses what this contact does not cover.
     pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
-        case.unless(|special| match special {
-            Special::Attraction => self.scene.attraction.is_some(),
-            Special::SteadyMotion => self.scene.steady,
-            Special::Ranks => self.computation.state.region.is_shared(),
-            Special::FixedToBodies => self.settings().frame == Frame::Bodies,
-            Special::FixedToIndenter => self.settings().frame == Frame::Indenter,
-        })
+        self.fields().covers(case)
     }
 }
 
 debug_by! {
     self: ViscoelasticContact =>
-    grid: self.scene.grid,
-    settings: self.scene.settings,
+    grid: self.scene.ground.grid,
+    settings: self.scene.ground.settings,
     time: self.computation.state.clock.time,
-    loads: self.computation.state.loads,
-    motions: self.computation.state.current.motions,
-    contact_cells: self.computation.state.current.contact_cells
+    loads: self.computation.state.held.loads,
+    motions: self.computation.state.held.current.motions,
+    contact_cells: self.computation.state.held.current.contact_cells
 }

@@ -133,10 +133,15 @@ impl EnergyBalance {
     pub fn new(contact: &ViscoelasticContact) -> Result<EnergyBalance> {
         contact.covers(coverage::ENERGIES)?;
         let cells = contact.grid().len();
-        count_within("rigid bodies of an energy balance", contact.bodies(), contact.bodies() == 1, "1")?;
+        count_within(
+            "rigid bodies of an energy balance",
+            contact.fields().bodies(),
+            contact.fields().bodies() == 1,
+            "1",
+        )?;
         let before = "0, before any step";
         within("time at which an energy balance begins", contact.time(), contact.time() == 0.0, before)?;
-        let moved = crate::sum::greatest(contact.displacement());
+        let moved = crate::sum::greatest(contact.fields().displacement());
         within("displacement where an energy balance begins", moved, moved == 0.0, before)?;
         let creep = contact.material().spectrum_for("an energy balance")?;
         Ok(EnergyBalance {
@@ -147,7 +152,7 @@ impl EnergyBalance {
             moved: contact.load_and_motion()[1],
             traction: vec![0.0; cells],
             gap: vec![0.0; cells],
-            far_apart: contact.attraction().is_some(),
+            far_apart: contact.fields().attraction().is_some(),
             last: None,
         })
     }
@@ -160,7 +165,7 @@ impl EnergyBalance {
         let jumped = report.warnings.contains(Warnings::JUMP);
         let (last, halvings) = (self.last.take(), if jumped { HALVINGS } else { MOST_HALVINGS });
         self.take_in((last.as_deref(), contact), report.dt, jumped, halvings)?;
-        self.last = contact.attraction().is_some().then(|| Box::new(contact.clone()));
+        self.last = contact.fields().attraction().is_some().then(|| Box::new(contact.clone()));
         Ok(self.energies)
     }
 
@@ -196,10 +201,10 @@ impl EnergyBalance {
 
     fn take_in_whole(&mut self, contact: &ViscoelasticContact, dt: f64, jumped: bool) -> Result<Energies> {
         let area = contact.grid().cell_area();
-        contact.traction_into(&mut self.traction)?;
+        contact.fields().traction_into(&mut self.traction)?;
         let reduced = contact.reduced_time() - self.reduced_time;
         let [stored, dissipated] =
-            self.branches.step(reduced, contact.displacement(), &self.traction).map(|sum| area * sum);
+            self.branches.step(reduced, contact.fields().displacement(), &self.traction).map(|sum| area * sum);
         let stored = stored + self.attracted(contact)?;
         let lost = contact.passes().filter(|_| jumped).map_or(0.0, |passes| passes.released);
         let [pushed, moved] = contact.load_and_motion();
@@ -229,7 +234,7 @@ impl EnergyBalance {
 
     /// Whether the work of the last step is not known from the forces at its ends.
     fn is_inexact(&self, contact: &ViscoelasticContact) -> bool {
-        let Some((attraction, passes)) = contact.attraction().zip(contact.passes()) else { return false };
+        let Some((attraction, passes)) = contact.fields().attraction().zip(contact.passes()) else { return false };
         let of_cells = CELLS * contact.grid().cell_area() * attraction.energy(0.0);
         passes.unaccounted.abs() > INEXACT * self.energies.stored.abs().max(of_cells)
     }
@@ -241,7 +246,7 @@ impl EnergyBalance {
         halvings: u32,
     ) -> Result<bool> {
         let (end, load) = (&contact.computation.state, contact.load());
-        let start = before.map_or(&end.previous, |before| &before.computation.state.current);
+        let start = before.map_or(&end.previous, |before| &before.computation.state.held.current);
         let mut part = match before {
             Some(before) => before.clone(),
             None => contact.within_step(end.start.clock.time)?,
@@ -252,7 +257,7 @@ impl EnergyBalance {
             part.take_part(time, &[load], tolerance, end.start.interpolant)?;
             self.take_in_half(&part, half, halvings)?;
         }
-        Ok(!part.is_elsewhere([start, &end.current]))
+        Ok(!part.is_elsewhere([start, &end.held.current]))
     }
 
     fn take_in_half(&mut self, part: &ViscoelasticContact, dt: f64, halvings: u32) -> Result<Energies> {
@@ -279,8 +284,8 @@ impl EnergyBalance {
 
     /// Energy of the attraction \[J\], 0 for bodies far apart.
     fn attracted(&mut self, contact: &ViscoelasticContact) -> Result<f64> {
-        let Some(attraction) = contact.attraction() else { return Ok(0.0) };
-        contact.gap_into(&mut self.gap)?;
+        let Some(attraction) = contact.fields().attraction() else { return Ok(0.0) };
+        contact.fields().gap_into(&mut self.gap)?;
         let energies = self.gap.iter().filter(|gap| gap.is_finite()).map(|gap| attraction.energy(gap.max(0.0)));
         Ok(-contact.grid().cell_area() * energies.sum::<f64>())
     }

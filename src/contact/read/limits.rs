@@ -1,18 +1,11 @@
 //! Limits of the model and of a material, beyond which a step warns.
 
-use crate::contact::Warnings;
+use crate::equilibrium::{Warnings, modulus_of_no_solid};
 use crate::error::{Error, Result, StepError};
 use crate::rheology::{FitWarning, Material, is_known};
 
-/// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
-pub(crate) const STEEP: f64 = 0.5;
-/// Bodies that are pressed into a layer by more of its thickness strain it by more than is small.
-pub(crate) const DEEP: f64 = 0.2;
 /// A step of a greater error in time is too long.
 pub(crate) const LONG_STEP: f64 = 0.05;
-/// Contact moduli E* outside this range are in other units than Pa \[Pa\].
-const SOLID: std::ops::RangeInclusive<f64> = 10.0..=1e13;
-
 /// What a material is known for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
@@ -25,8 +18,7 @@ pub(crate) struct Limits {
 
 impl Limits {
     pub(crate) fn of(material: &Material) -> Limits {
-        // a body without elastic response has no modulus at once
-        let modulus = Some(1.0 / material.contact_compliance(0.0)).filter(|e| e.is_finite() && !SOLID.contains(e));
+        let modulus = modulus_of_no_solid(material.contact_compliance(0.0));
         // of a table that begins late only shorter steps are uncertain
         let is_doubt = |warning| !matches!(warning, FitWarning::BeginsLate { .. });
         let is_uncertain = material.fit_reports().any(|report| report.warning().is_some_and(is_doubt));

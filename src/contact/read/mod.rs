@@ -3,9 +3,6 @@
 pub(in crate::contact) mod accessors;
 pub(in crate::contact) mod energies;
 pub(crate) mod limits;
-pub(in crate::contact) mod observations;
 pub(in crate::contact) mod report;
 #[cfg(feature = "stress")]
 pub(in crate::contact) mod stress;
-pub(in crate::contact) mod view;
-pub(in crate::contact) mod warnings;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::contact::Warnings;
+use crate::equilibrium::{Figures, Warnings};
 use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 
@@ -46,69 +46,6 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
-}
-
-/// The numbers behind [`Warnings`], each `None` where the scene is far from its limit; `Display` of a [`StepReport`] prints them with the warnings.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Figures {
-    /// Greatest slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
-    pub max_slope: Option<f64>,
-    /// Greatest displacement in contact over the thickness of a layer, of every contact on a [`Layer`](crate::Layer)
-    /// ([`Warnings::DEEP`]). On a half-space it is the part of the displacement that the layer takes.
-    pub compression: Option<f64>,
-    /// Cells across the contact, if fewer than eight ([`Warnings::FEW_CELLS`]): 4/π times the mean length of its rows or columns,
-    /// whichever are shorter, which is the diameter of a disc and the average one of many patches of contact; at most the extent of
-    /// all contact. Of several bodies, that of the body with the fewest.
-    pub cells_across: Option<f64>,
-    /// Cells in the shortest wave of the shapes, if fewer than four ([`Warnings::SHORT_WAVES`]).
-    pub cells_in_wave: Option<f64>,
-    /// Periods of a shape in the period of the bodies, if no whole number ([`Warnings::OTHER_PERIOD`]).
-    pub periods: Option<f64>,
-    /// Cells in the zone in which an attraction acts, if fewer than four ([`Warnings::COARSE_ZONE`]).
-    pub cells_in_zone: Option<f64>,
-    /// The force that the attraction beyond the edge of the grid would add, over the force on it, if the part matters ([`Warnings::BEYOND_EDGE`]).
-    pub beyond_edge: Option<f64>,
-    /// The contact modulus at once \[Pa\], if no solid has it ([`Warnings::MODULUS`]).
-    pub modulus: Option<f64>,
-    /// The approach at which the upright bodies touch \[m\], at the end of a run that never brought them into contact
-    /// ([`Warnings::NO_CONTACT`]).
-    pub touch: Option<f64>,
-    /// Part of the elastic energy of a steady motion, or of its part that can be lost, in waves
-    /// that pass at frequencies at which the material was not measured, if more than a tenth
-    /// ([`Warnings::FREQUENCIES`]).
-    pub unmeasured: Option<f64>,
-}
-
-impl Figures {
-    /// What the number of a warning is, and the number; of a step that is too long its relative
-    /// error.
-    fn of(&self, warning: Warnings, time_error: Option<f64>) -> Option<(&'static str, f64)> {
-        let (name, figure) = match warning {
-            Warnings::STEEP => ("greatest slope", self.max_slope),
-            Warnings::DEEP => ("depth over thickness", self.compression),
-            Warnings::FEW_CELLS => ("cells across:", self.cells_across),
-            Warnings::SHORT_WAVES => ("cells in a wave:", self.cells_in_wave),
-            Warnings::OTHER_PERIOD => ("periods:", self.periods),
-            Warnings::COARSE_ZONE => ("cells in the zone:", self.cells_in_zone),
-            Warnings::BEYOND_EDGE => ("part of the force:", self.beyond_edge),
-            Warnings::MODULUS => ("E* in Pa:", self.modulus),
-            Warnings::NO_CONTACT => ("they touch at an approach in m of", self.touch),
-            Warnings::FREQUENCIES => ("part of the energy:", self.unmeasured),
-            Warnings::LONG_STEP => ("relative error", time_error),
-            _ => ("", None),
-        };
-        figure.map(|figure| (name, figure))
-    }
-
-    /// What each warning says, with its number.
-    pub(crate) fn messages(self, warnings: Warnings, time_error: Option<f64>) -> impl Iterator<Item = String> {
-        warnings.iter().map(move |warning| match self.of(warning, time_error) {
-            Some((name, figure)) => format!("{warning} ({name} {})", rounded(figure, 3)),
-            None => warning.to_string(),
-        })
-    }
 }
 
 /// The quantity of which an error is estimated: the one that the load leaves free.
@@ -220,23 +157,6 @@ impl fmt::Display for StepReport {
     }
 }
 
-/// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct BodyState {
-    /// Approach ω at the origin of the grid \[m\]: the body lowers the surface by ω + α1 x1 + α2 x2.
-    pub approach: f64,
-    /// Tilt (α1, α2) \[rad\].
-    pub tilt: [f64; 2],
-    /// Normal force \[N\].
-    pub force: f64,
-    /// Moments of the pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
-    pub moment: [f64; 2],
-    /// Cells in contact.
-    pub contact_cells: usize,
-}
-
 #[cfg(test)]
 mod tests {
     /// Results, statistics and specifications come back from a file; values out of range do not.
@@ -261,9 +181,9 @@ mod tests {
         let report = contact.step(0.1, Load::force(0.1)).unwrap();
         assert!(report.warnings.contains(Warnings::FEW_CELLS));
         there_and_back(&report);
-        there_and_back(&contact.body(0).unwrap());
-        there_and_back(&contact.pressure_distribution(7).unwrap());
-        there_and_back(&contact.patches().unwrap().all);
+        there_and_back(&contact.fields().body(0).unwrap());
+        there_and_back(&contact.fields().pressure_distribution(7).unwrap());
+        there_and_back(&contact.fields().patches().unwrap().all);
         there_and_back(rubber.report());
         there_and_back(&Accuracy::FINE);
         there_and_back(&Grid::new([3, 7], [1.0e-3, 0.3]).unwrap());

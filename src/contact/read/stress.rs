@@ -1,9 +1,10 @@
 //! The stress in bodies whose Poisson's ratio changes as they creep.
 
-use crate::error::{Error, MaterialError, Result, coverage, within};
+use crate::error::{Error, Result, coverage, within};
+use crate::fields::Fields;
 use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
-use crate::{Grid, ViscoelasticContact, memory};
+use crate::{Grid, memory};
 
 /// History of the stress below the surface during a run, in a body with an elastic bulk.
 ///
@@ -34,7 +35,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// }
 /// let stress = history.stress(&contact)?;
 /// let greatest = stress.greatest(&[0.1e-3, 0.2e-3, 0.3e-3, 0.4e-3], Stress::von_mises)?;
-/// assert!(greatest.value > 0.5 * contact.max_pressure());
+/// assert!(greatest.value > 0.5 * contact.fields().max_pressure());
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -56,21 +57,22 @@ impl StressHistory {
     /// # Errors
     /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)), so that the bodies move under
     /// it, the stress in the body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
-    pub fn new(contact: &ViscoelasticContact) -> Result<StressHistory> {
-        StressHistory::of_body(contact, 0)
+    pub fn new<'a>(contact: impl Into<Fields<'a>>) -> Result<StressHistory> {
+        StressHistory::of_body(contact.into(), 0)
     }
 
     /// Like [`StressHistory::new`], for the body of [`Builder::counter_body`](crate::contact::Builder::counter_body).
     ///
     /// # Errors
     /// As [`StressHistory::new`], and if there is no such body.
-    pub fn of_counter_body(contact: &ViscoelasticContact) -> Result<StressHistory> {
-        StressHistory::of_body(contact, 1)
+    pub fn of_counter_body<'a>(contact: impl Into<Fields<'a>>) -> Result<StressHistory> {
+        StressHistory::of_body(contact.into(), 1)
     }
 
-    fn of_body(contact: &ViscoelasticContact, body: usize) -> Result<StressHistory> {
+    fn of_body(contact: Fields<'_>, body: usize) -> Result<StressHistory> {
         contact.covers(coverage::STRESS_HISTORY)?;
-        let law = contact.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
+        let material = contact.about.material.ok_or(Error::Missing { part: "material" })?;
+        let law = material.compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
         SubsurfaceStress::body_of(contact.kernel(), !law.terms.is_empty())?;
         let peak = contact.max_pressure();
         within("pressure where the history of the stress begins", peak, peak == 0.0, "0: begin before the first load")?;
@@ -86,7 +88,8 @@ impl StressHistory {
     ///
     /// # Errors
     /// If the contact has another grid, or its time is earlier than in the last call.
-    pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<()> {
+    pub fn record<'a>(&mut self, contact: impl Into<Fields<'a>>) -> Result<()> {
+        let contact = contact.into();
         self.check_grid(contact)?;
         let time = contact.reduced_time();
         within("time of the contact", time, time >= self.time, "no earlier than recorded")?;
@@ -107,7 +110,8 @@ impl StressHistory {
     ///
     /// # Errors
     /// As [`SubsurfaceStress::with_changing_poisson`], and if the contact has taken another step since.
-    pub fn stress(&self, contact: &ViscoelasticContact) -> Result<SubsurfaceStress> {
+    pub fn stress<'a>(&self, contact: impl Into<Fields<'a>>) -> Result<SubsurfaceStress> {
+        let contact = contact.into();
         self.check_grid(contact)?;
         let time = contact.reduced_time();
         within("time of the contact", time, time == self.time, "the time of the last recorded step")?;
@@ -131,40 +135,10 @@ impl StressHistory {
         reduced
     }
 
-    fn check_grid(&self, contact: &ViscoelasticContact) -> Result<()> {
+    fn check_grid(&self, contact: Fields<'_>) -> Result<()> {
         contact.covers(coverage::STRESS)?;
         let remedy = "it follows contacts on the grid that it was made for: make one of this contact";
         let other = Error::OtherContact { what: "the history of the stress", remedy };
         if *contact.grid() == self.grid { Ok(()) } else { Err(other) }
-    }
-}
-
-impl ViscoelasticContact {
-    /// The stress below the surface of the body of [`Builder::material`](crate::contact::Builder::material) under the
-    /// present pressure.
-    ///
-    /// # Errors
-    /// If Poisson's ratio changes as the body creeps
-    /// ([`MaterialError::ChangingPoisson`]): follow the run with a [`StressHistory`]. As [`SubsurfaceStress::new`].
-    pub fn stress(&self) -> Result<SubsurfaceStress> {
-        self.stress_of(0)
-    }
-
-    /// The stress below the surface of the body of [`Builder::counter_body`](crate::contact::Builder::counter_body); x3
-    /// is the depth below its surface.
-    ///
-    /// # Errors
-    /// If there is no such body, and as [`ViscoelasticContact::stress`].
-    pub fn stress_in_counter_body(&self) -> Result<SubsurfaceStress> {
-        self.stress_of(1)
-    }
-
-    fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
-        self.covers(coverage::STRESS)?;
-        let law = self.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
-        if !law.terms.is_empty() {
-            return Err(MaterialError::ChangingPoisson { body }.into());
-        }
-        SubsurfaceStress::new(self.kernel(), self.pressure(), 0.5 * (1.0 - law.last))
     }
 }

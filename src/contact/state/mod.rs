@@ -1,51 +1,35 @@
 //! What a step changes.
 
-pub(crate) mod extrapolation;
 pub(crate) mod snapshot;
 
 use std::sync::Arc;
 
-use crate::contact::state::extrapolation::Extrapolation;
-use crate::contact::{Indenter, Region};
-use crate::hereditary::{Field, History, Interpolant, Interval, Role};
+use crate::equilibrium::held::net_sum;
+use crate::equilibrium::{Equilibrium, Held, Indenter, Region};
+use crate::hereditary::{Field, History, Interpolant, Interval};
 use crate::load::Load;
-use crate::parallel::Rows;
-use crate::solver::{RigidMotion, Solution};
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
 /// tried on a larger region changes a copy.
 #[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
+    pub(crate) held: Held,
     pub(crate) clock: Clock,
-    pub(crate) loads: Vec<Load>,
-    #[cfg_attr(feature = "checkpoint", serde(with = "crate::contact::indenter::saved"))]
-    pub(crate) indenter: Arc<Indenter>,
     /// Whether the indenter has been replaced since the last step.
     pub(crate) indenter_is_new: bool,
-    /// The part of the grid that is computed: every field lives there, except for the gap of the indenter.
-    pub(crate) region: Region,
-    /// Whether the region was chosen for a contact, rather than for bodies apart.
-    pub(crate) region_is_for_contact: bool,
     /// Displacement and past of the bodies.
     pub(crate) history: History,
     /// Whether the surfaces attract each other.
     pub(crate) attracts: bool,
-    pub(crate) current: Equilibrium,
     /// At the start of the last step.
     pub(crate) previous: Equilibrium,
     pub(crate) start: StepStart,
-    pub(crate) extrapolation: Extrapolation,
     /// The greatest means of displacement and v over the contact so far: errors of smaller ones are relative to parts of these.
     pub(crate) greatest: [f64; 2],
 }
 
-clone_by_fields! {
-    State {
-        clock, loads, indenter, indenter_is_new, region, region_is_for_contact, history, attracts,
-        current, previous, start, extrapolation, greatest,
-    }
-}
+clone_by_fields! { State { held, clock, indenter_is_new, history, attracts, previous, start, greatest } }
 
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -77,22 +61,6 @@ impl Clock {
     }
 }
 
-/// Pressure and motions in equilibrium with the loads.
-#[derive(Debug)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Equilibrium {
-    pub(crate) solution: Solution,
-    /// Motion of each body, prescribed and free parts together.
-    pub(crate) motions: Vec<RigidMotion>,
-    /// Cells in contact on the whole grid.
-    pub(crate) contact_cells: usize,
-    /// Σ p over the cells that are computed, of all ranks, less Σ s where surfaces attract each other.
-    #[cfg_attr(feature = "checkpoint", serde(skip))]
-    pub(crate) sum: f64,
-}
-
-clone_by_fields! { Equilibrium { solution, motions, contact_cells, sum } }
-
 /// The start of the last step, besides `previous` and the fields that the history keeps.
 #[derive(Debug, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -113,22 +81,15 @@ clone_by_fields! { StepStart { clock, loads, interpolant, indenter_was_new, repl
 impl State {
     /// Bodies without load, where they just touch, by the time rule of a history; without values.
     pub(crate) fn layout(indenter: Arc<Indenter>, region: Region, history: &History, attracts: bool) -> State {
-        let motions = indenter.first_touch();
-        let (loads, solution) = (vec![Load::force(0.0); motions.len()], Solution::zero(0, motions.len()));
-        let current = Equilibrium { solution, motions, contact_cells: 0, sum: 0.0 };
+        let held = Held::layout(indenter, region);
         State {
             clock: Clock::default(),
-            start: StepStart { loads: loads.clone(), ..StepStart::default() },
-            loads,
-            indenter,
+            start: StepStart { loads: held.loads.clone(), ..StepStart::default() },
             indenter_is_new: false,
-            history: history.layout(!region.covers()),
-            region,
-            region_is_for_contact: false,
+            history: history.layout(!held.region.covers()),
             attracts,
-            previous: current.clone(),
-            current,
-            extrapolation: Extrapolation::default(),
+            previous: held.current.clone(),
+            held,
             greatest: [0.0; 2],
         }
     }
@@ -149,25 +110,10 @@ impl State {
 
     /// A copy on `region`; `map` gives its fields, one for each field here. Its sums are to be found anew.
     pub(crate) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
-        let [current, previous] = [&self.current, &self.previous].map(|of| {
-            let Solution { pressure, potential, attraction, motions, .. } = &of.solution;
-            let (kept, lasting) = (usize::from(self.attracts), Role::Lasting { source: None });
-            let solution = Solution {
-                pressure: map(Field::single(pressure, Role::Lasting { source: None })),
-                potential: map(Field::single(potential, Role::Lasting { source: Some(pressure) })),
-                attraction: map(Field { values: attraction, per_cell: kept, role: lasting }),
-                motions: motions.clone(),
-                ..of.solution
-            };
-            Equilibrium { solution, motions: of.motions.clone(), ..*of }
-        });
         State {
-            loads: self.loads.clone(),
-            indenter: Arc::clone(&self.indenter),
-            region: region.clone(),
+            held: self.held.map(region, self.attracts, map),
+            previous: self.previous.map(self.attracts, map),
             history: self.history.map(region.cells(), !region.covers(), map),
-            current,
-            previous,
             start: self.start.clone(),
             ..*self
         }
@@ -175,7 +121,7 @@ impl State {
 
     /// Visits all fields.
     pub(crate) fn each(&self, visit: &mut impl FnMut(Field<'_>)) {
-        self.map(&self.region, &mut |field| {
+        self.map(&self.held.region, &mut |field| {
             visit(field);
             Vec::new()
         });
@@ -183,8 +129,8 @@ impl State {
 
     /// Finds the sums that neither transfer nor file has.
     pub(crate) fn sum_up(&mut self) {
-        let rows = self.region.rows();
-        for equilibrium in [&mut self.current, &mut self.previous] {
+        let rows = self.held.region.rows();
+        for equilibrium in [&mut self.held.current, &mut self.previous] {
             equilibrium.sum = net_sum(&rows, &equilibrium.solution);
         }
     }
@@ -193,30 +139,24 @@ impl State {
     pub(crate) fn keep_start(&mut self, interpolant: Interpolant) {
         let StepStart { clock, loads, interpolant: kept, indenter_was_new, replaced } = &mut self.start;
         (*clock, *kept, *indenter_was_new, *replaced) = (self.clock, interpolant, self.indenter_is_new, None);
-        loads.copy_from_slice(&self.loads);
+        loads.copy_from_slice(&self.held.loads);
     }
 
     /// Returns to the start of the last step, which the history must still keep.
     pub(crate) fn roll_back(&mut self) {
         self.history.roll_back(!self.is_undisturbed());
-        self.current.clone_from(&self.previous);
+        self.held.current.clone_from(&self.previous);
         self.clock = self.start.clock;
-        self.loads.copy_from_slice(&self.start.loads);
+        self.held.loads.copy_from_slice(&self.start.loads);
         if let Some(replaced) = self.start.replaced.take() {
-            self.indenter = replaced;
+            self.held.indenter = replaced;
         }
         self.indenter_is_new = self.start.indenter_was_new;
-        self.extrapolation.interrupt();
+        self.held.extrapolation.interrupt();
     }
 
     /// Whether no pressure has ever acted.
     pub(crate) fn is_undisturbed(&self) -> bool {
-        self.clock.age() == 0.0 && self.current.contact_cells == 0
+        self.clock.age() == 0.0 && self.held.current.contact_cells == 0
     }
-}
-
-/// Σ p, less Σ s where surfaces attract each other.
-pub(crate) fn net_sum(rows: &Rows, solution: &Solution) -> f64 {
-    let sum = rows.sum(&solution.pressure);
-    if solution.attraction.is_empty() { sum } else { sum - rows.sum(&solution.attraction) }
 }

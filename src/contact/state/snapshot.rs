@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::contact::step::Pressed;
 use crate::contact::{Scene, State, ViscoelasticContact};
+use crate::equilibrium::pressed::Pressed;
 use crate::error::{Error, Result, within};
 use crate::load::{Load, Tilt, load_point};
 
@@ -84,7 +84,7 @@ impl ViscoelasticContact {
     /// Goes to a state of this contact.
     pub(crate) fn go_to(&mut self, state: &State) {
         self.computation.restore(&self.scene, state);
-        self.view.refresh(&self.computation.state);
+        self.view.refresh(&self.computation.state.held);
     }
 }
 
@@ -122,7 +122,7 @@ impl ViscoelasticContact {
     pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
         self.advanced_within_step(time, self.settings().tolerance, None, |start| {
             let share = (time - start.time()) / (self.time() - start.time());
-            let ends = self.computation.state.loads.iter().enumerate();
+            let ends = self.computation.state.held.loads.iter().enumerate();
             Ok(ends.map(|(body, end)| start.load_like(body, end).towards(end, share)).collect())
         })
         .map(|(contact, _)| contact)
@@ -156,7 +156,7 @@ impl ViscoelasticContact {
             Some(before) => contact.computation.restore(&self.scene, before),
             None => contact.computation.state.roll_back(),
         }
-        contact.view.refresh(&contact.computation.state);
+        contact.view.refresh(&contact.computation.state.held);
         let mut pressed = Pressed::default();
         if time > from {
             let loads = loads(&contact)?;
@@ -167,8 +167,8 @@ impl ViscoelasticContact {
 
     /// The load of a body at present, as one of the kind of `other`.
     pub(in crate::contact) fn load_like(&self, body: usize, other: &Load) -> Load {
-        let load = self.computation.state.loads[body];
-        let Some(now) = self.body(body).filter(|_| !load.is_like(other)) else { return load };
+        let load = self.computation.state.held.loads[body];
+        let Some(now) = self.fields().body(body).filter(|_| !load.is_like(other)) else { return load };
         let tilt = [0, 1].map(|axis| match other.tilt()[axis] {
             Tilt::Fixed(_) => Tilt::Fixed(now.tilt[axis]),
             free => free,

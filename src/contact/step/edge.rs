@@ -1,7 +1,8 @@
 //! The attraction beyond the edge of the grid, which is not computed.
 
 use crate::adhesion::Attraction;
-use crate::contact::{Region, Scene};
+use crate::contact::Scene;
+use crate::equilibrium::Region;
 use crate::solver::Solution;
 
 /// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this part, or the tolerance of the solver, on.
@@ -17,19 +18,19 @@ const PART: usize = 16;
 /// a surface that stays as near ends somewhere.
 pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Region, solution: &Solution) -> f64 {
     let (s, mut beyond) = (&solution.attraction, 0.0);
-    let (cells, rows, periodic) = (region.cells(), region.rows(), scene.kernel.periodic_axes());
+    let (cells, rows, periodic) = (region.cells(), region.rows(), scene.ground.kernel.periodic_axes());
     for axis in (0..2).filter(|&axis| !periodic[axis]) {
         let line = |at: usize| {
             let on_line = |k: usize| [k / cells[1], k % cells[1]][axis] == at;
             rows.sum_terms(|k| on_line(k).then(|| [s[k]]))[0]
         };
-        let (last, inwards) = (cells[axis] - 1, (scene.grid.cells()[axis] / PART).max(1).min(cells[axis] - 1));
+        let (last, inwards) = (cells[axis] - 1, (scene.ground.grid.cells()[axis] / PART).max(1).min(cells[axis] - 1));
         let high = (last, last - inwards);
         // the cells of a folded axis begin at its middle
         let low = (!region.folded()[axis]).then_some((0, inwards));
         for (edge, inner) in [high].into_iter().chain(low) {
             let (at_edge, inside) = (line(edge), line(inner));
-            let longest = 0.5 * scene.grid.cells()[axis] as f64;
+            let longest = 0.5 * scene.ground.grid.cells()[axis] as f64;
             let rate = (inside / at_edge).ln() / inwards as f64;
             let length = if rate * longest > 1.0 { 1.0 / rate } else { longest };
             beyond += if at_edge > 0.0 { at_edge * length } else { 0.0 };
@@ -38,11 +39,11 @@ pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Re
     let Solution { pressure, attraction, .. } = solution;
     let tractions = rows.sum_of_pairs(pressure, attraction, |z, s| (z - s).abs());
     let area = region.cell_area();
-    let [length1, length2] = scene.grid.lengths();
+    let [length1, length2] = scene.ground.grid.lengths();
     area * beyond / (area * tractions).max(law.energy(0.0) * length1.min(length2))
 }
 
 /// From what part on the attraction beyond the edge is warned of.
 pub(super) fn least_beyond(scene: &Scene) -> f64 {
-    LEAST.max(scene.settings.tolerance)
+    LEAST.max(scene.ground.settings.tolerance)
 }

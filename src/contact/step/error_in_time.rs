@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use crate::contact::step::spring::share_of_force;
-use crate::contact::window::placement::motion_tried;
 use crate::contact::{Computation, Scene, State, Step};
+use crate::equilibrium::spring::share_of_force;
 use crate::hereditary::{ErrorMeasure, StepContext, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
@@ -15,38 +14,40 @@ impl Computation {
     /// Whether a free body was pressed by nothing before the step tried.
     fn was_at_rest(&self, body: usize) -> bool {
         let Computation { state, trial, .. } = self;
-        let released = matches!(state.loads[body], Load::Force { normal: 0.0, .. }) || state.current.contact_cells == 0;
+        let released =
+            matches!(state.held.loads[body], Load::Force { normal: 0.0, .. }) || state.held.current.contact_cells == 0;
         released && trial.free[body].translation
     }
 
     /// By what errors are weighted: the pressure at the end of the step tried, at its start, and at the start of the step before, or the net
     /// traction where surfaces attract each other.
     fn weights(&self) -> [&[f64]; 3] {
-        let Computation { state, trial, .. } = self;
-        let solutions = [&trial.solution, &state.current.solution, &state.previous.solution];
-        trial.passes.as_ref().map_or(solutions.map(|solution| &solution.pressure[..]), |passes| passes.weights())
+        let Computation { state, trial, attracted, .. } = self;
+        let solutions = [&trial.solution, &state.held.current.solution, &state.previous.solution];
+        attracted.as_ref().map_or(solutions.map(|solution| &solution.pressure[..]), |own| own.weights())
     }
 
     /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
     /// the datum of the gap; NaN if that is not known. One that a spring lowers onto the surface advances at the rate that it has from then on.
     fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
-        let Computation { state, window, trial } = self;
+        let Computation { state, window, trial, .. } = self;
         let body = window.gap(&step.indenter).owner(k);
-        let end = motion_tried(&state.region, trial, step, body);
+        let end = trial.motion(&state.held.region, step.request(), body);
         if self.was_at_rest(body) {
-            let advance = |start: f64| (end.at(state.region.center(k)) - start) / self.since_touch(step, body, start);
+            let advance =
+                |start: f64| (end.at(state.held.region.center(k)) - start) / self.since_touch(step, body, start);
             return rests_at.map_or(f64::NAN, advance);
         }
-        let start = state.current.motions[body];
+        let start = state.held.current.motions[body];
         let approach = step.indenter.gap().datum + end.approach - start.approach;
         let tilt = [0, 1].map(|axis| end.tilt[axis] - start.tilt[axis]);
-        RigidMotion { approach, tilt }.at(state.region.center(k))
+        RigidMotion { approach, tilt }.at(state.held.region.center(k))
     }
 
     /// The part of the step tried in which a body touches a surface at this approach, from the datum of the gap: all of it where it lies on the
     /// surface. A body apart is where the far end of its spring is.
     fn since_touch(&self, step: &Step<'_>, body: usize, surface: f64) -> f64 {
-        let (start, surface) = (self.state.current.motions[body].approach, step.indenter.gap().datum + surface);
+        let (start, surface) = (self.state.held.current.motions[body].approach, step.indenter.gap().datum + surface);
         match step.loads[body] {
             Load::Spring { drive, .. } if drive > surface && surface > start => (drive - surface) / (drive - start),
             _ => 1.0,
@@ -57,7 +58,7 @@ impl Computation {
 /// The approach at which a body would touch the surface at the start of a step, from the datum of its gap.
 fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
     let surface = gap.iter().zip(tried.state.history.displacement()).map(|(gap, u)| gap + u);
-    tried.state.region.rows().least(surface.fold(f64::INFINITY, f64::min))
+    tried.state.held.region.rows().least(surface.fold(f64::INFINITY, f64::min))
 }
 
 /// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too late.
@@ -86,8 +87,8 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let greatest = [0, 1].map(|which| expected[which].max(state.greatest[which]));
     let least = least_sizes(state, outlook);
     let compliance = |t: f64| scene.material.contact_compliance(t);
-    let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
-    if !scene.settings.time_rule.needs_series() {
+    let (pressure, before) = (&trial.solution.pressure, &state.held.current.solution);
+    if !scene.ground.settings.time_rule.needs_series() {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
         // products of great pressures and displacements would overflow; no ranks share out direct sums
         let most = sum::greatest(pressure);
@@ -108,9 +109,10 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let amplified = |one: f64, all: f64| if one > 0.0 { (all / one).clamp(1.0, steps.max(1.0)) } else { 1.0 };
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     // an attraction pulls at a surface whose displacement is free
-    let attracted = scene.attraction.is_some();
+    let attracted = scene.ground.attraction.is_some();
     let is_given = forces < trial.free.len() || attracted;
-    let of_force = if is_given { 1.0 } else { share_of_force(scene, state, step) };
+    let c = state.history.exponential_rule().map_or(0.0, |rule| rule.compliance());
+    let of_force = if is_given { 1.0 } else { share_of_force(&scene.ground, &state.held, step.request(), c) };
     let matters = [if forces > 0 || attracted { 1.0 } else { 0.0 }, of_force];
     let gap = &tried.window.gap(&step.indenter).above;
     let was_at_rest = trial.free.len() == 1 && tried.was_at_rest(0);
@@ -118,7 +120,7 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let from_rest = rests_at.is_some_and(|start| tried.since_touch(step, 0, start) == 1.0);
     let advance = |k: usize| tried.advance(step, rests_at, k);
     let measure = ErrorMeasure {
-        rows: &state.region.rows(),
+        rows: &state.held.region.rows(),
         pressure: tried.weights(),
         potential: &trial.solution.potential,
         matters,
@@ -155,10 +157,10 @@ pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'
         return 0.0;
     };
     let jumped = state.clock.last_dt == 0.0;
-    let [now, before] = [&state.current, &state.previous].map(|ends| &ends.solution.potential);
+    let [now, before] = [&state.held.current, &state.previous].map(|ends| &ends.solution.potential);
     let ([pressure, ..], potential, displacement) = (tried.weights(), &trial.solution.potential, state.history.trial());
     // products of great pressures and displacements would overflow
-    let rows = state.region.rows();
+    let rows = state.held.region.rows();
     let most = rows.greatest(greatest(pressure));
     let part = |cells: Range<usize>| {
         let (mut sum, mut size, mut jump, mut change) = (0.0, 0.0, 0.0, 0.0);

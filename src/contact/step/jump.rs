@@ -1,7 +1,8 @@
 //! Jumps of the load on bodies without elastic response.
 
-use crate::contact::step::initial_guess::{begin, fill_guess};
-use crate::contact::{State, Step, Trial, Window};
+use crate::contact::{State, Step};
+use crate::equilibrium::guess::{begin, fill_guess};
+use crate::equilibrium::{Trial, Window};
 use crate::error::{Error, Result, StepError};
 use crate::geometry::Gap;
 use crate::solver::PENETRATION_SLACK;
@@ -17,7 +18,7 @@ pub(super) fn jump_without_response(
     trial: &mut Trial,
     step: &Step<'_>,
 ) -> Result<()> {
-    begin(state, trial, step);
+    begin(&state.held, trial, step.request());
     let initial = window.gap(&step.indenter);
     let greatest = |pressed: bool| {
         let residuals = (0..step.loads.len()).map(|body| residual(state, initial, trial, step, body, pressed));
@@ -25,7 +26,7 @@ pub(super) fn jump_without_response(
     };
     let as_it_is = greatest(true);
     if as_it_is <= step.tolerance {
-        fill_guess(state, window, trial, |now, _| now);
+        fill_guess(&state.held, &state.previous.solution, window, trial, |now, _| now);
         trial.solution.residual = as_it_is;
     } else if greatest(false) <= step.tolerance {
         trial.solution.release();
@@ -40,12 +41,12 @@ pub(super) fn jump_without_response(
 /// penetration relative to the displacement in contact, force and moments relative to the force.
 fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: usize, pressed: bool) -> f64 {
     let freedom = trial.free[body];
-    let (modes, motion) = (state.region.modes(freedom), trial.solution.motions[body]);
+    let (modes, motion) = (state.held.region.modes(freedom), trial.solution.motions[body]);
     let released = freedom.translation && freedom.total == 0.0;
-    let prescribed = step.prescribed(body).approach.abs() + initial.datum.abs();
+    let prescribed = step.request().prescribed(body).approach.abs() + initial.datum.abs();
     let own = |k: usize| initial.owner(k) == body && initial.above[k].is_finite();
-    let (rows, u) = (state.region.rows(), state.history.trial());
-    let pressure = |k: usize| if pressed { state.current.solution.pressure[k] } else { 0.0 };
+    let (rows, u) = (state.held.region.rows(), state.history.trial());
+    let pressure = |k: usize| if pressed { state.held.current.solution.pressure[k] } else { 0.0 };
     let gap = |k: usize| trial.gap[k] - modes.displacement(motion, k);
     let rounding = |k: usize| {
         let moved = modes.displacement(motion, k);

@@ -17,41 +17,36 @@
 
 mod accept;
 pub(in crate::contact) mod attraction;
-pub(in crate::contact) mod constraints;
 mod edge;
 pub(crate) mod error_in_time;
-mod gap;
-mod initial_guess;
 mod jump;
+mod prediction;
 pub(in crate::contact) mod request;
-pub(in crate::contact) mod spring;
+mod retraction;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::builder::build::cells_in_zone;
-use crate::contact::window::placement::{outgrown, region_for};
-use crate::contact::{
-    Computation, Edge, Equilibrium, Estimated, Figures, Region, Scene, State, Step, StepReport, Trial,
-    ViscoelasticContact,
-};
-use crate::error::{Error, Result, StepError, coverage, non_negative, unless_failed};
+use crate::contact::{Clock, Computation, Estimated, Scene, State, Step, StepReport, ViscoelasticContact};
+use crate::equilibrium::constraints::{acceptable, below_full_contact, converged, find_free_motions, validate_loads};
+use crate::equilibrium::guess::initial_guess;
+use crate::equilibrium::pressed::Pressed;
+use crate::equilibrium::spring::{guess_forces, solve_with_springs};
+use crate::equilibrium::window::placement::{outgrown, region_for};
+use crate::equilibrium::{Edge, Equilibrium, Figures, Ground, Held, Region, RigidBodies, Trial};
+use crate::error::{AdhesionError, Error, Result, StepError, non_negative, unless_failed};
 use crate::events;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
-use crate::solver::{Freedom, RigidMotion, Solution, Stop};
-pub(crate) use accept::Pressed;
+use crate::solver::{Solution, Stop};
 use accept::{COARSE_ZONE, collect_warnings};
 use attraction::AttractedStep;
-use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
-use constraints::{find_free_motions, validate_loads};
-use edge::least_beyond;
+use edge::{MOST, least_beyond};
 use error_in_time::error_in_time;
-use gap::RigidBodies;
-use initial_guess::initial_guess;
 use jump::jump_without_response;
-use spring::{guess_forces, solve_with_springs};
+use prediction::predict_contact;
 
 /// A computed step, not yet accepted. Dropping it leaves the contact unchanged.
 #[must_use]
@@ -79,7 +74,7 @@ impl ViscoelasticContact {
     ///     .material(Material::incompressible(KelvinVoigt::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.1, [Load::force(0.2), Load::approach(10.0e-6)])?;
-    /// assert!((contact.body(0).expect("the first").force - 0.2).abs() < 1.0e-12);
+    /// assert!((contact.fields().body(0).expect("the first").force - 0.2).abs() < 1.0e-12);
     /// # Ok::<(), Error>(())
     /// ```
     ///
@@ -103,10 +98,11 @@ impl ViscoelasticContact {
     }
 
     fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
-        let rows = self.computation.state.region.rows();
+        let rows = self.computation.state.held.region.rows();
         rows.unless_lost(|| {
             let requested = self.request_next(dt, loads);
-            let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
+            let requested =
+                requested.and_then(|step| validate_loads(&self.scene.ground, step.request()).map(|()| step));
             let step = rows.agree(requested)?;
             self.take(Step { cancelled, ..step })
         })
@@ -120,33 +116,13 @@ impl ViscoelasticContact {
 
     /// A step of `length` to the time `time`, without motion along the surface.
     pub(crate) fn request<'a>(&self, time: f64, length: f64, loads: &'a [Load], tolerance: f64) -> Result<Step<'a>> {
-        let State { indenter, clock, .. } = &self.computation.state;
+        let State { held: Held { indenter, .. }, clock, .. } = &self.computation.state;
         non_negative("time", time)?;
         let dt = self.scene.reduced_length([clock.time, time], length)?;
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
         Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance, end: None, cancelled: None })
-    }
-
-    /// The motion that a load leaves free to the body of a contact in steady motion, if it can be balanced, and the part that it prescribes, whose approach
-    /// counts from the datum of the gap.
-    pub(crate) fn steady_motion(&self, load: Load) -> Result<(Freedom, RigidMotion)> {
-        let loads = [load];
-        let step = self.request(0.0, 0.0, &loads, self.settings().tolerance)?;
-        validate_loads(&self.scene, &step)?;
-        let mut free = self.computation.trial.free.clone();
-        find_free_motions(&self.scene, &self.computation.state.region, &step, &mut free);
-        Ok((free[0], step.prescribed(0)))
-    }
-
-    /// Rejects a pressure at an edge of the grid that is not periodic, unless the settings allow it.
-    pub(crate) fn check_edge(&self, pressure: &[f64]) -> Result<()> {
-        let cells = self.computation.state.region.positive_on_edge(pressure, self.scene.kernel.periodic_axes());
-        if cells == 0 || self.settings().edge == Edge::Allow {
-            return Ok(());
-        }
-        Err(Error::Step(StepError::ContactAtEdge { time: 0.0, cells, lengths: self.grid().lengths(), needed: None }))
     }
 
     /// Computes a step and accepts it.
@@ -163,8 +139,7 @@ impl ViscoelasticContact {
 
     /// Computes a step. The state stays as it is.
     pub(crate) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
-        self.covers(coverage::STEP)?;
-        let (mut larger, region) = (None, &self.computation.state.region);
+        let (mut larger, region) = (None, &self.computation.state.held.region);
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other
         let cells = if region.is_shared() { 0 } else { region.len() };
@@ -177,7 +152,7 @@ impl ViscoelasticContact {
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
         if let Some(larger) = &larger {
-            events::moved(from, larger.state.region.cells());
+            events::moved(from, larger.state.held.region.cells());
         }
         if let Err(error) = &tried {
             events::failed(step.interval.time, step.interval.length, error);
@@ -223,24 +198,16 @@ impl ViscoelasticContact {
     /// The report of the last step, and where it presses.
     pub(crate) fn report(&self, time_error: Option<f64>, pressed: Pressed) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
-        let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
-        let State { indenter, region, clock, .. } = state;
-        let (pressure, datum) = (&state.current.solution.pressure, indenter.gap().datum);
-        let motion = |body: usize| RigidMotion { approach: -datum, tilt: [0.0; 2] } + state.current.motions[body];
+        let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.held.current;
+        let clock: &Clock = &state.clock;
         let compliance = || scene.material.contact_compliance(clock.age().max(clock.last_dt));
-        let in_zone = || cells_in_zone(scene.softening, compliance(), &scene.grid);
-        let beyond_edge = self.computation.trial.passes.as_ref().map(|passes| passes.report.beyond_edge);
+        let in_zone = || cells_in_zone(scene.ground.softening, compliance(), &scene.ground.grid);
+        let beyond_edge = self.computation.attracted.as_ref().map(|own| own.report.beyond_edge);
         let figures = Figures {
-            max_slope: indenter.steepest(&scene.grid, region, pressure),
-            compression: scene.compression(indenter, region, pressure, motion),
-            cells_across: pressed.few,
-            cells_in_wave: self.missed.cells,
-            periods: self.missed.periods,
-            cells_in_zone: (scene.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
+            cells_in_zone: (scene.ground.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
             beyond_edge: beyond_edge.filter(|share| *share > least_beyond(scene)),
             modulus: scene.limits.modulus,
-            touch: None,
-            unmeasured: None,
+            ..state.held.figures(&scene.ground, self.missed, &pressed)
         };
         StepReport {
             time: state.clock.time,
@@ -250,7 +217,7 @@ impl ViscoelasticContact {
             tilt: self.tilt(),
             dt: state.clock.last_length,
             time_error,
-            estimated: Estimated::under(&state.loads),
+            estimated: Estimated::under(&state.held.loads),
             warnings: collect_warnings(scene, &self.computation, pressed.reach, &figures, time_error),
             figures,
             iterations: counts.iterations,
@@ -265,13 +232,15 @@ impl ViscoelasticContact {
     /// where it presses.
     pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Pressed> {
         // all exchanges with other ranks precede the change of the state
-        let pressed = attempt.computation(&self.computation).pressed(&self.scene, &step.indenter);
-        self.computation.state.region.rows().intact()?;
+        let Computation { state, trial, .. } = attempt.computation(&self.computation);
+        let (pressure, region) = (&trial.solution.pressure, &state.held.region);
+        let pressed = Pressed::by(pressure, &self.scene.ground, region, &step.indenter);
+        self.computation.state.held.region.rows().intact()?;
         if let Some(larger) = attempt.larger {
             self.computation = *larger;
         }
         self.computation.accept(step, attempt.sum, pressed.cells, sizes);
-        self.view.refresh(&self.computation.state);
+        self.view.refresh(&self.computation.state.held);
         Ok(pressed)
     }
 }
@@ -296,32 +265,71 @@ fn compute(
     larger: &mut Option<Box<Computation>>,
     step: &Step<'_>,
 ) -> Result<f64> {
-    validate_loads(scene, step)?;
-    if let Some((region, placed)) = region_for(scene, &own.state, step)? {
+    let (ground, request) = (&scene.ground, step.request());
+    validate_loads(ground, request)?;
+    let is_windowed = own.state.history.far_source().is_some();
+    let first = || scene.material.contact_compliance(step.interval.dt);
+    let first = (is_windowed && own.state.is_undisturbed()).then(first);
+    let moving = step.interval.stride.map(|cells| cells != 0);
+    if let Some((region, placed)) = region_for(ground, &own.state.held, request, moving, first)? {
         let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
-        transferred.state.region_is_for_contact = placed;
+        transferred.state.held.region_is_for_contact = placed;
     }
     loop {
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
         let grown = match at.solve(scene, step) {
-            Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
+            Ok(()) => at.outgrown(ground, step),
             // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::Step(StepError::LoadOutsideHull { .. })) if at.state.history.far_source().is_some() => {
-                Some(Region::whole(&scene.grid, at.state.region.folded()))
+            Err(Error::Step(StepError::LoadOutsideHull { .. })) if is_windowed => {
+                Some(Region::whole(&ground.grid, at.state.held.region.folded()))
             }
             Err(error) => return Err(error),
         };
-        let Some(region) = grown else { return acceptable(scene, &at.state, &at.trial, step) };
+        let Some(region) = grown else { return at.acceptable(scene, step) };
         *larger = Some(at.transferred_to(scene, region, &step.indenter)?);
     }
 }
 
+/// Rejects a step beyond the loading times for which the material is known. Bodies that were never `touched` have no loading
+/// time.
+fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
+    let Interval { time, reduced, .. } = step.interval;
+    scene.limits.check_age(time, reduced - state.clock.undisturbed_until, touched)
+}
+
+/// Rejects a compliance that overflows or underflows. It is 0 only in jumps of bodies without elastic response.
+fn compliance_is_usable(c: f64, step: &Step<'_>) -> Result<()> {
+    let Interval { time, dt, .. } = step.interval;
+    let usable = c > 0.0 && c.is_finite() || c == 0.0 && dt == 0.0;
+    if usable { Ok(()) } else { Err(Error::Step(StepError::Overflow { time, what: "the compliance of the step" })) }
+}
+
 impl Computation {
+    /// A larger region, if the bodies might touch outside this one.
+    fn outgrown(&self, ground: &Ground, step: &Step<'_>) -> Option<Region> {
+        let Computation { state, window, trial, .. } = self;
+        outgrown(ground, &state.held, window, trial, step.request(), (1.0, state.history.far_trial()?))
+    }
+
+    /// Σ p of the trial, if it can be accepted.
+    fn acceptable(&self, scene: &Scene, step: &Step<'_>) -> Result<f64> {
+        let (Computation { state, trial, attracted, .. }, ground) = (self, &scene.ground);
+        let displaced = state.held.region.rows().sum(state.history.trial());
+        let sum = acceptable(ground, &state.held, displaced, trial, step.request())?;
+        let share = attracted.as_ref().map_or(0.0, |own| own.report.beyond_edge);
+        if ground.settings.edge == Edge::Refuse && share > MOST {
+            let (time, lengths) = (step.interval.time, ground.grid.lengths());
+            return Err(AdhesionError::BeyondEdge { time, share, lengths }.into());
+        }
+        Ok(sum)
+    }
+
     /// Computes a step on the present region: writes the trial, and the part of the history reserved for steps.
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
-        let Computation { state, window, trial } = self;
-        window.follow(&state.region, &step.indenter);
-        find_free_motions(scene, &state.region, step, &mut trial.free);
+        let (Computation { state, window, trial, attracted }, ground) = (self, &scene.ground);
+        let (held, request) = (&state.held, step.request());
+        window.follow(&held.region, &step.indenter);
+        find_free_motions(ground, &held.region, request, &mut trial.free);
         material_is_known(scene, state, step, !state.is_undisturbed())?;
 
         // u = u_old + c K p
@@ -330,35 +338,39 @@ impl Computation {
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, with the prescribed parts of ω and α
-        let gap_is_new = state.indenter_is_new || !Arc::ptr_eq(&step.indenter, &state.indenter);
+        let gap_is_new = state.indenter_is_new || !Arc::ptr_eq(&step.indenter, &held.indenter);
         let on_bodies = state.history.follows_body_exactly() && !gap_is_new;
-        let start = on_bodies.then_some((&state.loads[..], &state.current.motions[..]));
-        let bodies = RigidBodies { step, region: &state.region, start };
-        let before = &state.current.solution.pressure;
-        bodies.fill_gap(window.gap(&step.indenter), &state.history, before, &mut trial.gap);
-        below_full_contact(window, trial, step)?;
+        let start = on_bodies.then_some((&held.loads[..], &held.current.motions[..]));
+        let bodies = RigidBodies { request, region: &held.region, start };
+        let before = &held.current.solution.pressure;
+        bodies.fill_gap_of_step(window.gap(&step.indenter), &state.history, before, &mut trial.gap);
+        below_full_contact(window, trial, request)?;
 
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
-        let cancelled = step.cancelled.filter(|_| !state.region.is_shared());
-        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations, cancelled };
-        let given = [c, bodies.greatest_motion(&scene.grid)];
-        if let Some(law) = scene.attraction.as_deref() {
-            let attracted = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] };
-            unless_failed(|| law.failure(), || attracted.solve(window, trial))?;
+        let cancelled = step.cancelled.filter(|_| !held.region.is_shared());
+        let stop = Stop { tolerance: step.tolerance, max_iterations: ground.settings.max_iterations, cancelled };
+        let given = [c, bodies.greatest_motion(&ground.grid)];
+        if let Some(law) = ground.attraction.as_deref() {
+            let attracted_step = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] };
+            unless_failed(|| law.failure(), || attracted_step.solve(window, trial, attracted))?;
         } else {
-            guess_forces(scene, state, window.gap(&step.indenter), step, c, trial);
+            guess_forces(ground, held, window.gap(&step.indenter), request, c, trial);
             if c == 0.0 {
                 jump_without_response(state, window, trial, step)?;
             } else {
-                initial_guess(state, window, trial, step, c);
+                let ahead = held.extrapolation.reach(step.interval.dt);
+                let extrapolated = initial_guess(held, (&state.previous, ahead), window, trial, request, c);
+                if extrapolated && window.needs_potential() && step.interval.stride == [0; 2] {
+                    trial.predicted = predict_contact(state, window, trial, step, c);
+                }
             }
             let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
-            let outcome = solve_with_springs(scene, state, step, c, trial, solve);
-            converged(outcome, scene, &trial.solution, step)?;
+            let outcome = solve_with_springs(ground, held, request, c, trial, solve);
+            converged(outcome, ground, &trial.solution, request)?;
         }
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
-        let touched = state.is_undisturbed() && (state.attracts || state.region.is_positive_anywhere(pressure));
+        let touched = state.is_undisturbed() && (state.attracts || held.region.is_positive_anywhere(pressure));
         material_is_known(scene, state, step, touched)?;
 
         // the history of the bodies

@@ -34,7 +34,7 @@ const FARTHEST: f64 = 1e40;
 const ENDLESS: f64 = 1e60;
 
 /// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
-/// greatest. See [`ViscoelasticContact::stress`](crate::ViscoelasticContact::stress).
+/// greatest. See [`Fields::stress`](crate::fields::Fields::stress).
 ///
 /// x3 is the depth below the surface, x1 and x2 are the coordinates of the grid; tension is positive, σ33 at the surface is minus the
 /// pressure.
@@ -70,7 +70,7 @@ const ENDLESS: f64 = 1e60;
 ///     .material(Material::incompressible(Elastic::new(1.0e6)?))
 ///     .build()?;
 /// contact.step(0.0, Load::force(0.5))?;
-/// let stress = contact.stress()?;
+/// let stress = contact.fields().stress()?;
 /// let depths: Vec<f64> = (1..=20).map(|k| f64::from(k) * 0.05e-3).collect();
 /// let greatest = stress.greatest(&depths, Stress::von_mises)?;
 /// // ν = ½: 0.5327 p0 at 0.548 a below the centre

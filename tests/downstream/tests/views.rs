@@ -14,7 +14,7 @@ fn fields_are_viewed_as_arrays_and_matrices() -> Result<(), Box<dyn std::error::
     let pressure = ndarray::ArrayView2::from_shape((n1, n2), contact.pressure())?;
     let matrix = faer::MatRef::from_row_major_slice(contact.pressure(), n1, n2);
 
-    assert!(contact.max_pressure() > 0.0);
+    assert!(contact.fields().max_pressure() > 0.0);
     for (i, j) in (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j))) {
         let p = contact.pressure()[i * n2 + j];
         assert!(pressure[[i, j]] == p && matrix[(i, j)] == p);

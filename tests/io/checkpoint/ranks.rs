@@ -199,7 +199,7 @@ fn runs_are_saved_on_their_way() {
     let path = folder.join("run.checkpoint");
     let load = StepLoad::new(Load::force(1.0)).unwrap();
     let run = |contact: &mut ViscoelasticContact, until: f64, steps: usize| {
-        let every = Duration::from_secs(if contact.rows().start == 0 { 3600 } else { 0 });
+        let every = Duration::from_secs(if contact.fields().rows().start == 0 { 3600 } else { 0 });
         let mut run = contact.follow(&load, Stepping::fixed(0.1), until).autosave_to(&path, every);
         let mut reports = Vec::new();
         while reports.len() < steps {

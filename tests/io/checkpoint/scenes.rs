@@ -45,7 +45,7 @@ fn build(grid: &Grid, bodies: &[Box<dyn Geometry>]) -> Option<ViscoelasticContac
 
 fn gap(contact: &ViscoelasticContact) -> Vec<f64> {
     let mut gap = vec![0.0; contact.grid().len()];
-    contact.gap_into(&mut gap).unwrap();
+    contact.fields().gap_into(&mut gap).unwrap();
     gap
 }
 

@@ -45,7 +45,12 @@ pub fn rows(t: &mut Table) {
     }
     t.row("set_geometry", two().set_geometry(&sphere()), Value, "geometries of the rigid bodies: 1 given, 2 needed");
     for len in [0, 255, 257] {
-        t.row("traction_into", pressed().traction_into(&mut vec![0.0; len]), Value, "traction: … given, 256 needed");
+        t.row(
+            "traction_into",
+            pressed().fields().traction_into(&mut vec![0.0; len]),
+            Value,
+            "traction: … given, 256 needed",
+        );
     }
     let by_function = builder_on(grid(), Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt()))));
     let by_function = by_function.settings(plain.with_time_rule(TimeRule::Backward)).build().unwrap();
@@ -58,7 +63,7 @@ pub fn rows(t: &mut Table) {
     ] {
         t.row("EnergyBalance::new", balance, kind, says);
     }
-    let of_ranks = shared(|contact| contact.mesh_error());
+    let of_ranks = shared(|contact| contact.fields().mesh_error());
     t.row(
         "mesh_error",
         of_ranks,
@@ -67,9 +72,19 @@ pub fn rows(t: &mut Table) {
     );
     let law = viscocontact::adhesion::ExponentialAttraction::new(0.05, 1.0e-4).unwrap();
     let attracted = builder_on(grid(), maxwell()).attraction(law).build().unwrap();
-    t.row("mesh_error", attracted.mesh_error(), Unsupported, "the error…attract each other: compute on a finer mesh…");
+    t.row(
+        "mesh_error",
+        attracted.fields().mesh_error(),
+        Unsupported,
+        "the error…attract each other: compute on a finer mesh…",
+    );
     for bins in [0, 1_000_001] {
-        t.row("pressure_distribution", pressed().pressure_distribution(bins), Value, "bins = … → in [1, 1000000]");
+        t.row(
+            "pressure_distribution",
+            pressed().fields().pressure_distribution(bins),
+            Value,
+            "bins = … → in [1, 1000000]",
+        );
     }
     // a smooth influence of scattered cells hardly determines the pressure under a rigid punch; here it gives one that is known
     let smooth = InfluenceKernel::from_coefficients(&grid(), |i, j| (-((i * i + j * j) as f64) / 6.0).exp()).unwrap();
@@ -83,7 +98,7 @@ pub fn rows(t: &mut Table) {
     let punch = builder_of(&cells, grid(), Material::incompressible(Elastic::new(0.25).unwrap())).kernel(smooth);
     let mut punch = punch.settings(plain.with_tolerance(0.1).with_edge(Edge::Allow)).build().unwrap();
     punch.step(0.0, Load::approach(depth)).unwrap();
-    let stiffness = punch.stiffness_over_modulus();
+    let stiffness = punch.fields().stiffness_over_modulus();
     t.row("stiffness_over_modulus", stiffness, Convergence, "…after 500 iterations…check its influence coefficients");
     let layer = InfluenceKernel::layer(&grid(), Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap()).unwrap();
     let on_layer = builder_on(grid(), maxwell()).kernel(layer).build().unwrap();
@@ -101,6 +116,39 @@ pub fn rows(t: &mut Table) {
     let below = StressHistory::of_counter_body(&contact(plain));
     t.row("StressHistory::of_counter_body", below, Value, "a contact needs counter_body: call Builder::counter_body…");
     let (flag, free) = (AtomicBool::new(true), AtomicBool::new(false));
+    let elastic = || ElasticContact::builder(grid()).geometry(&sphere()).modulus(4.0e6).build().unwrap();
+    for (built, says) in [
+        (ElasticContact::builder(grid()).modulus(4.0e6).build(), "a contact needs geometry…"),
+        (ElasticContact::builder(grid()).geometry(&sphere()).build(), "a contact needs modulus…"),
+        (
+            ElasticContact::builder(grid()).geometry(&sphere()).modulus(-1.0).build(),
+            "contact modulus = -1.0 → finite and > 0",
+        ),
+        (
+            ElasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
+                .geometry(&sphere())
+                .modulus(1.0)
+                .kernel(InfluenceKernel::half_space(&grid()).unwrap())
+                .build(),
+            "the kernel…16…8…",
+        ),
+    ] {
+        t.row("ElasticBuilder::build", built, Value, says);
+    }
+    for (solved, kind, says) in [
+        (elastic().solve_unless(&flag, Load::force(0.2)), Cancelled, "a step was cancelled by its caller"),
+        (elastic().solve(Load::force(10.0)), Value, "…on 60 cells…about 0.0053 m…: enlarge the grid…"),
+        (elastic().solve([Load::force(0.1); 2]), Value, "loads of the rigid bodies: 2 given, 1 needed"),
+        (elastic().solve(Load::force(-1.0)), Value, "normal force = -1.0 → finite and >= 0"),
+    ] {
+        t.row("ElasticContact::solve", solved, kind, says);
+    }
+    for (surface, says) in [
+        (vec![0.0; 255], "displacement of the surface: 255 given, 256 needed"),
+        (vec![f64::NAN; 256], "displacement of the surface = NaN → finite"),
+    ] {
+        t.row("ElasticContact::set_surface", elastic().set_surface(&surface), Value, says);
+    }
     let step = |flag: &AtomicBool, dt: f64, loads: &[Load]| pressed().step_unless(flag, dt, loads);
     let force = Load::force;
     for (step, kind, says) in [
@@ -149,7 +197,7 @@ pub fn rows(t: &mut Table) {
     pressed().save(&path).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     for (change, says) in [
-        (8, "…: the checkpoint is of format 113, this version reads format…"),
+        (8, "…: the checkpoint is of format 112, this version reads format…"),
         (bytes.len() - 3, "…: the checkpoint is damaged: its checksum is …, but should be …"),
     ] {
         let mut changed = bytes.clone();

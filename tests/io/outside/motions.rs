@@ -61,6 +61,22 @@ fn on_layer(thickness: f64, nu: f64, approach: f64) -> Result<String> {
     slid(builder_on(grid(), body()).kernel(kernel), 0.1, Load::approach(approach))
 }
 
+/// An elastic contact under a load.
+fn elastic(shape: &dyn Geometry, modulus: f64, kernel: Option<InfluenceKernel>, load: Load) -> Result<String> {
+    let grid = kernel.as_ref().map_or_else(grid, |kernel| kernel.grid().clone());
+    let builder = ElasticContact::builder(grid).geometry(shape).modulus(modulus);
+    let builder = kernel.into_iter().fold(builder, |builder, kernel| builder.kernel(kernel));
+    Ok(builder.build()?.solve(load)?.messages().collect::<Vec<_>>().join("; "))
+}
+
+fn periodic_kernel(cells: usize) -> Result<Option<InfluenceKernel>> {
+    InfluenceKernel::periodic(&Grid::square(cells, 1.0e-3)?).map(Some)
+}
+
+fn ball() -> Sphere {
+    Sphere::new(10.0e-3).unwrap()
+}
+
 /// A fit of a model to a curve of a ball of `radius` that is pressed in by `depth`; `changed`: what happens to its forces.
 fn fitted(radius: f64, depth: f64, values: &[(&str, f64)], changed: impl Fn(usize, f64) -> f64) -> String {
     let of = || -> id::Result<String> {
@@ -115,6 +131,24 @@ const MOTIONS: &[Scene] = &[
         sliding.at([0.01, 0.0], Load::force(1.0e-3)).map(told)
     }, "E'' >= 0"),
 ("a counter-body that creeps", || slid(builder_on(grid(), body()).counter_body(body()), 0.1, Load::force(0.1)), "Builder::counter_motion"),
+// elastic contacts
+("an elastic contact on two cells", || elastic(&ball(), 4.0e6, None, Load::force(2.0e-5)), "fewer than 8 cells across"),
+("a steep cone on an elastic body", || elastic(&Cone::new(0.8)?, 4.0e6, None, Load::approach(1.0e-3)), "check that lengths are in m"),
+("an elastic modulus in MPa", || elastic(&ball(), 4.0, None, Load::approach(20.0e-6)), "moduli are in Pa"),
+("an elastic contact at the edge of the grid", || elastic(&ball(), 4.0e6, None, Load::force(30.0)), "enlarge the grid"),
+("an elastic contact beside the edge of the grid", || elastic(&ball(), 4.0e6, None, Load::approach(0.35e-3)), "enlarge the grid"),
+("an elastic contact of a shape far from zero", || elastic(&far_from_zero(), 4.0e6, None, Load::force(0.1)), "so far are heights from 0"),
+("an elastic layer that is pressed by half of its thickness",
+    || {
+        let layer = Layer::bonded_to_rigid(60.0e-6, 0.5)?;
+        elastic(&ball(), 4.0e6, Some(InfluenceKernel::layer(&grid(), layer)?), Load::approach(30.0e-6))
+    }, "check the thickness"),
+("an elastic rough surface of three cells in its shortest wave",
+    || elastic(&rough(24)?, 4.0e6, periodic_kernel(24)?, Load::force(1.0e-3)), "fewer than 4 cells"),
+("an elastic wave of another period",
+    || elastic(&Wavy::new(1.0e-6, 0.4e-3)?, 4.0e6, periodic_kernel(48)?, Load::force(1.0e-3)), "make the grid as long"),
+("an elastic wave beyond full contact",
+    || elastic(&Wavy::new(1.0e-6, 1.0e-3)?, 4.0e6, periodic_kernel(48)?, Load::approach(1.0e-5)), "prescribe the force"),
 // sweeps
 ("a sweep on few cells", || swept(&SlidingSweep::new([[0.01, 0.0], [0.1, 0.0]], [Load::force(2.0e-5)]), body()), "fewer than 8 cells across"),
 ("a sweep beyond the data",
@@ -138,14 +172,15 @@ const MOTIONS: &[Scene] = &[
 fn no_motion_sweep_or_fit_outside_the_model_is_silent() {
     let wrong: Vec<String> = MOTIONS.iter().filter_map(judge).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(MOTIONS.len() >= 25, "{}", MOTIONS.len());
+    assert!(MOTIONS.len() >= 35, "{}", MOTIONS.len());
 }
 
 /// The same, just inside: nothing is said of any of them.
 #[test]
 fn motions_and_fits_inside_are_silent() {
     let waves = || Wavy::new(1.0e-6, 1.0e-3);
-    let inside: [(&str, Result<String>); 5] = [
+    let inside: [(&str, Result<String>); 6] = [
+        ("a ball on an elastic body", elastic(&ball(), 4.0e6, None, Load::force(0.5))),
         ("a ball", slid(builder_on(grid(), body()), 0.1, Load::force(0.5))),
         ("a wave", periodic(&waves().unwrap(), 48, Load::force(1.0e-2))),
         (

@@ -1,5 +1,6 @@
 //! The whole stepper on random scenes, against a dense reference that shares no code with it.
 
+mod elastic;
 mod hereditary_integral;
 mod reference;
 pub(super) mod scenes;
@@ -33,7 +34,7 @@ fn loads_of_every_kind_may_jump() {
                     assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{} step {step}", scene.name);
                     for (body, load) in loads.iter().enumerate() {
                         let Load::Force { normal, .. } = load else { continue };
-                        let force = contact.body(body).unwrap().force;
+                        let force = contact.fields().body(body).unwrap().force;
                         assert!((force - normal).abs() <= 1e-9 * normal, "{} step {step}: {force} {load}", scene.name);
                     }
                     let cost = report.convolution_equivalents();
@@ -187,7 +188,7 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
             steps += 1;
             let mut errors = [distance(contact.pressure(), &reference.pressure), 0.0, 0.0];
             for (body, &motion) in reference.motions.iter().enumerate() {
-                let state = contact.body(body).unwrap();
+                let state = contact.fields().body(body).unwrap();
                 let force = reference.force(body);
                 errors[1] += (state.force - force).abs() / reference.total_force().max(1e-12);
                 if motion[0].is_finite() && force > 0.0 {

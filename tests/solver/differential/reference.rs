@@ -59,6 +59,11 @@ impl Reference {
         }
     }
 
+    /// Displaces the surface before any pressure.
+    pub fn displace(&mut self, displacement: &[f64]) {
+        self.gap.iter_mut().zip(displacement).for_each(|(gap, u)| *gap += u);
+    }
+
     /// One step; false if the interior-point method finds no answer.
     pub fn step(&mut self, dt: f64, loads: &[Load]) -> bool {
         let (c, past) = self.past.predict(dt);

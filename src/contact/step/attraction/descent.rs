@@ -15,8 +15,8 @@ use std::sync::atomic::Ordering;
 use super::front::{Front, Moved};
 use super::passes::InGap;
 use super::{Attracted, AttractedStep};
-use crate::contact::step::request::Trial;
-use crate::contact::window::Window;
+use crate::equilibrium::Trial;
+use crate::equilibrium::window::Window;
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::kernel::PeriodInverse;
 use crate::load::Load;
@@ -138,7 +138,7 @@ impl AttractedStep<'_> {
             Load::Approach { .. } => [1.0 / (c * compliance), 0.0],
             Load::Force { .. } => [0.0, wanted.total / cells],
             Load::Spring { stiffness, drive, .. } => {
-                let of_mean = 1.0 / (c * compliance + cells * self.state.region.cell_area() / stiffness);
+                let of_mean = 1.0 / (c * compliance + cells * self.state.held.region.cell_area() / stiffness);
                 [of_mean, of_mean * (drive - self.step.indenter.gap().datum)]
             }
         };
@@ -148,7 +148,7 @@ impl AttractedStep<'_> {
 
     /// Writes z, s, K (z − s) and the motion of the guess of a descent: extrapolated, or of undeformed bodies, which just touch under a force.
     pub(super) fn begin_in_gap(&self, window: &Window, trial: &mut Trial) {
-        let (state, step, rows) = (self.state, self.step, self.state.region.rows());
+        let (state, step, rows) = (self.state, self.step, self.state.held.region.rows());
         self.open_gap(window, trial);
         trial.free[0] = self.wanted;
         self.extrapolate(trial);
@@ -157,7 +157,7 @@ impl AttractedStep<'_> {
             let lowest = rows.least(trial.gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
             if let Load::Spring { drive, .. } = step.loads[0] { lowest.min(drive - datum) } else { lowest }
         } else {
-            let [now, before] = [&state.current, &state.previous].map(|state| state.motions[0].approach);
+            let [now, before] = [&state.held.current, &state.previous].map(|state| state.motions[0].approach);
             now + trial.reach * (now - before) - datum
         };
         trial.solution.motions[0] = ModeCoefficients([if self.wanted.translation { motion } else { 0.0 }, 0.0, 0.0]);
@@ -173,8 +173,8 @@ impl Descent<'_> {
     /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial.
     pub(super) fn run(&mut self) -> Result<()> {
         let AttractedStep { state, step, stop, wanted, .. } = *self.problem;
-        let (limit, time, region) = (self.problem.limit(), step.interval.time, &state.region);
-        if self.lift() || state.extrapolation.refresh_is_due() {
+        let (limit, time, region) = (self.problem.limit(), step.interval.time, &state.held.region);
+        if self.lift() || state.held.extrapolation.refresh_is_due() {
             let Descent { balance, inverse, window, trial, counts, .. } = self;
             let Solution { potential: x, attraction: q, .. } = &mut trial.solution;
             balance.tractions(inverse, window, x, q, false);
@@ -232,9 +232,11 @@ impl Descent<'_> {
                 && gradient.at_wall == 0.0
                 && gradient.attraction <= CARRIED * pull
             {
-                return Err(
-                    AdhesionError::PulledOff { time, force: -pull * self.problem.state.region.cell_area() }.into()
-                );
+                return Err(AdhesionError::PulledOff {
+                    time,
+                    force: -pull * self.problem.state.held.region.cell_area(),
+                }
+                .into());
             }
             self.own.report.passes += 1;
             self.counts.iterations += 1;
@@ -352,7 +354,7 @@ impl Descent<'_> {
     /// Writes the lift x of z, s, K (z − s) and the motion of the trial, and its q but for what the wall changes; returns whether that is so.
     fn lift(&mut self) -> bool {
         let Descent { problem, balance, trial, .. } = self;
-        let (rows, Trial { gap, solution, .. }) = (problem.state.region.rows(), &mut **trial);
+        let (rows, Trial { gap, solution, .. }) = (problem.state.held.region.rows(), &mut **trial);
         let Solution { pressure, attraction: q, potential: x, motions, .. } = solution;
         let (c, motion) = (balance.compliance, motions[0].0[0]);
         for_each_band([&mut *x, &mut *q], |first, [x, q]| {
@@ -376,7 +378,7 @@ impl Descent<'_> {
     fn finish(&mut self, multiplier: f64) {
         let Descent { problem, balance, trial, .. } = self;
         let (c, cells) = (balance.compliance, trial.gap.len() as f64);
-        let rows = problem.state.region.rows();
+        let rows = problem.state.held.region.rows();
         let Trial { solution, gap, .. } = &mut **trial;
         let (x, q) = (&mut solution.potential, &mut solution.attraction);
         q.iter_mut().for_each(|q| *q -= multiplier);

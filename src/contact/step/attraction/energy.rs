@@ -3,8 +3,8 @@
 use super::descent::Descent;
 use super::passes::InPasses;
 use super::{Attracted, AttractedStep};
-use crate::contact::state::Equilibrium;
-use crate::contact::step::request::Trial;
+use crate::equilibrium::Equilibrium;
+use crate::equilibrium::Trial;
 use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::{RigidMotion, Solution};
@@ -30,8 +30,8 @@ impl AttractedStep<'_> {
     /// the error of the pass enters with its square; the far field is a part of the gap.
     pub(super) fn find(&self, own: &mut Attracted, trial: &mut Trial) -> Found {
         let AttractedStep { state, law, given: [c, _], .. } = *self;
-        let (rows, solution, gap) = (state.region.rows(), &trial.solution, &mut trial.gap);
-        let (modes, motion) = (state.region.modes(trial.free[0]), solution.motions[0]);
+        let (rows, solution, gap) = (state.held.region.rows(), &trial.solution, &mut trial.gap);
+        let (modes, motion) = (state.held.region.modes(trial.free[0]), solution.motions[0]);
         let height = |gap: f64, k: usize| gap + c * solution.potential[k] - modes.displacement(motion, k);
         let (s, InPasses { image, .. }) = (&solution.attraction, own.in_passes());
         let cell = |k: usize| {
@@ -60,7 +60,7 @@ impl AttractedStep<'_> {
     /// work of the wall of a cell.
     fn energy(&self, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> [f64; 2] {
         let AttractedStep { state, wanted, law, given: [c, _], .. } = *self;
-        let [elastic, attracted, wall] = state.region.rows().sum_terms(|k| {
+        let [elastic, attracted, wall] = state.held.region.rows().sum_terms(|k| {
             let [traction, potential, open, wall] = cell(k);
             open.is_finite().then(|| [0.5 * c * traction * potential, law.energy(open), wall])
         });
@@ -68,7 +68,7 @@ impl AttractedStep<'_> {
             Load::Force { .. } => -wanted.total * motion.at(wanted.point),
             Load::Spring { stiffness, drive, .. } => {
                 let extended = drive - self.step.indenter.gap().datum - motion.approach;
-                0.5 * stiffness * extended * extended / self.state.region.cell_area()
+                0.5 * stiffness * extended * extended / self.state.held.region.cell_area()
             }
             Load::Approach { .. } => 0.0,
         };
@@ -78,7 +78,7 @@ impl AttractedStep<'_> {
     /// The free part of the motion of a state before the step.
     fn free_motion(&self, state: &Equilibrium) -> RigidMotion {
         let (RigidMotion { approach, tilt }, step) = (state.motions[0], self.step);
-        let prescribed = step.prescribed(0);
+        let prescribed = step.request().prescribed(0);
         let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
         RigidMotion {
             approach: free(self.wanted.translation, approach - step.indenter.gap().datum - prescribed.approach),
@@ -92,7 +92,7 @@ impl AttractedStep<'_> {
         let (state, c) = (self.state, self.given[0]);
         let Solution { pressure, attraction, potential, .. } = solution;
         let cell = |k: usize| {
-            let h = gap[k] + c * potential[k] - motion.at(state.region.center(k));
+            let h = gap[k] + c * potential[k] - motion.at(state.held.region.center(k));
             let traction = pressure[k] - attraction[k];
             let [open, wall] = if pressure[k] > 0.0 { [0.0, traction * h] } else { [h.max(0.0), 0.0] };
             [traction, potential[k], open, wall]
@@ -103,10 +103,10 @@ impl AttractedStep<'_> {
     /// Whether the contact was in no state before: without the attraction that its gap has.
     fn is_first(&self, trial: &Trial) -> bool {
         let AttractedStep { state, step, law, given: [c, _], .. } = *self;
-        let Equilibrium { sum, ref motions, ref solution, .. } = state.current;
-        let back = step.prescribed(0) + RigidMotion { approach: step.indenter.gap().datum, tilt: [0.0; 2] };
+        let Equilibrium { sum, ref motions, ref solution, .. } = state.held.current;
+        let back = step.request().prescribed(0) + RigidMotion { approach: step.indenter.gap().datum, tilt: [0.0; 2] };
         let pulls = |k: usize| {
-            let at = state.region.center(k);
+            let at = state.held.region.center(k);
             let h = trial.gap[k] + c * solution.potential[k] + back.at(at) - motions[0].at(at);
             h.is_finite() && law.traction(h.max(0.0)) > 0.0
         };
@@ -117,8 +117,8 @@ impl AttractedStep<'_> {
     /// of a cell.
     fn bends_up(&self, gap: &[f64], [before, now]: [(&Solution, RigidMotion); 2]) -> [f64; 2] {
         let (state, law, c) = (self.state, self.law, self.given[0]);
-        let [convex, softened] = state.region.rows().sum_terms(|k| {
-            let at = state.region.center(k);
+        let [convex, softened] = state.held.region.rows().sum_terms(|k| {
+            let at = state.held.region.center(k);
             let [h0, h1] = [before, now].map(|(solution, motion)| gap[k] + c * solution.potential[k] - motion.at(at));
             let attraction = |h: f64| law.traction(h.max(0.0));
             let [q0, q1] = [before, now].map(|(solution, _)| solution.pressure[k] - solution.attraction[k]);
@@ -133,7 +133,7 @@ impl AttractedStep<'_> {
     /// By what part of its convex part the energy bends up in the direction of the last step. Beside a fold surfaces move along the mode that is soft, in which
     /// a small residual is a great error.
     pub(super) fn softness(&self, trial: &Trial) -> f64 {
-        let ends = [&self.state.previous, &self.state.current];
+        let ends = [&self.state.previous, &self.state.held.current];
         let [convex, softened] = self.bends_up(&trial.gap, ends.map(|at| (&at.solution, self.free_motion(at))));
         if convex > 0.0 { 1.0 + softened / convex } else { 1.0 }
     }
@@ -141,7 +141,7 @@ impl AttractedStep<'_> {
     /// The work of the spring on a way, over the area of a cell.
     fn of_spring(&self, moved: f64) -> f64 {
         if let Load::Spring { stiffness, .. } = self.step.loads[0] {
-            stiffness / self.state.region.cell_area() * moved * moved
+            stiffness / self.state.held.region.cell_area() * moved * moved
         } else {
             0.0
         }
@@ -149,17 +149,17 @@ impl AttractedStep<'_> {
 
     /// Writes to the report what the step released, and whether the surfaces may have snapped.
     pub(super) fn report_release(&self, own: &mut Attracted, trial: &Trial) {
-        let current = &self.state.current;
-        let motion = self.state.region.modes(trial.free[0]).physical(trial.solution.motions[0]);
+        let current = &self.state.held.current;
+        let motion = self.state.held.region.modes(trial.free[0]).physical(trial.solution.motions[0]);
         let ends = [(&current.solution, self.free_motion(current)), (&trial.solution, motion)];
         let [[before, _], [now, scale]] = ends.map(|(solution, motion)| self.energy_of(solution, motion, &trial.gap));
         let [convex, softened] = self.bends_up(&trial.gap, ends);
         let report = &mut own.report;
-        report.released = self.state.region.cell_area() * (before - now);
-        report.unaccounted = report.released - 0.5 * self.state.region.cell_area() * (convex + softened);
+        report.released = self.state.held.region.cell_area() * (before - now);
+        report.unaccounted = report.released - 0.5 * self.state.held.region.cell_area() * (convex + softened);
         report.bend = 1.0 + softened / convex;
         let much = LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0));
-        report.suspected = report.may_jump(self.state.region.cell_area() * much) && !self.is_first(trial);
+        report.suspected = report.may_jump(self.state.held.region.cell_area() * much) && !self.is_first(trial);
     }
 }
 

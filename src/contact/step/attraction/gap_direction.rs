@@ -3,7 +3,7 @@
 use super::descent::Descent;
 use super::passes::InGap;
 use crate::adhesion::Attraction;
-use crate::contact::window::Window;
+use crate::equilibrium::window::Window;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 use crate::sum::scattered;
@@ -199,14 +199,14 @@ impl Descent<'_> {
         let Descent { problem, window, trial, .. } = self;
         let (state, law, initial) = (problem.state, problem.law, window.gap(&problem.step.indenter));
         let [now, u] = [&trial.solution.potential, state.history.displacement()];
-        let mut motion = state.current.motions[0];
+        let mut motion = state.held.current.motions[0];
         motion.approach -= initial.datum;
         let rise = |k: usize| {
-            let before = initial.above[k] + u[k] - motion.at(state.region.center(k));
+            let before = initial.above[k] + u[k] - motion.at(state.held.region.center(k));
             softens(law, trial.gap[k] + now[k]) - softens(law, before)
         };
-        let most = state.region.rows().greatest((0..u.len()).map(rise).fold(0.0, f64::max));
-        state.current.solution.stiffness - most / problem.scene.softening
+        let most = state.held.region.rows().greatest((0..u.len()).map(rise).fold(0.0, f64::max));
+        state.held.current.solution.stiffness - most / problem.scene.ground.softening
     }
 
     /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient

@@ -27,16 +27,18 @@ use passes::{Extrapolation, InPasses};
 
 use crate::adhesion::Attraction;
 use crate::contact::Edge;
+use crate::contact::Step;
 use crate::contact::scene::Scene;
-use crate::contact::state::{State, net_sum};
-use crate::contact::step::constraints::converged;
+use crate::contact::state::State;
 use crate::contact::step::edge::attraction_beyond;
-use crate::contact::step::gap::RigidBodies;
-use crate::contact::step::initial_guess::{begin, fill};
-use crate::contact::step::request::TriedSpring;
-use crate::contact::step::request::{Step, Trial};
-use crate::contact::step::spring::solve_with_springs;
-use crate::contact::window::Window;
+use crate::equilibrium::RigidBodies;
+use crate::equilibrium::Trial;
+use crate::equilibrium::constraints::converged;
+use crate::equilibrium::guess::{begin, fill};
+use crate::equilibrium::held::net_sum;
+use crate::equilibrium::request::TriedSpring;
+use crate::equilibrium::spring::solve_with_springs;
+use crate::equilibrium::window::Window;
 use crate::error::{AdhesionError, Result, StepError};
 use crate::load::Load;
 use crate::parallel::for_each_band;
@@ -80,19 +82,21 @@ pub(super) struct AttractedStep<'a> {
 
 impl AttractedStep<'_> {
     /// Computes wall pressure, attraction and motion of the trial; its potential is K (z − s) at the end.
-    pub(super) fn solve(&self, window: &mut Window, trial: &mut Trial) -> Result<()> {
+    pub(super) fn solve(
+        &self,
+        window: &mut Window,
+        trial: &mut Trial,
+        attracted: &mut Option<Box<Attracted>>,
+    ) -> Result<()> {
         let time = self.step.interval.time;
         if self.given[0] == 0.0 {
             let what = "a jump of surfaces that attract each other (take a short step instead)";
             return Err(StepError::NoElasticResponse { time, what }.into());
         }
-        begin(self.state, trial, self.step);
+        begin(&self.state.held, trial, self.step.request());
         let cells = trial.gap.len();
-        let mut own = trial.passes.take().unwrap_or_else(|| Box::new(Attracted::new(cells)));
         trial.solution.attraction.resize(cells, 0.0);
-        let solved = self.iterate(&mut own, window, trial);
-        trial.passes = Some(own);
-        solved
+        self.iterate(attracted.get_or_insert_with(|| Box::new(Attracted::new(cells))), window, trial)
     }
 
     fn iterate(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial) -> Result<()> {
@@ -108,10 +112,10 @@ impl AttractedStep<'_> {
         self.hold_by_spring(trial);
         self.open_gap(window, trial);
         self.report_release(own, trial);
-        if scene.settings.edge == Edge::Refuse {
-            own.report.beyond_edge = attraction_beyond(scene, self.law, &state.region, &trial.solution);
+        if scene.ground.settings.edge == Edge::Refuse {
+            own.report.beyond_edge = attraction_beyond(scene, self.law, &state.held.region, &trial.solution);
         }
-        own.keep_weights([&trial.solution, &state.current.solution, &state.previous.solution]);
+        own.keep_weights([&trial.solution, &state.held.current.solution, &state.previous.solution]);
         Ok(())
     }
 
@@ -127,7 +131,7 @@ impl AttractedStep<'_> {
         own.error = (1.0 / self.softness(trial) - 1.0).clamp(1.0, MOST_ERROR);
         trial.free[0] = self.wanted;
         self.open_gap(window, trial);
-        begin(self.state, trial, self.step);
+        begin(&self.state.held, trial, self.step.request());
         if self.state.is_undisturbed() {
             self.first_guess(window, trial, counts);
         } else {
@@ -138,7 +142,7 @@ impl AttractedStep<'_> {
         let InPasses { image, .. } = own.in_passes();
         kernel.apply(attraction, image, work);
         counts.convolutions += 1;
-        if self.state.extrapolation.refresh_is_due() {
+        if self.state.held.extrapolation.refresh_is_due() {
             kernel.apply(pressure, potential, work);
             counts.convolutions += 1;
         } else {
@@ -180,12 +184,12 @@ impl AttractedStep<'_> {
             // no wall holds what pulls, or what turns a body off that tilts freely: it peels
             let peels = matches!(outcome, Outcome::Unbalanced(_)) && wanted.total <= 0.0;
             if plain && (!carried || peels) {
-                let force = wanted.total * self.state.region.cell_area();
+                let force = wanted.total * self.state.held.region.cell_area();
                 return Err(AdhesionError::PulledOff { time: step.interval.time, force }.into());
             }
             if plain || matches!(outcome, Outcome::NotANumber | Outcome::Cancelled) {
                 trial.solution.counts = *counts;
-                converged(outcome, self.scene, &trial.solution, step)?;
+                converged(outcome, &self.scene.ground, &trial.solution, step.request())?;
             }
             let found = if outcome == Outcome::Converged { Some(self.find(own, trial)) } else { None };
             let unsure = UNSURE * tolerance.max(std::mem::replace(&mut exactness, tolerance));
@@ -209,7 +213,7 @@ impl AttractedStep<'_> {
             exact = (EXACT * self.law.range() / found.displaced).clamp(LEAST_EXACT, 1.0);
             inner = (INNER * exact * change).min(LOOSEST);
             // the force of the spring, too
-            let scale = (trial.free[0].total * self.state.region.cell_area()).max(pulled);
+            let scale = (trial.free[0].total * self.state.held.region.cell_area()).max(pulled);
             trial.solution.residual = trial.solution.residual.max(trial.springs[0].missing / scale);
             let (s, g) = (&mut trial.solution.attraction, &trial.gap);
             let next = own.extrapolation(self.state, s, g);
@@ -237,14 +241,14 @@ impl AttractedStep<'_> {
     /// Writes the gap before any traction.
     fn open_gap(&self, window: &Window, trial: &mut Trial) {
         let (state, initial) = (self.state, window.gap(&self.step.indenter));
-        self.bodies.fill_gap(initial, &state.history, &state.current.solution.pressure, &mut trial.gap);
+        self.bodies.fill_gap_of_step(initial, &state.history, &state.held.current.solution.pressure, &mut trial.gap);
     }
 
     /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s has changed much.
     fn extrapolate(&self, trial: &mut Trial) {
         let (state, step) = (self.state, self.step);
-        let (now, before) = (&state.current.solution, &state.previous.solution);
-        let mut reach = state.extrapolation.reach(step.interval.dt);
+        let (now, before) = (&state.held.current.solution, &state.previous.solution);
+        let mut reach = state.held.extrapolation.reach(step.interval.dt);
         let changes = now.attraction.iter().zip(&before.attraction).map(|(now, before)| (now - before).abs());
         if changes.fold(0.0, f64::max) > GREATEST_CHANGE * self.law.traction(0.0) {
             reach = 0.0;
@@ -258,7 +262,7 @@ impl AttractedStep<'_> {
 
     /// Writes the guess of a first step: no pressure, and s of undeformed bodies, which just touch under a force.
     fn first_guess(&self, window: &mut Window, trial: &mut Trial, counts: &mut Counts) {
-        let lowest = self.state.region.rows().least(trial.gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
+        let lowest = self.state.held.region.rows().least(trial.gap.iter().fold(f64::INFINITY, |low, &h| low.min(h)));
         let motion = match self.step.loads[0] {
             Load::Approach { .. } => 0.0,
             _ => lowest,
@@ -277,7 +281,7 @@ impl AttractedStep<'_> {
     /// Adds Σ s to the load that the wall carries, and its moments; returns the force of the attraction \[N\].
     fn add_to_load(&self, trial: &mut Trial) -> f64 {
         let (state, wanted, s) = (self.state, self.wanted, &trial.solution.attraction);
-        let region = &state.region;
+        let region = &state.held.region;
         let [sum, moment1, moment2] = if wanted.tilts() {
             region.rows().sum_terms(|k| {
                 let x = region.center(k);
@@ -306,7 +310,7 @@ impl AttractedStep<'_> {
         if wanted.tilts() {
             trial.solution.motions[0] = region.modes(trial.free[0]).coefficients(motion);
         }
-        sum * self.state.region.cell_area()
+        sum * self.state.held.region.cell_area()
     }
 
     /// One contact problem with the attraction of the trial, which pulls with the force `pulled` \[N\].
@@ -323,13 +327,13 @@ impl AttractedStep<'_> {
             load => [load],
         };
         let step = Step { loads: &loads, tolerance, ..self.step.clone() };
-        solve_with_springs(self.scene, self.state, &step, self.given[0], trial, solve)
+        solve_with_springs(&self.scene.ground, &self.state.held, step.request(), self.given[0], trial, solve)
     }
 
     /// Lays a body on its spring: what is left of the imbalance becomes an error of the gap, which a stiff spring would multiply.
     fn hold_by_spring(&self, trial: &mut Trial) {
         let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
-        let force = self.state.region.cell_area() * net_sum(&self.state.region.rows(), &trial.solution);
+        let force = self.state.held.region.cell_area() * net_sum(&self.state.held.region.rows(), &trial.solution);
         trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
     }
 

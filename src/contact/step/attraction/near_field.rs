@@ -8,8 +8,8 @@
 
 use super::descent::Descent;
 use super::{Attracted, AttractedStep};
-use crate::contact::step::request::Trial;
-use crate::contact::window::Window;
+use crate::equilibrium::Trial;
+use crate::equilibrium::window::Window;
 use crate::error::{Error, Result};
 use crate::parallel::for_each_band;
 use crate::solver::{Counts, Solution};
@@ -48,12 +48,12 @@ impl AttractedStep<'_> {
 
     /// Convolutions with N, in quarters of one with K: along an axis that is periodic, or a single cell, nothing is padded.
     fn near_price(&self) -> usize {
-        if self.scene.kernel.periodic_axes() == [false; 2] { 1 } else { 2 }
+        if self.scene.ground.kernel.periodic_axes() == [false; 2] { 1 } else { 2 }
     }
 
     /// The greatest distance along an axis between cells that act, over the length of the grid.
     fn extent(&self, trial: &Trial) -> f64 {
-        let (region, Solution { pressure, attraction, .. }) = (&self.state.region, &trial.solution);
+        let (region, Solution { pressure, attraction, .. }) = (&self.state.held.region, &trial.solution);
         let least = LEAST_ACTION * self.law.traction(0.0);
         let columns = region.cells()[1];
         let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -99,7 +99,7 @@ impl Descent<'_> {
                 Ok(()) => {}
             }
             let [change, most] = self.correct();
-            let most = c * most * problem.scene.softening / problem.law.traction(0.0);
+            let most = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
             let allowed = MOST_CHANGE * problem.tolerance(self.own.softness);
             if most <= allowed {
                 self.join();

@@ -1,7 +1,7 @@
 //! What a step of surfaces that attract each other works in, and how it went.
 
 use crate::contact::state::State;
-use crate::contact::window::Window;
+use crate::equilibrium::window::Window;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
@@ -180,7 +180,7 @@ impl Attracted {
             return Extrapolation { weight: 0.0, reversed: false, error: 1.0 };
         }
         let InPasses { last_s, last_g, .. } = self.in_passes();
-        let [overlap, square, along, remaining, together] = state.region.rows().sum_terms(|k| {
+        let [overlap, square, along, remaining, together] = state.held.region.rows().sum_terms(|k| {
             let (f, of_g) = (g[k] - s[k], g[k] - last_g[k]);
             let of_f = of_g - (s[k] - last_s[k]);
             Some([of_f * f, of_f * of_f, of_g * f, f * f, of_g * of_f])

@@ -5,7 +5,8 @@
 //! halved again, as far as to a quarter of the step.
 
 use super::{PassReport, add};
-use crate::contact::{Equilibrium, State, Step, ViscoelasticContact};
+use crate::contact::{Step, ViscoelasticContact};
+use crate::equilibrium::{Equilibrium, Held};
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::solver::{Counts, Solution};
@@ -23,7 +24,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the step is cancelled, or the law of attraction fails. A part that is not found is a jump.
     pub(in crate::contact) fn look_for_jump(&mut self, step: &Step<'_>) -> Result<()> {
-        let Some(own) = self.computation.trial.passes.as_mut() else { return Ok(()) };
+        let Some(own) = self.computation.attracted.as_mut() else { return Ok(()) };
         let (whole, end, state) = (own.report, own.end.take(), &mut self.computation.state);
         if !state.history.start_is_kept() {
             own.report.jumped = true;
@@ -36,11 +37,11 @@ impl ViscoelasticContact {
         state.roll_back();
         let start = self.load_like(0, &step.loads[0]);
         let mut search = Search { contact: self, step, start, released: whole.released, counts: Counts::default() };
-        let jumps = search.jumps(0.0, 1.0, &end.current.solution);
+        let jumps = search.jumps(0.0, 1.0, &end.held.current.solution);
         let (counts, jumped) = (search.counts, *jumps.as_ref().unwrap_or(&true));
         self.go_to(&end);
-        add(&mut self.computation.state.current.solution.counts, counts);
-        if let Some(own) = self.computation.trial.passes.as_mut() {
+        add(&mut self.computation.state.held.current.solution.counts, counts);
+        if let Some(own) = self.computation.attracted.as_mut() {
             (own.report, own.end, own.looks) = (PassReport { jumped, ..whole }, Some(end), true);
         }
         match jumps {
@@ -51,7 +52,7 @@ impl ViscoelasticContact {
 
     /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.
     pub(in crate::contact) fn is_elsewhere(&self, [start, end]: [&Equilibrium; 2]) -> bool {
-        let [end, start, now] = [end, start, &self.computation.state.current].map(|at| &at.solution.potential);
+        let [end, start, now] = [end, start, &self.computation.state.held.current].map(|at| &at.solution.potential);
         // on other cells they are not compared
         if end.len() != start.len() || end.len() != now.len() {
             return true;
@@ -91,7 +92,7 @@ impl Search<'_> {
         (taken.interval.interpolant, taken.end, taken.cancelled) = (step.interval.interpolant, end, step.cancelled);
         let attempt = contact.attempt(&taken)?;
         contact.adopt(attempt, taken, [0.0; 2])?;
-        let State { current, .. } = &contact.computation.state;
+        let Held { current, .. } = &contact.computation.state.held;
         add(&mut self.counts, current.solution.counts);
         // besides the jump, what is smooth
         let least = (LEFT + (1.0 - LEFT) * part * part) * self.released;

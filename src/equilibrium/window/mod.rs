@@ -1,12 +1,12 @@
 //! The part of the grid that is computed: which one, with what, and how a state gets to a larger one.
 
-pub(in crate::contact) mod fields;
+pub(crate) mod fields;
 pub(crate) mod placement;
 pub(crate) mod region;
 
 use std::sync::Arc;
 
-use crate::contact::{Indenter, Region, Scene, Solver, Trial};
+use crate::equilibrium::{Ground, Indenter, Region, Solver, Trial};
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
 use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Solve, Stop};
@@ -15,17 +15,17 @@ use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Solve, Stop};
 /// another region and never saved.
 #[derive(Debug, Clone)]
 pub(crate) struct Window {
-    pub(in crate::contact) kernel: LocalKernel,
-    pub(in crate::contact) work: Workspace,
+    pub(crate) kernel: LocalKernel,
+    pub(crate) work: Workspace,
     /// The near field of the kernel, and its work space, where surfaces attract each other.
-    pub(in crate::contact) near: Option<(LocalKernel, Workspace)>,
+    pub(crate) near: Option<(LocalKernel, Workspace)>,
     /// The inverse of the near field, or of the kernel of periodic bodies, where surfaces attract each other.
-    pub(in crate::contact) inverse: Option<PeriodInverse>,
+    pub(crate) inverse: Option<PeriodInverse>,
     solver: ContactSolver,
     /// The gap of the indenter on the region, if that is not the whole grid.
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
-    pub(super) lowest_outside: f64,
+    pub(crate) lowest_outside: f64,
     /// The indenter that the gap belongs to.
     indenter: Option<Arc<Indenter>>,
 }
@@ -37,16 +37,16 @@ enum ContactSolver {
 }
 
 impl Window {
-    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Arc<Indenter>) -> Window {
+    pub(crate) fn new(ground: &Ground, region: &Region, indenter: &Arc<Indenter>) -> Window {
         let rows = region.rows();
-        let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &rows);
+        let kernel = ground.kernel.on_rows(region.grid(), region.folded(), &rows);
         let mut work = kernel.workspace();
-        let solver = match scene.settings.solver {
-            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
-            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, scene.bodies))),
+        let solver = match ground.settings.solver {
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, ground.bodies, &mut work))),
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, ground.bodies))),
         };
-        let near = scene.attraction.as_ref().and_then(|_| kernel.near());
-        let inverse = scene.attraction.as_ref().map(|_| kernel.period_inverse());
+        let near = ground.attraction.as_ref().and_then(|_| kernel.near());
+        let inverse = ground.attraction.as_ref().map(|_| kernel.period_inverse());
         let mut window =
             Window { near, inverse, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
         window.follow(region, indenter);
@@ -64,7 +64,7 @@ impl Window {
     }
 
     /// Exchanges the kernel for the near field, if there is one, and back.
-    pub(in crate::contact) fn trade_kernels(&mut self) {
+    pub(crate) fn trade_kernels(&mut self) {
         if let Some((kernel, work)) = &mut self.near {
             std::mem::swap(&mut self.kernel, kernel);
             self.work.trade(work);

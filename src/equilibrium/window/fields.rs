@@ -1,11 +1,9 @@
 //! Fields on a region, on the whole grid, and transferred to other regions.
 
-use std::sync::Arc;
-
-use crate::contact::{Indenter, Region, Scene, State, Window};
+use crate::equilibrium::{Region, Window};
 use crate::extent::Extent;
 use crate::geometry::Gap;
-use crate::hereditary::Role;
+use crate::hereditary::{Field, Role};
 
 impl Region {
     /// The part of a field on the whole grid that belongs to the region.
@@ -129,30 +127,23 @@ impl Region {
     }
 }
 
-/// A copy of the state on another region, and the window that computes there under `indenter`. The state loses the start of
-/// its last step, and is otherwise the same. With u = K U, a displacement outside the old region is the convolution of its
-/// source; nothing is unknown where the images of the region cover the grid.
-pub(in crate::contact) fn transferred(
-    scene: &Scene,
-    state: &mut State,
-    region: Region,
-    indenter: &Arc<Indenter>,
-) -> (State, Window) {
-    let mut window = Window::new(scene, &region, indenter);
-    let (kernel, work) = (&window.kernel, &mut window.work);
-    state.history.apply_pending_step();
-    let (from, cells) = (&state.region, region.len());
-    let mut one = |own: &[f64], source: Option<&[f64]>| {
+/// Fields of the region `from` on the region of a `window`, by their roles. With u = K U, a displacement outside the old region is the
+/// convolution of its source; nothing is unknown where the images of the region cover the grid.
+pub(crate) fn transfer_by_role<'a>(
+    from: &'a Region,
+    to: &'a Region,
+    window: &'a mut Window,
+) -> impl FnMut(Field<'_>) -> Vec<f64> + 'a {
+    let (kernel, work, cells) = (&window.kernel, &mut window.work, to.len());
+    let mut one = move |own: &[f64], source: Option<&[f64]>| {
         let source = source.filter(|source| !from.covers() && source.iter().any(|&s| s != 0.0));
-        let Some(source) = source else { return from.transfer(own, &region, |_| 0.0) };
+        let Some(source) = source else { return from.transfer(own, to, |_| 0.0) };
         let mut far = vec![0.0; cells];
-        kernel.apply(&from.transfer(source, &region, |_| 0.0), &mut far, work);
-        from.transfer(own, &region, |k| far[k])
+        kernel.apply(&from.transfer(source, to, |_| 0.0), &mut far, work);
+        from.transfer(own, to, |k| far[k])
     };
-    let mut transferred = state.map(&region, &mut |field| match field.role {
+    move |field| match field.role {
         Role::Lasting { source } => field.transferred(source, cells, &mut one),
         Role::OfStep | Role::Work => vec![0.0; cells * field.per_cell],
-    });
-    transferred.sum_up();
-    (transferred, window)
+    }
 }

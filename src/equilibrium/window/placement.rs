@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::Grid;
-use crate::contact::{Indenter, Region, Scene, State, Step, Trial, Window};
+use crate::equilibrium::{Ground, Held, Indenter, Region, Request, Trial, Window};
 use crate::error::{Result, coverage};
 use crate::extent::Extent;
 use crate::geometry::Gap;
@@ -14,45 +14,48 @@ use crate::solver::RigidMotion;
 /// Bisections for the approach at first contact, an estimate.
 const HALVINGS: usize = 24;
 
-/// The region that a step has to begin on, unless the state has it already: symmetric where the region is folded, and with
-/// the first contact within it. Told with it is whether it was chosen for a contact.
+/// The region that a solution has to begin on, unless it is the one held: symmetric where the region is folded and the indenter is
+/// not `moving` along that axis, and with the first contact within it, at the compliance `first` of bodies that are yet to touch.
+/// Told with it is whether it was chosen for a contact.
 ///
 /// # Errors
-/// If ranks share out the rows, and the step breaks a symmetry.
-pub(in crate::contact) fn region_for(scene: &Scene, state: &State, step: &Step<'_>) -> Result<Option<(Region, bool)>> {
+/// If ranks share out the rows, and the load breaks a symmetry.
+pub(crate) fn region_for(
+    ground: &Ground,
+    held: &Held,
+    request: Request<'_>,
+    moving: [bool; 2],
+    first: Option<f64>,
+) -> Result<Option<(Region, bool)>> {
     let upright = |axis: usize| {
-        step.loads.iter().all(|load| match load.tilt()[axis] {
+        request.loads.iter().all(|load| match load.tilt()[axis] {
             Tilt::Fixed(angle) => angle == 0.0,
             Tilt::Free { at } => at == 0.0,
         })
     };
-    let folded = state.region.folded();
-    let moving = step.interval.stride;
-    let even = step.indenter.keeps_folded(folded, &scene.grid);
-    let still_folded = [0, 1].map(|axis| even[axis] && upright(axis) && moving[axis] == 0);
-    coverage::BROKEN_SYMMETRY.unless(|_| still_folded != folded && state.region.is_shared())?;
-    let unfolded = (still_folded != folded).then(|| state.region.unfolded(still_folded));
-    let region = unfolded.as_ref().unwrap_or(&state.region);
-    let to_be_placed = state.is_undisturbed() && !state.region_is_for_contact && state.history.far_source().is_some();
-    if to_be_placed
-        && !region.covers()
-        && let Some(placed) = first_contact(scene, region, step)
+    let folded = held.region.folded();
+    let even = request.indenter.keeps_folded(folded, &ground.grid);
+    let still_folded = [0, 1].map(|axis| even[axis] && upright(axis) && !moving[axis]);
+    coverage::BROKEN_SYMMETRY.unless(|_| still_folded != folded && held.region.is_shared())?;
+    let unfolded = (still_folded != folded).then(|| held.region.unfolded(still_folded));
+    let region = unfolded.as_ref().unwrap_or(&held.region);
+    if let Some(compliance) = first.filter(|_| !held.region_is_for_contact && !region.covers())
+        && let Some(placed) = first_contact(ground, region, request, compliance)
     {
         return Ok(Some((placed, true)));
     }
-    Ok(unfolded.map(|region| (region, state.region_is_for_contact)))
+    Ok(unfolded.map(|region| (region, held.region_is_for_contact)))
 }
 
 /// The region of a first contact, by an estimate of how deep the bodies sink in; `None` if nothing presses them.
-fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Region> {
+fn first_contact(ground: &Ground, region: &Region, request: Request<'_>, compliance: f64) -> Option<Region> {
     let mut touched: Option<Extent> = None;
-    for (body, load) in step.loads.iter().enumerate() {
+    for (body, load) in request.loads.iter().enumerate() {
         let free_tilt = |axis: usize| matches!(load.tilt()[axis], Tilt::Free { .. }) && !region.folded()[axis];
-        let prescribed = step.prescribed(body);
+        let prescribed = request.prescribed(body);
         // twice the depth of the level at which the gap has risen by a²/2R, see the cold start of the solver
         let sunk = |normal: f64| {
-            let force = scene.material.contact_compliance(step.interval.dt) * normal;
-            let [lowest, rest] = level(scene, &region.of_gap(), &step.indenter, body, force);
+            let [lowest, rest] = level(ground, &region.of_gap(), request.indenter, body, compliance * normal);
             lowest + 2.0 * rest
         };
         let motion = match *load {
@@ -62,26 +65,26 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
             Load::Approach { .. } => prescribed,
             // neither deeper than without a spring, nor than under the force of the spring if the body did not yield
             Load::Spring { stiffness, drive, .. } => {
-                let [datum, lowest] = [step.indenter.gap().datum, sunk(0.0)];
+                let [datum, lowest] = [request.indenter.gap().datum, sunk(0.0)];
                 let approach = (drive - datum).min(sunk(stiffness * (drive - datum - lowest).max(0.0)));
                 RigidMotion { approach, ..prescribed }
             }
         };
-        let below = cells_below(&scene.grid, region.folded(), step.indenter.gap(), body, motion, |_, _| true);
+        let below = cells_below(&ground.grid, region.folded(), request.indenter.gap(), body, motion, |_, _| true);
         touched = Extent::hull(touched.into_iter().chain(below));
     }
-    let lowest = Region::lowest_cells(&scene.grid, step.indenter.gap(), scene.bodies);
-    touched.map(|touched| region_holding(&scene.grid, region.folded(), lowest.with(touched)))
+    let lowest = Region::lowest_cells(&ground.grid, request.indenter.gap(), ground.bodies);
+    touched.map(|touched| region_holding(&ground.grid, region.folded(), lowest.with(touched)))
 }
 
 /// The depth below first touch at which a body about comes to rest, under the product of a force and a contact compliance.
-pub(crate) fn resting_depth(scene: &Scene, state: &State, body: usize, force_times_compliance: f64) -> f64 {
-    level(scene, &state.region.of_gap(), &state.indenter, body, force_times_compliance)[1]
+pub(crate) fn resting_depth(ground: &Ground, held: &Held, body: usize, force_times_compliance: f64) -> f64 {
+    level(ground, &held.region.of_gap(), &held.indenter, body, force_times_compliance)[1]
 }
 
 /// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by a²/2R; `all`
 /// is the region that the gap is on.
-fn level(scene: &Scene, all: &Region, indenter: &Indenter, body: usize, force_times_compliance: f64) -> [f64; 2] {
+fn level(ground: &Ground, all: &Region, indenter: &Indenter, body: usize, force_times_compliance: f64) -> [f64; 2] {
     let (gap, rows, images) = (indenter.gap(), all.rows(), all.images());
     let heights =
         || gap.above.iter().enumerate().filter(|(k, h)| h.is_finite() && gap.owner(*k) == body).map(|(_, h)| *h);
@@ -89,7 +92,7 @@ fn level(scene: &Scene, all: &Region, indenter: &Indenter, body: usize, force_ti
     let highest = rows.greatest(heights().fold(lowest, f64::max));
     let force = 0.375 * PI.sqrt() * force_times_compliance;
     let cells_below = |level: f64| (images * rows.count(heights().filter(|&h| h <= level).count())) as f64;
-    let rise = |level: f64| force / (cells_below(level) * scene.grid.cell_area()).sqrt();
+    let rise = |level: f64| force / (cells_below(level) * ground.grid.cell_area()).sqrt();
     let is_low = |level: f64| level - lowest < rise(level);
     if is_low(highest) {
         return [lowest, rise(highest)]; // all of it is pressed
@@ -97,26 +100,27 @@ fn level(scene: &Scene, all: &Region, indenter: &Indenter, body: usize, force_ti
     [lowest, bisect(lowest, highest, HALVINGS, is_low)[1] - lowest]
 }
 
-/// Cells that a region holds beyond the reach of contact, so that it need not grow every step.
+/// Cells that a region holds beyond the reach of contact, so that it need not grow every request.
 const MARGIN: f64 = 0.1;
 /// A region that would be larger than this part of the grid is all of it.
-pub(in crate::contact) const MAX_WINDOW_FRACTION: f64 = 0.7;
+pub(crate) const MAX_WINDOW_FRACTION: f64 = 0.7;
 
-/// After a step was tried: a larger region, if the bodies might touch outside this one.
+/// A larger region, if the bodies of a trial might touch outside this one, whose displacement is K
+/// times a factor and a source.
 ///
 /// No convolution is needed to rule that out: at a distance r, K of a source U ≥ 0 within a distance ρ of a point is at least
 /// ∫U/(π (r + ρ)). Where pressures released within long steps have left some U < 0, that takes away at most ∫|U|/(π (r − ρ)).
-pub(in crate::contact) fn outgrown(
-    scene: &Scene,
-    state: &State,
+pub(crate) fn outgrown(
+    ground: &Ground,
+    held: &Held,
     window: &Window,
     trial: &Trial,
-    step: &Step<'_>,
+    request: Request<'_>,
+    (factor, source): (f64, &[f64]),
 ) -> Option<Region> {
-    let source = state.history.far_trial()?;
-    let (region, gap) = (&state.region, step.indenter.gap());
-    let [l1, l2] = scene.grid.lengths();
-    let motions = || (0..scene.bodies).map(|body| motion_tried(region, trial, step, body));
+    let (region, gap) = (&held.region, request.indenter.gap());
+    let [l1, l2] = ground.grid.lengths();
+    let motions = || (0..ground.bodies).map(|body| trial.motion(region, request, body));
     let deepest = |m: RigidMotion| m.approach + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
     if motions().all(|motion| deepest(motion) <= window.lowest_outside) {
         return None;
@@ -137,28 +141,22 @@ pub(in crate::contact) fn outgrown(
         radius = radius.max(distance(grid.center(k / m2, k % m2)));
     }
     let radius = radius + 0.5 * side1.hypot(side2);
-    let area = region.cell_area() / PI;
+    let area = factor * region.cell_area() / PI;
     let least = |r: f64| {
         let lowered = if negative > 0.0 { negative / (r - radius).max(0.0) } else { 0.0 };
         area * (positive / (r + radius) - lowered)
     };
     let touched = motions().enumerate().filter_map(|(body, motion)| {
-        cells_below(&scene.grid, folded, gap, body, motion, |cell, depth| {
-            let computed = state.region_is_for_contact && region.find(cell).is_some();
-            !computed && depth > least(distance(scene.grid.center(cell[0], cell[1])))
+        cells_below(&ground.grid, folded, gap, body, motion, |cell, depth| {
+            let computed = held.region_is_for_contact && region.find(cell).is_some();
+            !computed && depth > least(distance(ground.grid.center(cell[0], cell[1])))
         })
     });
-    Extent::hull(touched).map(|touched| region_holding(&scene.grid, folded, region.extent().with(touched)))
-}
-
-/// The motion of a body at the end of the step being tried, from the datum of the gap.
-pub(in crate::contact) fn motion_tried(region: &Region, trial: &Trial, step: &Step<'_>, body: usize) -> RigidMotion {
-    let free = region.modes(trial.free[body]).physical(trial.solution.motions[body]);
-    step.prescribed(body) + free
+    Extent::hull(touched).map(|touched| region_holding(&ground.grid, folded, region.extent().with(touched)))
 }
 
 /// A region of suitable size that holds these cells, or the whole grid where it would be most of it.
-pub(super) fn region_holding(grid: &Grid, folded: [bool; 2], held: Extent) -> Region {
+pub(crate) fn region_holding(grid: &Grid, folded: [bool; 2], held: Extent) -> Region {
     let whole = Region::whole(grid, folded);
     let region = Region::around(grid, folded, held, MARGIN);
     if region.len() as f64 > MAX_WINDOW_FRACTION * whole.len() as f64 { whole } else { region }
@@ -166,7 +164,7 @@ pub(super) fn region_holding(grid: &Grid, folded: [bool; 2], held: Extent) -> Re
 
 /// The least rectangle of the cells where the undeformed gap of a body in `motion` is negative, and which are `wanted`
 /// with their depth.
-pub(super) fn cells_below(
+pub(crate) fn cells_below(
     grid: &Grid,
     folded: [bool; 2],
     gap: &Gap,

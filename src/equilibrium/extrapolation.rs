@@ -54,11 +54,6 @@ impl Extrapolation {
         self.last_dt = 0.0;
     }
 
-    /// The pressure was replaced: its K p is not known.
-    pub(crate) fn renew(&mut self) {
-        self.due = 2;
-    }
-
     /// After a step of length `dt` with Σ p = `sum`, whose guess reached so many times the step before it ahead.
     pub(crate) fn accept(&mut self, dt: f64, sum: f64, reach: f64) {
         self.last_dt = dt;

@@ -1,7 +1,8 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
-use crate::contact::{State, ViscoelasticContact};
+use crate::equilibrium::Held;
 use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
+use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
@@ -13,19 +14,19 @@ use crate::{Axis, memory};
 /// Share of a motion, by its square, that is taken for dependent on the others: of a body that tilts on two cells.
 const DEPENDENT: f64 = 1e-9;
 
-impl ViscoelasticContact {
+impl Fields<'_> {
     /// Area of contact \[m²\].
     ///
     /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to
     /// the edge within a fraction of a cell. The area is the area of the polygons through these points. Where the
     /// pressure does not fall towards the edge, or the indenter has no surface beyond it, as at the rim of a punch, the
     /// contact ends with the cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting
-    /// cells ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
+    /// cells ([`Fields::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
     /// cells are stiffer than older ones, and the pressure follows the root only within them: then the area errs by up
     /// to a few per cent at 128² cells. Where surfaces [attract](crate::adhesion) each other, contact is where the wall presses; its pressure
     /// follows the root within the zone of the attraction, and the area errs by 1.5 % with 6 cells in the zone, and by 0.5 % with 12. A call of all [ranks](crate::parallel) that share out the rows.
     pub fn contact_area(&self) -> f64 {
-        let State { region, .. } = &self.computation.state;
+        let Held { region, .. } = self.held;
         if self.contact_cells() == 0 {
             return 0.0;
         }
@@ -60,7 +61,7 @@ impl ViscoelasticContact {
     /// contact.step(0.0, Load::force(0.5))?;
     /// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
     /// let error = (contact.approach() / hertz.approach - 1.0).abs();
-    /// let estimate = contact.mesh_error()?.expect("in contact").approach;
+    /// let estimate = contact.fields().mesh_error()?.expect("in contact").approach;
     /// assert!(error < 2.0 * estimate && error > 0.2 * estimate);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
@@ -71,7 +72,7 @@ impl ViscoelasticContact {
     pub fn mesh_error(&self) -> Result<Option<MeshError>> {
         self.covers(coverage::MESH_ERROR)?;
         let pressed = self.pressed();
-        Ok(match &self.computation.state.indenter.gap().owner {
+        Ok(match &self.held.indenter.gap().owner {
             Some(owner) => pressed.mesh_error_of_bodies(owner, self.bodies()),
             None => pressed.mesh_error(self.contact_cells()),
         })
@@ -93,7 +94,7 @@ impl ViscoelasticContact {
     ///     .material(Material::incompressible(Elastic::new(1.0e6)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(1.0))?;
-    /// assert!((contact.stiffness_over_modulus()? / 2.0e-3 - 1.0).abs() < 0.01);
+    /// assert!((contact.fields().stiffness_over_modulus()? / 2.0e-3 - 1.0).abs() < 0.01);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
@@ -103,18 +104,25 @@ impl ViscoelasticContact {
         self.stiffnesses([None; 2]).map(|(upright, _)| upright)
     }
 
-    /// [`ViscoelasticContact::stiffness_over_modulus`], and how a load point and the tilts move under a unit of force over the modulus,
+    /// [`Fields::stiffness_over_modulus`], and how a load point and the tilts move under a unit of force over the modulus,
     /// while the body tilts freely about it along each axis of which the point is given: (S⁻¹)_i0 of the matrix S_ij = ∬ q_j ξ_i, K q_j =
     /// ξ_j on the contact, ξ = 1, x1 − e1, x2 − e2.
     pub(crate) fn stiffnesses(&self, load_point: [Option<f64>; 2]) -> Result<(f64, [f64; 3])> {
-        let State { clock, region, current, .. } = &self.computation.state;
-        let (kernel, rows) = (&self.computation.window.kernel, region.rows());
+        let (Held { region, current, .. }, rows) = (self.held, self.held.region.rows());
         if current.contact_cells == 0 {
             return Ok((0.0, [f64::INFINITY, 0.0, 0.0]));
         }
-        if kernel.whole.mean_is_held() && current.contact_cells == self.grid().len() {
+        if self.ground.kernel.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok((f64::INFINITY, [0.0; 3]));
         }
+        let own;
+        let kernel = match self.kernel {
+            Some(kernel) => kernel,
+            None => {
+                own = self.ground.kernel.on_rows(region.grid(), region.folded(), &rows);
+                &own
+            }
+        };
         // a body that is even along an axis does not tilt along it
         let tilts = |axis: usize| load_point[axis].filter(|_| !region.folded()[axis]);
         let motion = |motion: usize, k: usize| match motion.checked_sub(1) {
@@ -127,7 +135,7 @@ impl ViscoelasticContact {
                 .rows()
                 .unless_lost(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
                 .map_err(|(iterations, residual)| {
-                    let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
+                    let (time, dt, tolerance) = (self.about.time.unwrap_or(0.0), 0.0, FLAT_PUNCH_TOLERANCE);
                     let convergence = Convergence::new(Vec::new(), tolerance, false, true).into();
                     Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
                 })?;
@@ -141,7 +149,7 @@ impl ViscoelasticContact {
         Ok((matrix[0][0], solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT)))
     }
 
-    /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](ViscoelasticContact::contact_area); 0 without
+    /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](Fields::contact_area); 0 without
     /// contact. The force includes the [attraction](crate::adhesion), also beyond the contact.
     pub fn mean_pressure(&self) -> f64 {
         let area = self.contact_area();
@@ -150,7 +158,7 @@ impl ViscoelasticContact {
 
     /// Greatest pressure of any cell \[Pa\]; 0 without contact.
     pub fn max_pressure(&self) -> f64 {
-        let State { region, current, .. } = &self.computation.state;
+        let Held { region, current, .. } = self.held;
         region.rows().greatest(crate::sum::greatest(&current.solution.pressure))
     }
 
@@ -176,7 +184,7 @@ impl ViscoelasticContact {
     ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
-    /// let gaps = contact.gap_distribution(20)?;
+    /// let gaps = contact.fields().gap_distribution(20)?;
     /// for (gap, density) in gaps.centers().zip(&gaps.density) {
     ///     println!("{gap:.2e} m  {density:.3e} 1/m");
     /// }
@@ -206,9 +214,9 @@ impl ViscoelasticContact {
     ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
-    /// let profile = contact.profile(Axis::X1, 0.0)?;
+    /// let profile = contact.fields().profile(Axis::X1, 0.0)?;
     /// assert_eq!([profile.positions.len(), profile.pressure.len()], [33, 33]);
-    /// assert_eq!(profile.pressure[16], contact.max_pressure());
+    /// assert_eq!(profile.pressure[16], contact.fields().max_pressure());
     /// # Ok::<(), Error>(())
     /// ```
     ///
@@ -220,7 +228,7 @@ impl ViscoelasticContact {
         let ((axis, across), grid) = (along.and_other(), self.grid());
         let line = line_through(grid, across, ("coordinate of the profile", at))?;
         let mut field = self.gap()?;
-        let rows = self.computation.state.region.rows();
+        let rows = self.held.region.rows();
         let line_of = |field: &[f64]| self.line_of(field, along, line);
         let [pressure, displacement, gap] =
             rows.unless_lost(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&field)?]))?;
@@ -255,9 +263,9 @@ impl ViscoelasticContact {
     ///     .geometry(&Sphere::new(10.0e-3)?)
     ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
-    /// assert_eq!(contact.asymmetry([0.0; 2])?, None);
+    /// assert_eq!(contact.fields().asymmetry([0.0; 2])?, None);
     /// contact.step(0.0, Load::force(0.5))?;
-    /// let asymmetry = contact.asymmetry([0.0; 2])?.expect("in contact");
+    /// let asymmetry = contact.fields().asymmetry([0.0; 2])?.expect("in contact");
     /// assert!(asymmetry.skewness()[0].abs() < 1e-12);
     /// # Ok::<(), Error>(())
     /// ```
@@ -283,7 +291,7 @@ impl ViscoelasticContact {
             first: None,
             periodic: self.kernel().periodic_axes(),
             pressure: self.pressure(),
-            gap: &self.computation.state.indenter.gap().above,
+            gap: &self.held.indenter.gap().above,
             extent: self.extent_of_contact(),
             body: None,
         }
@@ -302,9 +310,9 @@ mod tests {
         let [radius, peak] = hertz(0.5);
         // odd number of cells: one lies in the middle
         let mut contact = sphere([129; 2], [2.6 * radius; 2], [0.0; 2], 0.5);
-        assert_abs_diff_eq!(contact.max_pressure() / peak, 1.0, epsilon = 1e-3);
-        assert_abs_diff_eq!(contact.mean_pressure() / (peak / 1.5), 1.0, epsilon = 3e-3);
+        assert_abs_diff_eq!(contact.fields().max_pressure() / peak, 1.0, epsilon = 1e-3);
+        assert_abs_diff_eq!(contact.fields().mean_pressure() / (peak / 1.5), 1.0, epsilon = 3e-3);
         contact.step(0.0, Load::force(0.0)).unwrap();
-        assert_eq!([contact.mean_pressure(), contact.max_pressure()], [0.0; 2]);
+        assert_eq!([contact.fields().mean_pressure(), contact.fields().max_pressure()], [0.0; 2]);
     }
 }

@@ -1,14 +1,14 @@
 //! The rigid bodies that press on the creeping body: their gap, its symmetry, and the hulls where loads may act.
 
-pub(in crate::contact) mod hull;
-mod slope;
+pub(crate) mod hull;
+pub(crate) mod slope;
 
 use std::sync::OnceLock;
 
 use self::slope::Slopes;
 use crate::Grid;
-use crate::contact::window::region::Region;
-use crate::contact::{Hull, Scene};
+use crate::equilibrium::Hull;
+use crate::equilibrium::window::region::Region;
 use crate::geometry::Gap;
 use crate::solver::{HaloRows, RigidMotion};
 
@@ -108,6 +108,20 @@ pub(crate) fn even_axes([n1, n2]: [usize; 2], alike: impl Fn(usize, usize) -> bo
     [n1.is_multiple_of(2) && (0..n1 / 2).all(rows), n2.is_multiple_of(2) && (0..n1).all(columns)]
 }
 
+/// Axes about whose middle the gap of all bodies together is even, bitwise.
+pub(crate) fn even_axes_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
+    // the lowest body, and the first of several as low
+    let lowest = |k: usize| {
+        let own = gaps.iter().map(|gap| gap[k]).enumerate();
+        own.fold((0, f64::INFINITY), |lowest, (body, h)| if h < lowest.1 { (body, h) } else { lowest })
+    };
+    let datum = gaps.iter().flat_map(|gap| gap.iter()).copied().fold(f64::INFINITY, f64::min);
+    even_axes(cells, |k, mirror| {
+        let (own, image) = (lowest(k), lowest(mirror));
+        own.0 == image.0 && own.1 - datum == image.1 - datum
+    })
+}
+
 /// Indenters in checkpoints: their gap without its heights, and how many bodies there are.
 #[cfg(feature = "checkpoint")]
 pub(crate) mod saved {
@@ -127,32 +141,9 @@ pub(crate) mod saved {
     }
 }
 
-impl Scene {
-    /// Greatest displacement in contact over the thickness of a layer, as far as the layer and not its base is displaced; `None` without
-    /// layer or contact. `motions` count from the datum of the gap. A call of all ranks.
-    pub(in crate::contact) fn compression(
-        &self,
-        indenter: &Indenter,
-        region: &Region,
-        pressure: &[f64],
-        motions: impl Fn(usize) -> RigidMotion,
-    ) -> Option<f64> {
-        let (layer, rows) = (self.kernel.layer_of()?, region.rows());
-        let in_contact = || (0..pressure.len()).filter(|&k| pressure[k] > 0.0);
-        let displaced = |k: usize| {
-            let at = indenter.index(&self.grid, region, k);
-            motions(indenter.gap().owner(at)).at(region.center(k)) - indenter.gap().above[at]
-        };
-        let cells = region.images() * rows.count(in_contact().count());
-        let deepest = rows.greatest(in_contact().map(displaced).fold(0.0, f64::max));
-        let share = layer.share(cells as f64 * self.grid.cell_area());
-        (cells > 0).then(|| share * deepest / layer.thickness())
-    }
-}
-
 impl Indenter {
     /// The index in the gap of the cell `k` of a region.
-    pub(in crate::contact) fn index(&self, grid: &Grid, region: &Region, k: usize) -> usize {
+    pub(crate) fn index(&self, grid: &Grid, region: &Region, k: usize) -> usize {
         let [i, j] = region.cell(k);
         if self.is_local { k } else { i * grid.cells()[1] + j }
     }

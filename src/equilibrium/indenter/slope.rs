@@ -1,10 +1,11 @@
 //! Slopes of the undeformed bodies in contact.
 
 use crate::Grid;
-use crate::contact::read::limits::STEEP;
-use crate::contact::{Indenter, Region};
+use crate::equilibrium::{Indenter, Region};
 use crate::solver::{HaloExchange, HaloRows};
 
+/// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
+pub(crate) const STEEP: f64 = 0.5;
 /// Bodies without a slope beyond this are no real ones: a nanometre over a millimetre.
 const FLAT: f64 = 1e-6;
 /// Nor do surfaces of so great a length rise by less than this part of it \[m, 1\]: lengths in mm or µm that are read as metres.

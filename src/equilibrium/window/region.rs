@@ -16,7 +16,7 @@ use crate::solver::{Freedom, Modes};
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Region {
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
-    pub(in crate::contact) whole: Grid,
+    pub(crate) whole: Grid,
     /// Its cells, with the coordinates of the whole.
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
     grid: Grid,

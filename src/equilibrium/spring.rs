@@ -7,8 +7,8 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::step::request::TriedSpring;
-use crate::contact::{Scene, State, Step, Trial};
+use crate::equilibrium::request::TriedSpring;
+use crate::equilibrium::{Ground, Held, Request, Trial};
 use crate::geometry::Gap;
 use crate::load::Load;
 use crate::quadrature::bisect;
@@ -25,33 +25,32 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Halvings of the depth of a first contact.
 const HALVINGS: usize = 40;
 
-/// The springs of a step, each with the body that it drives, its compliance \[m/N\] and its drive from the datum of the gap.
-fn springs<'a>(step: &'a Step<'_>) -> impl Iterator<Item = (usize, f64, f64)> + Clone + 'a {
-    let datum = step.indenter.gap().datum;
-    step.loads.iter().enumerate().filter_map(move |(body, load)| match *load {
+/// The springs of the bodies, each with the body that it drives, its compliance \[m/N\] and its drive from the datum of the gap.
+fn springs(request: Request<'_>) -> impl Iterator<Item = (usize, f64, f64)> + Clone {
+    let datum = request.indenter.gap().datum;
+    request.loads.iter().enumerate().filter_map(move |(body, load)| match *load {
         Load::Spring { stiffness, drive, .. } => Some((body, 1.0 / stiffness, drive - datum)),
         Load::Force { .. } | Load::Approach { .. } => None,
     })
 }
 
 /// Estimated dω/dF, as of a circle with the area of the present contact in a step of compliance `c`.
-fn yielding(scene: &Scene, state: &State, c: f64) -> f64 {
-    let pressed = (state.current.contact_cells.max(1) / scene.bodies).max(1) as f64;
-    0.5 * c / (pressed * scene.grid.cell_area() / PI).sqrt()
+fn yielding(ground: &Ground, held: &Held, c: f64) -> f64 {
+    let pressed = (held.current.contact_cells.max(1) / ground.bodies).max(1) as f64;
+    0.5 * c / (pressed * ground.grid.cell_area() / PI).sqrt()
 }
 
 /// The greatest part of an error of the force under a given approach that a spring leaves: 1 of a spring far stiffer than the contact, 0
 /// without springs.
-pub(super) fn share_of_force(scene: &Scene, state: &State, step: &Step<'_>) -> f64 {
-    let c = state.history.exponential_rule().map_or(0.0, |rule| rule.compliance());
-    let yielding = yielding(scene, state, c);
-    springs(step).fold(0.0, |most, (_, give, _)| f64::max(most, yielding / (yielding + give)))
+pub(crate) fn share_of_force(ground: &Ground, held: &Held, request: Request<'_>, c: f64) -> f64 {
+    let yielding = yielding(ground, held, c);
+    springs(request).fold(0.0, |most, (_, give, _)| f64::max(most, yielding / (yielding + give)))
 }
 
 /// Writes the first forces to try to the free motions: those that the present pressure, and in a first contact the shape, suggest.
-pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<'_>, c: f64, trial: &mut Trial) {
-    let (area, rows, now) = (state.region.cell_area(), state.region.rows(), &state.current.solution);
-    for (body, give, drive) in springs(step) {
+pub(crate) fn guess_forces(ground: &Ground, held: &Held, gap: &Gap, request: Request<'_>, c: f64, trial: &mut Trial) {
+    let (area, rows, now) = (held.region.cell_area(), held.region.rows(), &held.current.solution);
+    for (body, give, drive) in springs(request) {
         let above = &trial.gap;
         let own = |k: usize| gap.owner(k) == body && above[k].is_finite();
         // Σ p, and Σ p times the height at which this pressure would hold a cell
@@ -61,7 +60,7 @@ pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<
         });
         let force = if sum > 0.0 {
             let change = drive - give * sum * area - heights / sum;
-            sum * area + change / (give + yielding(scene, state, c))
+            sum * area + change / (give + yielding(ground, held, c))
         } else {
             let heights = || (0..above.len()).filter(|&k| own(k)).map(|k| above[k]);
             let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
@@ -87,24 +86,24 @@ pub(super) fn guess_forces(scene: &Scene, state: &State, gap: &Gap, step: &Step<
 }
 
 /// Solves the contact problem, again and again until the springs carry the forces that their approaches lead to.
-pub(super) fn solve_with_springs(
-    scene: &Scene,
-    state: &State,
-    step: &Step<'_>,
+pub(crate) fn solve_with_springs(
+    ground: &Ground,
+    held: &Held,
+    request: Request<'_>,
     c: f64,
     trial: &mut Trial,
     mut solve: impl FnMut(&mut Trial) -> Outcome,
 ) -> Outcome {
-    let (area, least) = (state.region.cell_area(), yielding(scene, state, c));
-    let one_cell = c / scene.grid.cell_area().sqrt();
+    let (area, least) = (held.region.cell_area(), yielding(ground, held, c));
+    let one_cell = c / ground.grid.cell_area().sqrt();
     for tries in 0..MAX_FORCES {
         let outcome = solve(trial);
-        if springs(step).next().is_none() || outcome != Outcome::Converged {
+        if springs(request).next().is_none() || outcome != Outcome::Converged {
             return outcome;
         }
         // Σ s (dg/dF) s by the estimate, and Σ s Δg
         let (mut estimated, mut found) = (0.0, 0.0);
-        for (body, give, drive) in springs(step) {
+        for (body, give, drive) in springs(request) {
             let (force, position) = (trial.free[body].total * area, trial.solution.motions[body].0[0]);
             let before = trial.springs[body];
             let now = TriedSpring { force, excess: position + give * force - drive, missing: 0.0, ..before };
@@ -115,7 +114,7 @@ pub(super) fn solve_with_springs(
         }
         let ratio = if tries > 0 && found > 0.0 && estimated > 0.0 { estimated / found } else { 1.0 };
         let mut worst = 0.0f64;
-        for (body, give, drive) in springs(step) {
+        for (body, give, drive) in springs(request) {
             let TriedSpring { force, excess, hanging, .. } = trial.springs[body];
             let motion = &mut trial.solution.motions[body];
             if force == 0.0 && (excess >= 0.0 || hanging.is_some()) {
@@ -135,8 +134,8 @@ pub(super) fn solve_with_springs(
             trial.free[body].total = next / area;
         }
         // at a jump of a body without elastic response nothing moves
-        if c == 0.0 || worst <= SHARE_OF_TOLERANCE * step.tolerance {
-            springs(step).for_each(|(body, ..)| trial.free[body].total = trial.springs[body].force / area);
+        if c == 0.0 || worst <= SHARE_OF_TOLERANCE * request.tolerance {
+            springs(request).for_each(|(body, ..)| trial.free[body].total = trial.springs[body].force / area);
             return outcome;
         }
         trial.predicted = false;

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use crate::contact::{State, ViscoelasticContact};
+use crate::equilibrium::Held;
+use crate::fields::Fields;
 use crate::observe::area::{Pressed, REACH};
 use crate::parallel::Rows;
 
@@ -12,11 +13,11 @@ const PIECE: usize = 64;
 /// In place of a pressure where there is nothing to touch.
 const NOTHING: f64 = -1.0;
 
-impl ViscoelasticContact {
+impl Fields<'_> {
     /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and the parts of all ranks are added in the
     /// order of the rows.
-    pub(in crate::contact) fn shared_area(&self) -> f64 {
-        let State { region, current, .. } = &self.computation.state;
+    pub(super) fn shared_area(&self) -> f64 {
+        let Held { region, current, .. } = self.held;
         let (rows, [n1, n2]) = (region.rows(), self.grid().cells());
         let extent = region.reach(&current.solution.pressure);
         let beside = self.rows_beside(&rows);
@@ -43,7 +44,7 @@ impl ViscoelasticContact {
                 gap.clear();
                 gap.extend(pressure.iter().map(|&p| if p == NOTHING { f64::INFINITY } else { 0.0 }));
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
-                let (periodic, first) = (self.scene.kernel.periodic_axes(), Some(first));
+                let (periodic, first) = (self.ground.kernel.periodic_axes(), Some(first));
                 let pressed =
                     Pressed { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent, body: None };
                 covered.extend(squares(piece).map(|row| [pressed.covered_in_row(row)]));
@@ -56,15 +57,15 @@ impl ViscoelasticContact {
 
     /// The computed row of a row or of its mirror image; none beyond a grid that ends.
     fn computed_row(&self, row: isize) -> Option<usize> {
-        let (n1, folded) = (self.grid().cells()[0], self.computation.state.region.folded()[0]);
-        let row = if self.scene.kernel.periodic_axes()[0] { row.rem_euclid(n1 as isize) } else { row };
+        let (n1, folded) = (self.grid().cells()[0], self.held.region.folded()[0]);
+        let row = if self.ground.kernel.periodic_axes()[0] { row.rem_euclid(n1 as isize) } else { row };
         let row = usize::try_from(row).ok().filter(|&row| row < n1)?;
         Some(if folded && row < n1 / 2 { n1 - 1 - row } else { row })
     }
 
     /// The pressure of an own row, marked where there is nothing to touch.
     fn marked_row(&self, row: usize, out: &mut [f64]) {
-        let State { region, indenter, .. } = &self.computation.state;
+        let Held { region, indenter, .. } = self.held;
         let (row, [_, m2], n2) = (row - region.computed_rows().start, region.cells(), out.len());
         out.copy_from_slice(&self.pressure()[row * n2..(row + 1) * n2]);
         for (j, h) in indenter.gap().above[row * m2..(row + 1) * m2].iter().enumerate() {

@@ -2,20 +2,21 @@
 
 use std::ops::Range;
 
-use crate::contact::{State, ViscoelasticContact};
+use crate::equilibrium::Held;
 use crate::error::{Result, count_within, exact_length};
+use crate::fields::Fields;
 use crate::parallel::Rows;
 use crate::{Axis, sum};
 
-impl ViscoelasticContact {
-    /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
+impl Fields<'_> {
+    /// The rows (indices along x1) that [`pressure`](Fields::pressure) and all other fields hold: all of the
     /// grid, unless [`Builder::ranks`](crate::contact::Builder::ranks) share them out. Then they are the rows of this rank, from the upper
     /// half where the contact is symmetric about x1 = 0, since the other half is not computed; a rank may have no rows.
     pub fn rows(&self) -> Range<usize> {
-        self.computation.state.region.shown_rows()
+        self.held.region.shown_rows()
     }
 
-    /// Brings a field of own rows, such as [`pressure`](ViscoelasticContact::pressure), to the rank `to`: one value per cell
+    /// Brings a field of own rows, such as [`pressure`](Fields::pressure), to the rank `to`: one value per cell
     /// of the whole grid there, `None` on all others. A call of all [ranks](crate::parallel). Without ranks there is only
     /// rank 0, and the field is the whole.
     ///
@@ -30,7 +31,7 @@ impl ViscoelasticContact {
     ///         .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///         .build()?;
     ///     contact.step(0.0, Load::force(1.0))?;
-    ///     let whole = contact.gathered(contact.pressure(), 0)?;
+    ///     let whole = contact.fields().gathered(contact.pressure(), 0)?;
     ///     Ok::<_, Error>(whole.map(|pressure| pressure.len()))
     /// })?;
     /// assert_eq!(peaks, [Ok(Some(256 * 256)), Ok(None)]);
@@ -40,7 +41,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the field does not hold one value per own cell, there is no such rank, or one has left.
     pub fn gathered(&self, field: &[f64], to: usize) -> Result<Option<Vec<f64>>> {
-        let State { region, .. } = &self.computation.state;
+        let Held { region, .. } = self.held;
         let rows = region.rows();
         count_within("rank", to, to < rows.ranks(), "less than the number of ranks")?;
         rows.unless_lost(|| {
@@ -52,7 +53,7 @@ impl ViscoelasticContact {
     }
 
     /// The values of a field along a line of cells, of all ranks.
-    pub(in crate::contact) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Result<Vec<f64>> {
+    pub(super) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Result<Vec<f64>> {
         let [n1, n2] = self.grid().cells();
         let [rows, columns] = if along == Axis::X1 { [0..n1, line..line + 1] } else { [line..line + 1, 0..n2] };
         let brought = self.bring(field, None, rows.clone(), columns)?;
@@ -60,8 +61,8 @@ impl ViscoelasticContact {
     }
 
     /// The rows of the whole grid that fields of a rank hold.
-    pub(in crate::contact) fn rows_of(&self, rank: usize) -> Range<usize> {
-        let region = &self.computation.state.region;
+    pub(super) fn rows_of(&self, rank: usize) -> Range<usize> {
+        let region = &self.held.region;
         let rows = region.rows();
         if !region.is_shared() {
             return region.shown_rows();
@@ -71,19 +72,19 @@ impl ViscoelasticContact {
     }
 
     /// Some shared rows, and their images where rows are folded.
-    pub(in crate::contact) fn with_images(&self, rows: Range<usize>) -> [Range<usize>; 2] {
-        let (region, n1) = (&self.computation.state.region, self.grid().cells()[0]);
+    pub(super) fn with_images(&self, rows: Range<usize>) -> [Range<usize>; 2] {
+        let (region, n1) = (&self.held.region, self.grid().cells()[0]);
         let images = if region.is_shared() && region.folded()[0] { n1 - rows.end..n1 - rows.start } else { 0..0 };
         [rows, images]
     }
 
     /// Σ of the values `found` by all ranks in the rows at their `places`, in the order of the rows. A call of all ranks.
-    pub(in crate::contact) fn sum_in_order<const K: usize>(
+    pub(super) fn sum_in_order<const K: usize>(
         &self,
         found: impl Iterator<Item = [f64; K]>,
         places: impl Fn(usize) -> [Range<usize>; 2],
     ) -> [f64; K] {
-        let (rows, n1) = (self.computation.state.region.rows(), self.grid().cells()[0]);
+        let (rows, n1) = (self.held.region.rows(), self.grid().cells()[0]);
         if !rows.are_shared() {
             // in a step along a path, which allocates nothing
             return found.fold([0.0; K], sum::add);
@@ -102,10 +103,7 @@ impl ViscoelasticContact {
 
     /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its number. A
     /// call of all ranks.
-    pub(in crate::contact) fn sum_of_rows<const K: usize>(
-        &self,
-        of_row: impl Fn(usize, &[f64]) -> [f64; K],
-    ) -> [f64; K] {
+    pub(super) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
         let ([n1, n2], own, pressure) = (self.grid().cells(), self.rows(), self.pressure());
         let row = |i: usize| &pressure[(i - own.start) * n2..][..n2];
         let computed = |i: usize| if own.contains(&i) { i } else { n1 - 1 - i };
@@ -114,7 +112,7 @@ impl ViscoelasticContact {
     }
 
     /// Σ |p − p′| and Σ p over the whole grid, with the p′ of another contact of the scene. A call of all ranks.
-    pub(crate) fn pressure_beside(&self, other: &ViscoelasticContact) -> [f64; 2] {
+    pub(crate) fn pressure_beside(&self, other: Fields<'_>) -> [f64; 2] {
         let ([n1, n2], own) = (self.grid().cells(), self.rows());
         self.sum_of_rows(|i, row| {
             let computed = if own.contains(&i) { i } else { n1 - 1 - i };
@@ -126,18 +124,18 @@ impl ViscoelasticContact {
 
     /// Returns `own` if all ranks succeed, else an error on every rank.
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
-        let rows = self.computation.state.region.rows();
+        let rows = self.held.region.rows();
         rows.unless_lost(|| rows.agree(own))
     }
 
     /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
-        let rows = self.computation.state.region.rows();
+        let rows = self.held.region.rows();
         self.agreed(if rows.rank() == 0 { job().map(Some) } else { Ok(None) })
     }
 
     /// The local rows, with the reductions over all ranks.
     pub(crate) fn shared_rows(&self) -> Rows {
-        self.computation.state.region.rows()
+        self.held.region.rows()
     }
 }

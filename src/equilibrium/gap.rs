@@ -1,27 +1,26 @@
-//! The gap of a step before any pressure, and the surface after it.
+//! The gap before any pressure, and the surface under it.
 
 use crate::Grid;
-use crate::contact::{Region, Step, Trial};
+use crate::equilibrium::{Region, Request, Trial};
 use crate::geometry::Gap;
-use crate::hereditary::History;
 use crate::load::{Load, Tilt};
 use crate::parallel::for_each_band;
 use crate::solver::{Freedom, RigidMotion};
 
-/// The rigid bodies over the region of a step, and the motions that its loads prescribe.
+/// The rigid bodies over a region, and the motions that their loads prescribe.
 #[derive(Clone, Copy)]
-pub(super) struct RigidBodies<'a> {
-    pub(super) step: &'a Step<'a>,
-    pub(super) region: &'a Region,
+pub(crate) struct RigidBodies<'a> {
+    pub(crate) request: Request<'a>,
+    pub(crate) region: &'a Region,
     /// Loads and motions at the start of the step, if hi + u in contact is the motion there to the last bit.
-    pub(super) start: Option<(&'a [Load], &'a [RigidMotion])>,
+    pub(crate) start: Option<(&'a [Load], &'a [RigidMotion])>,
 }
 
 impl RigidBodies<'_> {
     /// The retraction of a body in a step that prescribes all of its motion; zero for a held body. `None` unless hi + u in
     /// contact is its motion at the start.
     fn retraction(&self, body: usize) -> Option<RigidMotion> {
-        let load = self.step.loads[body];
+        let load = self.request.loads[body];
         let Load::Approach { approach, tilt: [Tilt::Fixed(tilt1), Tilt::Fixed(tilt2)] } = load else { return None };
         let (loads, motions) = self.start?;
         if load == loads[body] {
@@ -32,49 +31,44 @@ impl RigidBodies<'_> {
     }
 
     /// The bodies whose retraction is known.
-    fn retractions(&self) -> impl Iterator<Item = (usize, RigidMotion)> {
-        (0..self.step.loads.len()).filter_map(|body| Some((body, self.retraction(body)?)))
+    pub(crate) fn retractions(&self) -> impl Iterator<Item = (usize, RigidMotion)> {
+        (0..self.request.loads.len()).filter_map(|body| Some((body, self.retraction(body)?)))
     }
 
     /// The greatest |ω + α·x| on the grid that is taken from a gap: of the retraction where it is known, else of the
     /// prescribed motion.
-    pub(super) fn greatest_motion(&self, grid: &Grid) -> f64 {
+    pub(crate) fn greatest_motion(&self, grid: &Grid) -> f64 {
         let [l1, l2] = grid.lengths();
-        let taken = |body: usize| self.retraction(body).unwrap_or(self.step.prescribed(body));
+        let taken = |body: usize| self.retraction(body).unwrap_or(self.request.prescribed(body));
         let reach = |m: RigidMotion| m.approach.abs() + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
-        (0..self.step.loads.len()).map(|body| reach(taken(body))).fold(0.0, f64::max)
+        (0..self.request.loads.len()).map(|body| reach(taken(body))).fold(0.0, f64::max)
     }
 
-    /// Writes the gap before any pressure and free motion: hi + u_old − (prescribed part of ω + α·x), Eq. 1 of the paper.
-    ///
-    /// In contact under bodies of prescribed motion, hi + u is their motion at the start of the step. The gap there is their
-    /// retraction minus the recovery u − u_old of the surface. The difference hi + u_old − ω would lose the recovery in
-    /// rounding once the pressure has relaxed by many decades.
-    pub(super) fn fill_gap(&self, initial: &Gap, history: &History, pressure: &[f64], gap: &mut [f64]) {
-        let (bodies, u_old, first) = (self.step.loads.len(), history.trial(), self.step.prescribed(0));
+    /// Writes the gap before any pressure and free motion: hi + u_old − (prescribed part of ω + α·x), Eq. 1 of the paper;
+    /// of a surface that nothing has displaced where u_old is not given.
+    pub(crate) fn fill_gap(&self, initial: &Gap, u_old: Option<&[f64]>, gap: &mut [f64]) {
+        let (bodies, first) = (self.request.loads.len(), self.request.prescribed(0));
         let upright = bodies == 1 && first.tilt == [0.0; 2];
         let approach = if upright { first.approach } else { 0.0 };
         for_each_band([&mut *gap], |first, [gap]| {
-            for ((gap, &initial), &u_old) in gap.iter_mut().zip(&initial.above[first..]).zip(&u_old[first..]) {
-                *gap = (initial + u_old) - approach;
+            let heights = gap.iter_mut().zip(&initial.above[first..]);
+            match u_old {
+                Some(u_old) => heights.zip(&u_old[first..]).for_each(|((gap, h), u_old)| *gap = (h + u_old) - approach),
+                None => heights.for_each(|(gap, h)| *gap = h - approach),
             }
         });
-        let motions = (0..bodies).map(|body| (body, self.step.prescribed(body)));
+        let motions = (0..bodies).map(|body| (body, self.request.prescribed(body)));
         for (body, motion) in motions.filter(|(_, motion)| !upright && *motion != RigidMotion::default()) {
             for k in (0..gap.len()).filter(|&k| initial.owner(k) == body) {
                 gap[k] -= motion.at(self.region.center(k));
             }
-        }
-        for (body, retraction) in self.retractions() {
-            let pressed = |k: usize| pressure[k] > 0.0 && initial.owner(k) == body;
-            history.recovery(pressed, |k, recovery| gap[k] = retraction.at(self.region.center(k)) - recovery);
         }
     }
 
     /// u = u_old + c K p. Where the displacement is `integrated`, the surface in contact is then set to the surface of the
     /// rigid body. Otherwise the residual of this step would stay in u, and a later, much stiffer step, such as a jump after a
     /// long hold, would amplify it.
-    pub(super) fn displace(&self, initial: &Gap, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
+    pub(crate) fn displace(&self, initial: &Gap, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
         let Trial { solution, gap, free, .. } = trial;
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (integrated, &free[..]) {
             let motion = self.region.modes(free[0]).displacement(solution.motions[0], 0);
@@ -101,19 +95,6 @@ impl RigidBodies<'_> {
                 let h = gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
                 if solution.pressure[k] > 0.0 || h < 0.0 {
                     u[k] -= h;
-                }
-            }
-        }
-    }
-
-    /// Moves the surface in contact, from the displacement `before`, with bodies of prescribed motion, to the last bit:
-    /// rounding would enter the branches of the past, and outlive the pressure.
-    pub(super) fn follow_prescribed(&self, initial: &Gap, [old, new]: [&[f64]; 2], before: &[f64], u: &mut [f64]) {
-        for (body, retraction) in self.retractions() {
-            let displacements = u.iter_mut().zip(before);
-            for (k, ((u, &before), (&old, &new))) in displacements.zip(old.iter().zip(new)).enumerate() {
-                if old > 0.0 && new > 0.0 && initial.owner(k) == body {
-                    *u = before - retraction.at(self.region.center(k));
                 }
             }
         }

@@ -1,0 +1,121 @@
+//! Elastic contacts.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use viscocontact::contact::Settings;
+use viscocontact::elastic as ve;
+
+use crate::arrays::field;
+use crate::errors::OrRaise;
+use crate::fields::{Fields, Shown};
+use crate::grid::Grid;
+use crate::interrupt::interruptible;
+use crate::kernels::InfluenceKernel;
+use crate::loads::loads;
+use crate::scene::settings;
+use crate::shapes::geometries;
+
+/// A rigid body, or several, pressed onto an elastic body: without time.
+///
+/// Parameters
+/// ----------
+/// grid : Grid
+/// geometry : Shape, array of the shape of the grid, or sequence of shapes
+///     As of `ViscoelasticContact`.
+/// modulus : float
+///     The contact modulus E* [Pa], E/(1 − ν²) of an elastic body under a rigid one.
+/// kernel : InfluenceKernel, optional
+///     The body, if it is not a half-space.
+/// tolerance, max_iterations, solver, edge, symmetry, window : optional
+///     As of `ViscoelasticContact`.
+///
+/// >>> contact = ElasticContact(Grid(64, 3e-3), Shape.sphere(10e-3), 4e6)
+/// >>> report = contact.solve(Load.force(0.5))
+/// >>> a = (0.75 * 0.5 * 10e-3 / 4e6) ** (1 / 3)
+/// >>> abs(contact.approach / (a**2 / 10e-3) - 1) < 5e-3
+/// True
+#[pyclass(module = "viscocontact")]
+pub struct ElasticContact {
+    pub contact: ve::ElasticContact,
+    cancel: Arc<AtomicBool>,
+}
+
+#[pymethods]
+impl ElasticContact {
+    #[new]
+    #[pyo3(
+        signature = (grid, geometry, modulus, *, kernel=None, **options),
+        text_signature = "(grid, geometry, modulus, *, kernel=None, **options)"
+    )]
+    fn new(
+        py: Python<'_>,
+        grid: &Grid,
+        geometry: &Bound<'_, PyAny>,
+        modulus: f64,
+        kernel: Option<&InfluenceKernel>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<ElasticContact> {
+        let shapes = geometries(&grid.0, geometry)?;
+        if shapes.is_empty() {
+            return Err(PyTypeError::new_err("geometry: at least one shape is needed"));
+        }
+        let mut builder = ve::ElasticContact::builder(grid.0.clone()).modulus(modulus);
+        for shape in &shapes {
+            builder = builder.another_body(shape);
+        }
+        if let Some(kernel) = kernel {
+            builder = builder.kernel(Arc::clone(&kernel.kernel));
+        }
+        if let Some(options) = options {
+            builder = builder.settings(settings(Settings::default(), options)?);
+        }
+        let contact = py.detach(|| builder.build()).or_raise()?;
+        Ok(ElasticContact { contact, cancel: Arc::default() })
+    }
+
+    /// Finds the equilibrium under a `Load`, or a sequence with one for each body, from the last one. Ctrl-C ends the search within an
+    /// iteration; a failure leaves the contact as it was.
+    ///
+    /// Returns the cost and accuracy: "iterations", "convolutions" (transforms in these units), "residual", and the "warnings" as lines.
+    fn solve<'py>(&mut self, py: Python<'py>, load: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        let loads = loads(load)?;
+        let ElasticContact { contact, cancel } = self;
+        let report = interruptible(py, true, cancel, || contact.solve_unless(cancel, &loads))?;
+        Ok(dict! { py;
+            "iterations": report.iterations,
+            "convolutions": report.convolution_equivalents(),
+            "residual": report.residual,
+            "warnings": report.messages().collect::<Vec<_>>(),
+        })
+    }
+
+    /// Displaces the surface before any pressure [m], positive into the bodies: an array of the shape of the grid. The next solution
+    /// begins from there.
+    fn set_surface(&mut self, displacement: &Bound<'_, PyAny>) -> PyResult<()> {
+        let cells = self.contact.fields().grid().cells();
+        let values = field("displacement", displacement, cells)?;
+        self.contact.set_surface(&values).or_raise()
+    }
+
+    /// The contact modulus E* [Pa].
+    #[getter]
+    fn modulus(&self) -> f64 {
+        self.contact.modulus()
+    }
+
+    /// The fields as they are, to keep.
+    #[getter]
+    fn fields(&self) -> Fields {
+        Fields(self.contact.fields().keep())
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let of = self.shown()?;
+        let [n1, n2] = of.grid().cells();
+        Ok(format!("ElasticContact({n1} × {n2} cells, force={:e} N, approach={:e} m)", of.force(), of.approach()))
+    }
+}
