@@ -8,7 +8,7 @@ use numpy::Complex64;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscocontact::{self as vc, sliding as sl};
+use viscocontact::sliding as sl;
 
 use crate::arrays::{number, vectors};
 use crate::errors::{Kept, OrRaise, choice, in_python};
@@ -18,7 +18,6 @@ use crate::interrupt::{Listener, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
-use crate::recipe::Recipe;
 use crate::reports::figures;
 use crate::scene::builder;
 use crate::temperature::TimeTemperature;

@@ -127,7 +127,7 @@ fn main() {
     for seed in 0..count {
         match scene(seed) {
             Ok(contact) => {
-                let fields = contact.pressure().iter().chain(contact.displacement());
+                let fields = contact.pressure().iter().chain(contact.fields().displacement());
                 let mixed = fields.fold(0u64, |mixed, value| mixed.rotate_left(5) ^ value.to_bits());
                 let [time, force, approach] = [contact.time(), contact.force(), contact.approach()].map(f64::to_bits);
                 println!("{seed} {time:016x} {force:016x} {approach:016x} {mixed:016x}");

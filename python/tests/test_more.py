@@ -29,7 +29,7 @@ def test_states_of_a_sweep(tmp_path):
     for dt in (0.0, 0.5, 0.5):
         report, other = contact.step(dt, vc.Load.force(1.0)), in_space.step(dt, vc.Load.force(1.0))
         assert report.approach == pytest.approx(other.approach, rel=1e-3)
-    assert contact.fields()["pressure"].shape == contact.pressure.shape == (48, 48)
+    assert contact.fields().pressure.shape == contact.pressure.shape == (48, 48)
     states.save(tmp_path / "states.npz")
     again = vc.ElasticStates.load(tmp_path / "states.npz")
     (tmp_path / "states.npz").unlink()

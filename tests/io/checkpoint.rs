@@ -89,9 +89,9 @@ fn damaged_files_are_refused() {
     }
     let mut newer = bytes.clone();
     newer[8] = 99;
-    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 18 });
+    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 19 });
     newer[8] = 1;
-    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 18 });
+    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 19 });
     assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
     let longer = [&bytes[..], &[0]].concat();
     assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));
