@@ -7,8 +7,8 @@ use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::file::replace;
 use crate::observe::{Stress, StressVolume};
-use crate::output::npz::Archive;
 #[cfg(feature = "npy")]
+use crate::output::npz::Archive;
 use crate::output::time_of;
 use crate::output::vtk::{CLOSING, Section, write_array, write_opening};
 use crate::output::{Format, Metadata};
