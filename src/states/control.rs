@@ -232,7 +232,9 @@ impl StatesControl {
             let first = value(contact, history.checked_at(now, false)?)?;
             self.passage.look(Span { now, end }, first, &self.record.loads, value_at)?;
             self.record.greatest_load = self.record.greatest_load.max(self.passage.top());
-            let is_bent = self.passage.bend(self.record.greatest_load) > BEND * self.record.greatest_load;
+            // deviations below the least normal number are rounding
+            let straight = (BEND * self.record.greatest_load).max(f64::MIN_POSITIVE);
+            let is_bent = self.passage.bend(self.record.greatest_load) > straight;
             if is_bent && end - now > 2.0 * shortest {
                 length = 0.5 * (end - now);
                 continue;
