@@ -280,7 +280,7 @@ fn compute(
         let grown = match at.solve(scene, step) {
             Ok(()) => at.outgrown(ground, step),
             // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::Step(StepError::LoadOutsideHull { .. })) if is_windowed => {
+            Err(Error::Step(StepError::LoadOutsideHull { .. })) if !at.state.held.region.covers() => {
                 Some(Region::whole(&ground.grid, at.state.held.region.folded()))
             }
             Err(error) => return Err(error),
