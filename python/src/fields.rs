@@ -135,7 +135,7 @@ macro_rules! numbers {
             }
         }
 
-        getters! {shown $class, of:
+        getters! {by shown $class, of:
             /// The grid of every field.
             grid: Grid = Grid(of.grid().clone());
             /// Normal force on all bodies [N].
@@ -196,7 +196,7 @@ impl ViscoelasticContact {
     }
 }
 
-getters! {try ViscoelasticContact, of:
+getters! {by get ViscoelasticContact, of:
     /// Time [s].
     time: f64 = of.time();
     /// Reduced time of the material [s].

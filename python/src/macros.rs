@@ -1,29 +1,16 @@
 //! What many classes repeat.
 
-/// Getters of a class: documentation, name, type and value, of what the class wraps, of a field, or (`try`) of the contact that it holds,
-/// or (`shown`) of its fields.
+/// Getters of a class: documentation, name, type and value, of what the class wraps, of a field, or of what a method of it
+/// gives (`by`).
 macro_rules! getters {
-    (shown $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+    (by $get:ident $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
         #[pymethods]
         impl $class {
             $(
                 $(#[$doc])*
                 #[getter]
                 fn $name(&self) -> PyResult<$type> {
-                    let $of = self.shown()?;
-                    Ok($value)
-                }
-            )*
-        }
-    };
-    (try $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
-        #[pymethods]
-        impl $class {
-            $(
-                $(#[$doc])*
-                #[getter]
-                fn $name(&self) -> PyResult<$type> {
-                    let $of = self.get()?;
+                    let $of = self.$get()?;
                     Ok($value)
                 }
             )*

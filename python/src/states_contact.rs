@@ -150,7 +150,7 @@ impl StatesContact {
     }
 }
 
-getters! {try StatesContact, of:
+getters! {by get StatesContact, of:
     /// Time [s].
     time: f64 = of.time();
     /// Normal force [N].

@@ -22,10 +22,11 @@ use crate::equilibrium::indenter::even_axes;
 use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::spring::{guess_forces, solve_with_springs};
 use crate::equilibrium::window::fields::transfer_by_role;
+use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
 use crate::equilibrium::{Figures, Ground, Held, Indenter, Region, Request, RigidBodies, Trial, Window};
 use crate::equilibrium::{modulus_of_no_solid, windowed};
-use crate::error::{Error, Result, StepError, exact_length, finite};
+use crate::error::{Result, exact_length, finite};
 use crate::fields::{About, Fields, Surface, View};
 use crate::geometry::Missed;
 use crate::load::Load;
@@ -75,6 +76,14 @@ struct Solver {
     /// The displacement before any pressure, if there is one.
     before: Option<Vec<f64>>,
     displacement: Vec<f64>,
+}
+
+/// A load on an elastic body of compliance `c`.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    ground: &'a Ground,
+    request: Request<'a>,
+    c: f64,
 }
 
 impl ElasticContact {
@@ -135,7 +144,7 @@ impl ElasticContact {
     /// [`ElasticContact::solve`], ended within an iteration where another thread sets `cancelled`.
     ///
     /// # Errors
-    /// As [`ElasticContact::solve`], and [`Error::Cancelled`].
+    /// As [`ElasticContact::solve`], and [`Error::Cancelled`](crate::Error::Cancelled).
     pub fn solve_unless(&mut self, cancelled: &AtomicBool, loads: impl AsRef<[Load]>) -> Result<ElasticReport> {
         self.solve_to(self.ground.settings.tolerance, Some(cancelled), loads.as_ref())
     }
@@ -144,7 +153,8 @@ impl ElasticContact {
         let indenter = &Arc::clone(&self.own.held.indenter);
         let request = Request { time: 0.0, length: 0.0, loads, indenter, tolerance, cancelled };
         let (ground, c, mut larger) = (&*self.ground, self.compliance, None);
-        let sum = in_pool(self.own.held.region.len(), || compute(ground, &mut self.own, &mut larger, request, c))?;
+        let asked = Asked { ground, request, c };
+        let sum = in_pool(self.own.held.region.len(), || compute(&mut self.own, &mut larger, asked))?;
         if let Some(larger) = larger {
             self.own = *larger;
         }
@@ -222,38 +232,13 @@ impl<'a> From<&'a ElasticContact> for Fields<'a> {
     }
 }
 
-/// Solves in `own`, or in a copy on the first `larger` region that contains the whole contact. Returns Σ p.
-fn compute(
-    ground: &Ground,
-    own: &mut Solver,
-    larger: &mut Option<Box<Solver>>,
-    request: Request<'_>,
-    c: f64,
-) -> Result<f64> {
+/// Solves in `own`, or in a copy on a `larger` region. Returns Σ p.
+fn compute(own: &mut Solver, larger: &mut Option<Box<Solver>>, asked: Asked<'_>) -> Result<f64> {
+    let Asked { ground, request, c } = asked;
     validate_loads(ground, request)?;
     let is_windowed = own.before.is_none() && !own.held.region.covers();
-    let first = is_windowed.then_some(c);
-    if let Some((region, placed)) = region_for(ground, &own.held, request, [false; 2], first)? {
-        let transferred = larger.insert(own.transferred_to(ground, region)?);
-        transferred.held.region_is_for_contact = placed;
-    }
-    loop {
-        let at = larger.as_deref_mut().unwrap_or(&mut *own);
-        let grown = match at.solve(ground, request, c) {
-            Ok(()) if at.held.region.covers() => None,
-            Ok(()) => {
-                let source = (c, &at.trial.solution.pressure[..]);
-                outgrown(ground, &at.held, &at.window, &at.trial, request, source)
-            }
-            // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::Step(StepError::LoadOutsideHull { .. })) if !at.held.region.covers() => {
-                Some(Region::whole(&ground.grid, at.held.region.folded()))
-            }
-            Err(error) => return Err(error),
-        };
-        let Some(region) = grown else { return at.acceptable(ground, request, c) };
-        *larger = Some(at.transferred_to(ground, region)?);
-    }
+    let placed = region_for(ground, &own.held, request, [false; 2], is_windowed.then_some(c))?;
+    solve_on_growing_region(ground, own, larger, placed, asked)
 }
 
 impl Solver {
@@ -278,8 +263,29 @@ impl Solver {
         Ok(Box::new(Solver { trial: Trial::new(region.len(), ground.bodies), held, window, before, displacement }))
     }
 
-    /// Solves on the present region: writes the trial.
-    fn solve(&mut self, ground: &Ground, request: Request<'_>, c: f64) -> Result<()> {
+    /// Makes the trial the equilibrium; returns where it presses.
+    fn accept(&mut self, ground: &Ground, request: Request<'_>, c: f64, sum: f64) -> Pressed {
+        let Solver { held, trial, before, displacement, .. } = self;
+        let pressed = Pressed::by(&trial.solution.pressure, ground, &held.region, request.indenter);
+        held.take(trial, request, sum, pressed.cells);
+        held.extrapolation.accept(0.0, sum, trial.reach);
+        let potential = &held.current.solution.potential;
+        match before {
+            Some(before) => before.iter().zip(potential).zip(displacement).for_each(|((b, v), u)| *u = b + c * v),
+            None => potential.iter().zip(displacement).for_each(|(v, u)| *u = 0.0 + c * v),
+        }
+        pressed
+    }
+}
+
+impl OnRegion for Solver {
+    type Asked<'a> = Asked<'a>;
+
+    fn held(&mut self) -> &mut Held {
+        &mut self.held
+    }
+
+    fn solve(&mut self, Asked { ground, request, c }: Asked<'_>) -> Result<()> {
         let Solver { held, window, trial, before, .. } = self;
         find_free_motions(ground, &held.region, request, &mut trial.free);
 
@@ -299,8 +305,15 @@ impl Solver {
         converged(outcome, ground, &trial.solution, request)
     }
 
-    /// Σ p of the trial, if it can be accepted.
-    fn acceptable(&self, ground: &Ground, request: Request<'_>, c: f64) -> Result<f64> {
+    fn outgrown(&self, Asked { ground, request, c }: Asked<'_>) -> Option<Region> {
+        let Solver { held, window, trial, .. } = self;
+        if held.region.covers() {
+            return None;
+        }
+        outgrown(ground, held, window, trial, request, (c, &trial.solution.pressure))
+    }
+
+    fn acceptable(&self, Asked { ground, request, c }: Asked<'_>) -> Result<f64> {
         let Solver { held, trial, before, .. } = self;
         let rows = held.region.rows();
         let displaced =
@@ -308,17 +321,7 @@ impl Solver {
         acceptable(ground, held, displaced, trial, request)
     }
 
-    /// Makes the trial the equilibrium; returns where it presses.
-    fn accept(&mut self, ground: &Ground, request: Request<'_>, c: f64, sum: f64) -> Pressed {
-        let Solver { held, trial, before, displacement, .. } = self;
-        let pressed = Pressed::by(&trial.solution.pressure, ground, &held.region, request.indenter);
-        held.take(trial, request, sum, pressed.cells);
-        held.extrapolation.accept(0.0, sum, trial.reach);
-        let potential = &held.current.solution.potential;
-        match before {
-            Some(before) => before.iter().zip(potential).zip(displacement).for_each(|((b, v), u)| *u = b + c * v),
-            None => potential.iter().zip(displacement).for_each(|(v, u)| *u = 0.0 + c * v),
-        }
-        pressed
+    fn transferred_to(&mut self, Asked { ground, .. }: Asked<'_>, region: Region) -> Result<Box<Solver>> {
+        self.transferred_to(ground, region)
     }
 }

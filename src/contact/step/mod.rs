@@ -33,8 +33,9 @@ use crate::equilibrium::constraints::{acceptable, below_full_contact, converged,
 use crate::equilibrium::guess::initial_guess;
 use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::spring::{guess_forces, solve_with_springs};
+use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
-use crate::equilibrium::{Edge, Equilibrium, Figures, Ground, Held, Region, RigidBodies, Trial};
+use crate::equilibrium::{Edge, Equilibrium, Figures, Held, Region, RigidBodies, Trial};
 use crate::error::{AdhesionError, Error, Result, StepError, non_negative, unless_failed};
 use crate::events;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
@@ -258,7 +259,7 @@ fn marks(step: &Step<'_>) -> [f64; 4] {
     [step.interval.time, step.interval.dt, step.tolerance, load]
 }
 
-/// Computes a step in `own`, or in a copy on the first `larger` region that contains the whole contact. Returns Σ p.
+/// Computes a step in `own`, or in a copy on a `larger` region. Returns Σ p.
 fn compute(
     scene: &Scene,
     own: &mut Computation,
@@ -271,23 +272,8 @@ fn compute(
     let first = || scene.material.contact_compliance(step.interval.dt);
     let first = (is_windowed && own.state.is_undisturbed()).then(first);
     let moving = step.interval.stride.map(|cells| cells != 0);
-    if let Some((region, placed)) = region_for(ground, &own.state.held, request, moving, first)? {
-        let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
-        transferred.state.held.region_is_for_contact = placed;
-    }
-    loop {
-        let at = larger.as_deref_mut().unwrap_or(&mut *own);
-        let grown = match at.solve(scene, step) {
-            Ok(()) => at.outgrown(ground, step),
-            // the load acts inside the hull of the body, but outside the hull of its cells in the window
-            Err(Error::Step(StepError::LoadOutsideHull { .. })) if !at.state.held.region.covers() => {
-                Some(Region::whole(&ground.grid, at.state.held.region.folded()))
-            }
-            Err(error) => return Err(error),
-        };
-        let Some(region) = grown else { return at.acceptable(scene, step) };
-        *larger = Some(at.transferred_to(scene, region, &step.indenter)?);
-    }
+    let placed = region_for(ground, &own.state.held, request, moving, first)?;
+    solve_on_growing_region(ground, own, larger, placed, (scene, step))
 }
 
 /// Rejects a step beyond the loading times for which the material is known. Bodies that were never `touched` have no loading
@@ -304,15 +290,19 @@ fn compliance_is_usable(c: f64, step: &Step<'_>) -> Result<()> {
     if usable { Ok(()) } else { Err(Error::Step(StepError::Overflow { time, what: "the compliance of the step" })) }
 }
 
-impl Computation {
-    /// A larger region, if the bodies might touch outside this one.
-    fn outgrown(&self, ground: &Ground, step: &Step<'_>) -> Option<Region> {
-        let Computation { state, window, trial, .. } = self;
-        outgrown(ground, &state.held, window, trial, step.request(), (1.0, state.history.far_trial()?))
+impl OnRegion for Computation {
+    type Asked<'a> = (&'a Scene, &'a Step<'a>);
+
+    fn held(&mut self) -> &mut Held {
+        &mut self.state.held
     }
 
-    /// Σ p of the trial, if it can be accepted.
-    fn acceptable(&self, scene: &Scene, step: &Step<'_>) -> Result<f64> {
+    fn outgrown(&self, (scene, step): (&Scene, &Step<'_>)) -> Option<Region> {
+        let Computation { state, window, trial, .. } = self;
+        outgrown(&scene.ground, &state.held, window, trial, step.request(), (1.0, state.history.far_trial()?))
+    }
+
+    fn acceptable(&self, (scene, step): (&Scene, &Step<'_>)) -> Result<f64> {
         let (Computation { state, trial, attracted, .. }, ground) = (self, &scene.ground);
         let displaced = state.held.region.rows().sum(state.history.trial());
         let sum = acceptable(ground, &state.held, displaced, trial, step.request())?;
@@ -324,8 +314,8 @@ impl Computation {
         Ok(sum)
     }
 
-    /// Computes a step on the present region: writes the trial, and the part of the history reserved for steps.
-    fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
+    /// Writes the part of the history reserved for steps, too.
+    fn solve(&mut self, (scene, step): (&Scene, &Step<'_>)) -> Result<()> {
         let (Computation { state, window, trial, attracted }, ground) = (self, &scene.ground);
         let (held, request) = (&state.held, step.request());
         window.follow(&held.region, &step.indenter);
@@ -380,5 +370,9 @@ impl Computation {
             bodies.follow_prescribed(initial, [before, pressure], now, u);
         });
         Ok(())
+    }
+
+    fn transferred_to(&mut self, (scene, step): (&Scene, &Step<'_>), region: Region) -> Result<Box<Computation>> {
+        self.transferred_to(scene, region, &step.indenter)
     }
 }

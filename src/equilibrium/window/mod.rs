@@ -1,6 +1,7 @@
 //! The part of the grid that is computed: which one, with what, and how a state gets to a larger one.
 
 pub(crate) mod fields;
+pub(crate) mod growth;
 pub(crate) mod placement;
 pub(crate) mod region;
 
