@@ -48,7 +48,7 @@
 //! | follow a load history, in fixed or adaptive steps | [`ViscoelasticContact::follow`] |
 //! | load elastic bodies, without time | [`elastic::ElasticContact`] |
 //! | read pressure, gap, patches, profiles | [`fields::Fields`] |
-//! | reach a required accuracy | [`plan::Plan`] |
+//! | reach a required accuracy, and measure it | [`study::Study`] |
 //! | compute many materials on one surface | [`states`] |
 //! | let surfaces attract each other | [`adhesion`] |
 //! | slide and roll, in steps or steadily | [`motion`], [`sliding`] |
@@ -115,10 +115,10 @@
 //! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`numeric::least_squares`] |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
 //! | `output` | [`output`]: CSV, VTK |
-//! | `plan` | [`plan`] |
 //! | `plot` | [`plot`]: PNG, SVG and GIF |
 //! | `sliding` | [`sliding`] |
 //! | `states` | [`states`] |
+//! | `study` | [`study`] |
 //! | `stress` | [`observe::SubsurfaceStress`], [`contact::StressHistory`] |
 //! | `surfaces` | [`geometry::HeightMap`], [`geometry::Rough`], [`geometry::SurfaceStatistics`] |
 //! | `text` | [`input`] |
@@ -182,8 +182,6 @@ pub mod paper {
 
     use crate::*;
 }
-#[cfg(feature = "plan")]
-pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;
 mod quadrature;
@@ -195,6 +193,8 @@ pub mod sliding;
 mod solver;
 #[cfg(feature = "states")]
 pub mod states;
+#[cfg(feature = "study")]
+pub mod study;
 mod sum;
 
 pub use axis::Axis;
@@ -235,8 +235,6 @@ pub mod prelude {
     pub use crate::motion::{FnPath, Straight, Travel};
     #[cfg(feature = "output")]
     pub use crate::output::{CsvHistory, Earlier, Field, FrameSeries, Metadata};
-    #[cfg(feature = "plan")]
-    pub use crate::plan::{Accuracy, Plan};
     #[cfg(feature = "data")]
     pub use crate::rheology::Measurements;
     pub use crate::rheology::{
@@ -248,6 +246,8 @@ pub mod prelude {
     pub use crate::sliding::SteadySliding;
     #[cfg(feature = "states")]
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
+    #[cfg(feature = "study")]
+    pub use crate::study::{Accuracy, Observable, Study};
     pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
 }
 

@@ -25,8 +25,12 @@ pub struct ElasticBuilder {
 
 impl ElasticBuilder {
     pub(super) fn new(grid: Grid) -> ElasticBuilder {
-        let settings = Settings::default();
-        ElasticBuilder { grid, gaps: Vec::new(), waves: Vec::new(), kernel: None, settings, modulus: None }
+        ElasticBuilder::with_gaps(grid, Vec::new(), Vec::new())
+    }
+
+    /// With gaps that are evaluated already, and the waves in them.
+    pub(crate) fn with_gaps(grid: Grid, gaps: Vec<Result<Vec<f64>>>, waves: Vec<Waves>) -> ElasticBuilder {
+        ElasticBuilder { grid, gaps, waves, kernel: None, settings: Settings::default(), modulus: None }
     }
 
     /// The shape of the rigid body: the gap before the bodies deform. Required. Replaces the shapes given before.

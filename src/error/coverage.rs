@@ -59,8 +59,6 @@ not_covered! {
     FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies";
     SHARED_ROWS: "a contact that ranks share out",
         Attraction: "compute it in one process", SteadyMotion: "compute it in one process";
-    PLANNED_GRID: "a grid that was planned without attraction",
-        Attraction: "build it by ViscoelasticContact::builder on a grid that ends where nothing acts and resolves the zone";
     ATTRACTED: "a contact of surfaces that attract each other", SteadyMotion: "build it without attraction";
     TEMPERATURES: "a history of the temperature",
         SteadyMotion: "multiply the velocity by the shift factor of the temperature";

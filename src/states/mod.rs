@@ -64,13 +64,12 @@ mod twin;
 pub use crate::error::StatesError;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
-pub(crate) use pressed::Pressed;
 pub use reach::Reach;
-pub(crate) use reach::{Loading, as_elastic, greatest};
-pub(crate) use repeated::Repeated;
+#[cfg(feature = "npy")]
+pub(crate) use pressed::Pressed;
+pub(crate) use reach::{as_elastic, greatest};
 pub use run::StatesRun;
 pub use sweep::Sweep;
-pub(crate) use twin::Profile;
 
 use crate::error::{Error, Result};
 

@@ -15,10 +15,10 @@ mod files;
 mod maps;
 mod models;
 mod pictures;
-mod plans;
 mod scenes;
 mod source;
 mod states;
+mod studies;
 mod tables;
 
 use std::time::{Duration, Instant};
@@ -32,7 +32,7 @@ fn targets() -> Vec<Target> {
     targets.extend(tables::targets());
     targets.extend(constructors::targets());
     targets.extend(scenes::targets());
-    targets.extend(plans::targets());
+    targets.extend(studies::targets());
     targets.extend(files::targets());
     targets.extend(states::targets());
     targets.extend(pictures::targets());

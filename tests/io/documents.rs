@@ -91,10 +91,10 @@ const ROOMS: [(&str, &[&str]); 10] = [
     ("data", &["Measurements", "MasterCurve"]),
     ("laws", &["laws::"]),
     ("output", &["CsvHistory", "FrameSeries", "output::"]),
-    ("plan", &["Plan::", "Accuracy::"]),
     ("plot", &["plot::"]),
     ("sliding", &["build_sliding", "SlidingSweep"]),
     ("states", &["ElasticStates", "StatesContact", "Sweep::new", "fields_to"]),
+    ("study", &["Study::", "Accuracy::"]),
     ("surfaces", &["HeightMap", "Rough::", "RoughSpec"]),
 ];
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const ORDER: &str = "\
     values axis extent guide linalg dense quadrature numeric rounded sum error events ascending file input grid \
     memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic observe \
-    equilibrium fields elastic contact sliding run states laws output plan plot";
+    equilibrium fields elastic contact sliding run states study laws output plot";
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

@@ -155,8 +155,11 @@ fn nan_is_named_or_returned_elsewhere() {
     let nan = FnHistory::new(|t: f64| Load::force(if (0.9..1.1).contains(&t) { f64::NAN } else { 0.2 }));
     let (sphere, body) =
         (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 0.5).unwrap()));
-    let plan = Plan::builder(&sphere, &body, &nan, UNTIL).accuracy(Accuracy::COARSE).build();
-    assert!(matches!(plan, Err(Error::Load(LoadError::OutOfRange { field: "normal force", .. }))));
+    let scene = |grid, settings| {
+        Ok(ViscoelasticContact::builder(grid).geometry(&sphere).material(body.clone()).settings(settings))
+    };
+    let study = Study::new(scene, &nan, UNTIL).accuracy(Accuracy::COARSE).run();
+    assert!(matches!(study, Err(Error::Load(LoadError::OutOfRange { field: "normal force", .. }))));
     let broken = viscocontact::load::laws::all(&nan, &[0.0, 2.0]).unwrap_err();
     assert_eq!((broken.law, broken.quantity), ("every load is one that a step accepts", "normal force"));
 

@@ -2,7 +2,6 @@
 //! `LIMIT_SCENES` (120) scenes of each kind.
 
 use crate::common::{Draws, builder_of, contact_of, from_environment};
-use viscocontact::plan::{Accuracy, Plan};
 use viscocontact::prelude::*;
 
 fn bodies(draws: &mut Draws) -> Material {
@@ -196,7 +195,9 @@ fn runs_under_the_least_loads_end() {
                         Err(error) => panic!("{what}: {error}"),
                     }
                     if load.tilt()[0] == Tilt::Fixed(0.0) {
-                        let _ = Plan::builder(shape, &material, &history, 1.0).accuracy(Accuracy::COARSE).build();
+                        let scene = |grid, settings| Ok(builder_of(shape, grid, material.clone()).settings(settings));
+                        let study = Study::new(scene, &history, 1.0).accuracy(Accuracy::COARSE).work(1e5);
+                        let _ = study.run();
                     }
                 }
             }

@@ -108,7 +108,6 @@ impl Builder {
             (!time_rule.needs_series(), coverage::DIRECT_SUM),
             (frame != Frame::Bodies, coverage::FRAME_OF_INDENTER),
             (self.ranks.is_some(), coverage::SHARED_ROWS),
-            (self.planned, coverage::PLANNED_GRID),
             (self.attraction.is_some(), coverage::ATTRACTED),
             (self.temperature.is_some(), coverage::TEMPERATURES),
         ];

@@ -31,25 +31,23 @@ const TEMPERATURES: i32 = 64;
 pub struct Builder {
     pub(crate) grid: Grid,
     /// The gap of each rigid body.
-    pub(super) gaps: Vec<LocalGap>,
+    pub(crate) gaps: Vec<LocalGap>,
     /// The waves of all of them.
-    pub(super) waves: Vec<Waves>,
-    pub(super) material: Option<Material>,
-    pub(super) counter_body: Option<Material>,
+    pub(crate) waves: Vec<Waves>,
+    pub(crate) material: Option<Material>,
+    pub(crate) counter_body: Option<Material>,
     /// What a creeping counter-body does in a steady motion.
     pub(crate) counter_motion: Option<CounterMotion>,
-    pub(super) times: Option<Times>,
+    pub(crate) times: Option<Times>,
     pub(crate) temperature: Option<TemperatureHistory>,
     pub(crate) attraction: Option<Arc<dyn Attraction>>,
     pub(crate) kernel: Option<Arc<InfluenceKernel>>,
     pub(crate) settings: Settings,
     pub(crate) ranks: Option<Arc<dyn Ranks>>,
-    /// Whether the grid was chosen by a plan, for surfaces that do not attract each other.
-    pub(crate) planned: bool,
 }
 
 /// Rows of the grid, and a gap on them if there was memory for it.
-pub(super) type LocalGap = (Range<usize>, Result<Vec<f64>>);
+pub(crate) type LocalGap = (Range<usize>, Result<Vec<f64>>);
 
 impl ViscoelasticContact {
     /// A builder for a contact on `grid`.
@@ -67,7 +65,6 @@ impl ViscoelasticContact {
             kernel: None,
             settings: Settings::default(),
             ranks: None,
-            planned: false,
         }
     }
 }
@@ -160,17 +157,6 @@ impl Builder {
         Builder { times: Some(Times::of_run(history, until)), ..self }
     }
 
-    /// The material of a run with [`Builder::times_of`], with its series.
-    pub(crate) fn material_of_run(
-        material: &Material,
-        history: &dyn LoadHistory,
-        until: f64,
-        temperature: Option<&TemperatureHistory>,
-        settings: &Settings,
-    ) -> Result<Material> {
-        Times::of_run(history, until).fit(material, temperature, settings.series_tolerance)
-    }
-
     /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
     /// temperature of the law. The times of [`Builder::times`] and [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial) are
     /// reduced times; [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
@@ -236,7 +222,7 @@ impl Builder {
 
 /// The times over which the series of a material is fitted.
 #[derive(Debug, Clone)]
-pub(in crate::contact) struct Times {
+pub(crate) struct Times {
     pub(super) range: RangeInclusive<f64>,
     /// Whether the times come from a run; a run fails where the material is not known.
     pub(super) of_run: bool,

@@ -1,10 +1,10 @@
-//! Materials, steps, runs, plans and files.
+//! Materials, steps, runs, studies and files.
 
 use std::sync::Arc;
 
 use super::End::{self, Refused, Warned};
 use super::judge_all;
-use crate::common::{builder_on, maxwell, zener};
+use crate::common::{builder_of, builder_on, maxwell, zener};
 use viscocontact::Error;
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::{StepReport, Warnings};
@@ -21,7 +21,7 @@ fn last(mut run: Run<'_>) -> Result<StepReport, Error> {
     Ok(last.unwrap())
 }
 
-/// Materials, steps, runs, plans and files.
+/// Materials, steps, runs, studies and files.
 #[test]
 fn everything_else_outside_the_model_is_warned_of_or_refused() {
     type Scene = Box<dyn Fn() -> Result<StepReport, Error>>;
@@ -152,15 +152,17 @@ fn everything_else_outside_the_model_is_warned_of_or_refused() {
             Refused("give the time at which the run ends, not its length"),
         ),
         (
-            "attraction on a mesh planned without it",
+            "a study of surfaces that attract each other, of which no domain is given",
             Box::new(|| {
                 let (ball, load) = (Sphere::new(1.0e-3)?, StepLoad::new(Load::force(1.0e-3))?);
-                let plan = Plan::builder(&ball, &zener(), &load, 1.0).accuracy(Accuracy::COARSE).build()?;
-                assert!(plan.builder.clone().build()?.step(0.0, Load::force(1.0e-3))?.contact_cells > 0);
-                let sticky = plan.builder.attraction(ExponentialAttraction::new(0.05, 1.0e-6)?);
-                sticky.build()?.step(0.1, Load::force(1.0e-3))
+                let scene = |grid, settings| {
+                    let law = ExponentialAttraction::new(0.05, 1.0e-6)?;
+                    Ok(builder_of(&ball, grid, zener()).settings(settings).attraction(law))
+                };
+                let study = Study::new(scene, &load, 1.0).accuracy(Accuracy::COARSE).run()?;
+                Ok(study.into_contact().step(0.1, Load::force(1.0e-3))?)
             }),
-            Refused("build it by ViscoelasticContact::builder"),
+            Refused("Study::domain"),
         ),
         ("a file of a profilometer", extension("scan.opd"), export),
         ("a file of a microscope", extension("scan.ibw"), export),

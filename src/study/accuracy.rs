@@ -1,12 +1,11 @@
 use crate::contact::Settings;
 use crate::error::{Result, within};
-use crate::run::Stepping;
 
-/// The accuracy of a result: approach, force and, where it is finite, peak pressure, relative to their greatest values.
-/// It determines the tolerances of steps and solver and, through a [`Plan`](crate::plan::Plan), mesh and domain.
+/// The accuracy of a result: its error relative to the greatest value of the run. It gives the tolerances of a
+/// [`Study`](crate::study::Study).
 ///
 /// ```
-/// use viscocontact::plan::Accuracy;
+/// use viscocontact::study::Accuracy;
 ///
 /// assert_eq!(Accuracy::STANDARD.target(), 1e-3);
 /// let custom = Accuracy::new(3e-4)?;
@@ -19,14 +18,10 @@ pub struct Accuracy {
     target: f64,
 }
 
-/// Shares of the target for the error in time and the error of the mesh, as measured (docs/accuracy.md).
-const TIME_SHARE: f64 = 0.36;
-const SPACE_SHARE: f64 = 0.8;
-/// The same of a pressure field.
-const FIELD_TIME_SHARE: f64 = 0.3;
-const FIELD_SPACE_SHARE: f64 = 0.6;
-/// Share of the target for the residual of the solver, relative to the displacement: far below the other shares.
-const SOLVER_SHARE: f64 = 0.01;
+/// Part of the target for the residual of the solver, relative to the displacement: far below the errors of mesh and time.
+const OF_SOLVER: f64 = 0.01;
+/// Part of the target for the series of a body that has none.
+const OF_SERIES: f64 = 0.1;
 
 #[cfg(feature = "serde")]
 impl TryFrom<f64> for Accuracy {
@@ -72,34 +67,10 @@ impl Accuracy {
         self.target
     }
 
-    /// Adaptive steps for this accuracy.
-    pub fn stepping(&self) -> Stepping {
-        Stepping::adaptive(self.step_tolerance())
-    }
-
-    /// Tolerance of adaptive steps for this accuracy.
-    pub(crate) fn step_tolerance(&self) -> f64 {
-        (TIME_SHARE * self.target).clamp(1e-9, 0.1)
-    }
-
     /// Settings with the tolerances of this accuracy; the other settings are default.
     pub fn settings(&self) -> Settings {
-        let tolerance = (SOLVER_SHARE * self.target).clamp(1e-12, 1e-3);
-        Settings { tolerance, series_tolerance: (0.1 * self.target).clamp(1e-7, 1e-2), ..Settings::default() }
-    }
-
-    /// Accuracy in time of pressure fields for this accuracy.
-    pub(crate) fn fields(&self) -> f64 {
-        (FIELD_TIME_SHARE * self.target).max(1e-5)
-    }
-
-    /// Allowed error of the mesh of pressure fields for this accuracy.
-    pub(crate) fn field_space(&self) -> f64 {
-        FIELD_SPACE_SHARE * self.target
-    }
-
-    /// Allowed error of the mesh for this accuracy.
-    pub(crate) fn space(&self) -> f64 {
-        SPACE_SHARE * self.target
+        let tolerance = (OF_SOLVER * self.target).clamp(1e-12, 1e-3);
+        let series_tolerance = (OF_SERIES * self.target).clamp(1e-7, 1e-2);
+        Settings { tolerance, series_tolerance, ..Settings::default() }
     }
 }

@@ -1,0 +1,65 @@
+//! The scene of a study, on a grid that the study chooses.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::Grid;
+use crate::contact::{Builder, Settings};
+use crate::elastic::ElasticBuilder;
+use crate::error::Result;
+use crate::load::LoadHistory;
+use crate::study::Accuracy;
+
+/// The scene on a grid, with these settings.
+pub(super) type SceneOf<'a> = Box<dyn Fn(Grid, Settings) -> Result<Builder> + 'a>;
+
+/// A scene along its load histories.
+pub(super) struct Scene<'a> {
+    pub(super) on: SceneOf<'a>,
+    /// One for each rigid body.
+    pub(super) histories: Vec<&'a dyn LoadHistory>,
+    pub(super) until: f64,
+    pub(super) accuracy: Accuracy,
+}
+
+impl fmt::Debug for Scene<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Scene").field("until", &self.until).finish_non_exhaustive()
+    }
+}
+
+impl Scene<'_> {
+    /// The contact on a grid; its materials are fitted over the times of the run.
+    pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
+        let builder = (self.on)(grid, self.accuracy.settings())?;
+        Ok(match self.histories.first() {
+            Some(history) if builder.times.is_none() => builder.times_of(*history, self.until),
+            _ => builder,
+        })
+    }
+}
+
+impl Builder {
+    /// The sum of the contact compliances at the end of a run, as far as the materials are known; at once where it is infinite then.
+    pub(super) fn compliance_until(&self, until: f64) -> Result<f64> {
+        let creeping = self.temperature.as_ref().map_or(Ok(until), |history| history.reduced_time(0.0, until))?;
+        let at = |time: f64| {
+            let bodies = [&self.material, &self.counter_body].into_iter().flatten();
+            bodies.map(|body| body.contact_compliance(time.min(body.known_until()))).sum::<f64>()
+        };
+        Ok(Some(at(creeping)).filter(|c| c.is_finite()).unwrap_or_else(|| at(0.0)))
+    }
+}
+
+impl ElasticBuilder {
+    /// The shapes, kernel and settings of a contact.
+    pub(super) fn of(contact: &Builder) -> ElasticBuilder {
+        let gaps = contact.gaps.iter().map(|(_, gap)| gap.clone()).collect();
+        let elastic = ElasticBuilder::with_gaps(contact.grid.clone(), gaps, contact.waves.clone());
+        let elastic = elastic.settings(contact.settings);
+        match &contact.kernel {
+            Some(kernel) => elastic.kernel(Arc::clone(kernel)),
+            None => elastic,
+        }
+    }
+}

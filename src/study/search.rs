@@ -1,0 +1,218 @@
+//! The course of a study: domain, steps, and meshes until what is asked is met.
+
+use std::ops::ControlFlow;
+
+use crate::error::{AdhesionError, Error, Result, StepError};
+use crate::Grid;
+use crate::study::domain::{Domain, Side};
+use crate::study::error::{OfMesh, SINGULAR, SMOOTH};
+use crate::study::level::{Level, Runs};
+use crate::study::observable::{Observed, Reading};
+use crate::study::result::{Growth, Mesh, StudyResult};
+use crate::study::{Ending, Measured, Study, StudyProgress};
+
+/// Cells across the widest contact on the first mesh, and across a domain that is given.
+const ACROSS: f64 = 16.0;
+const ACROSS_GIVEN: f64 = 32.0;
+/// How many times as fine the next mesh is: after the first one, and at least and at most.
+const RATIO: f64 = 1.5;
+const RATIOS: [f64; 2] = [1.25, 2.0];
+/// Part of what is left to the mesh at which the next mesh aims.
+const AIM: f64 = 0.7;
+/// Part of the accuracy for the error in time, and at which shorter steps aim; and the tolerance of steps to begin with.
+const IN_TIME: f64 = 0.4;
+const AIM_IN_TIME: f64 = 0.3;
+const TOLERANCE: f64 = 0.25;
+/// Ratio of the tolerances of two runs whose difference is the error in time of the first. The second errs by a part of this.
+const SHORTER: f64 = 8.0;
+const OF_BOTH: f64 = SHORTER / (SHORTER - 1.0);
+/// Tolerances of adaptive steps, and the ratio of those of finer meshes, whose steps end where those of the first do.
+const TOLERANCES: [f64; 2] = [1e-9, 0.1];
+const ON_FINER: f64 = 2.0;
+/// Most times that the steps are shortened, that a domain is grown, and meshes on which a quantity may not converge.
+const MOST_SHORTENED: usize = 3;
+const MOST_GROWN: usize = 8;
+const MOST_UNCONVERGED: usize = 4;
+/// A domain is made anew if the contact is narrower than the one it was found for by this factor.
+const NARROWER: f64 = 0.75;
+
+/// The first mesh: its run in the steps of the study, and its errors in time.
+struct First {
+    level: Level,
+    domain: Domain,
+    across: f64,
+    /// Ends of the steps of the study.
+    stops: Vec<f64>,
+    tolerance: f64,
+    /// Error in time of each observable.
+    in_time: Vec<f64>,
+    /// Power of 1/tolerance with which the steps grow.
+    steps_order: f64,
+}
+
+pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> ControlFlow<()>) -> Result<StudyResult> {
+    let Study { scene, sides, observed, mut fields_at, most_cells, most_bytes, most_work, cancelled } = study;
+    fields_at.sort_by(f64::total_cmp);
+    fields_at.dedup();
+    let cancelled = cancelled.as_ref();
+    let (scene, observed, fields_at) = (&scene, &observed[..], &fields_at[..]);
+    let runs = &mut Runs { scene, observed, fields_at, sides, cancelled, progress, runs: 0, work: 0.0, expected: None };
+    let domain = match Domain::given(sides) {
+        Some(domain) => domain,
+        None => found(runs, sides)?,
+    };
+    let mut grown = 0;
+    'domain: loop {
+        let first = first_mesh(runs, if grown == 0 { domain } else { (0..grown).fold(domain, |domain, _| domain.grown()) })?;
+        let First { level, domain, mut across, mut stops, tolerance, in_time, steps_order } = first;
+        let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
+        let (mut finest, mut unconverged) = (level, 0);
+        let accuracy = scene.accuracy.target();
+        loop {
+            let measured = measured(observed, &meshes, &in_time, accuracy);
+            let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
+            let is_met = |own: &Measured| !own.is_asked || own.error().is_some_and(|error| error <= accuracy);
+            let asked = measured.iter().filter(|own| own.is_asked);
+            unconverged = if meshes.len() > 2 && asked.clone().any(|own| own.error().is_none()) { unconverged + 1 } else { 0 };
+            let ratio = asked.filter_map(|own| own.ratio(accuracy)).reduce(f64::max);
+            let ratio = ratio.map_or(RATIO, |ratio| ratio.clamp(RATIOS[0], RATIOS[1]));
+            let mut result = StudyResult::new(finest, meshes, measured, scene.accuracy, (&stops, tolerance), growth);
+            runs.expected = result.cost_for(scene.accuracy);
+            let next = domain.grid(ratio * across)?;
+            // the finest one that is allowed, where it is finer enough
+            let most = RATIOS[0].max((most_cells as f64 / next.len() as f64).sqrt() * ratio * 0.9);
+            let (ratio, next) =
+                if next.len() > most_cells { (most.min(ratio), domain.grid(most.min(ratio) * across)?) } else { (ratio, next) };
+            // what the next mesh takes by what the last one took
+            let size = next.len() as f64 / result.grid().len() as f64;
+            let expected = result.work_of_finest() * size.powf(1.0 + 0.5 * growth.convolutions);
+            let bytes = (result.bytes() as f64 * size) as u64;
+            let ending = match () {
+                () if result.quantities.iter().all(is_met) => Some(Ending::Reached),
+                () if unconverged >= MOST_UNCONVERGED => Some(Ending::NoConvergence),
+                () if next.len() > most_cells => Some(Ending::Cells),
+                () if most_bytes.is_some_and(|most| bytes > most) => Some(Ending::Memory),
+                () if most_work.is_some_and(|most| runs.work + expected > most) => Some(Ending::Work),
+                () => None,
+            };
+            let ending = match ending {
+                Some(ending) => ending,
+                None => match runs.level(next, (ON_FINER * tolerance).min(TOLERANCES[1]), &stops) {
+                    Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && grown < MOST_GROWN => {
+                        grown += 1;
+                        continue 'domain;
+                    }
+                    Err(error @ Error::Cancelled { .. }) => return Err(error),
+                    Err(Error::OutOfMemory { .. }) => Ending::Memory,
+                    Err(error) => Ending::Failed(error),
+                    Ok(level) => {
+                        across *= ratio;
+                        let differences = result.finest.differences(&level, observed).into_iter().map(Some).collect();
+                        meshes = result.meshes;
+                        meshes.push(Mesh::of(&level, differences));
+                        // its steps end where all before do
+                        stops = result.finest.times;
+                        finest = level;
+                        continue;
+                    }
+                },
+            };
+            (result.ending, result.work, result.runs) = (ending, runs.work, runs.runs);
+            return Ok(result);
+        }
+    }
+}
+
+fn found(runs: &Runs<'_, '_>, sides: [Side; 2]) -> Result<Domain> {
+    let builder = runs.scene.builder(Grid::square(4, 1.0)?)?;
+    if builder.attraction.is_some() {
+        return Err(Error::Missing { part: "Study::domain, as surfaces attract each other" });
+    }
+    Domain::find(runs.scene, sides)
+}
+
+/// Runs the first mesh on a domain that holds the contact, in steps that are short enough.
+fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain) -> Result<First> {
+    let accuracy = runs.scene.accuracy.target();
+    let mut tolerance = (TOLERANCE * accuracy).clamp(TOLERANCES[0], TOLERANCES[1]);
+    let mut across = if domain.is_given() { ACROSS_GIVEN } else { ACROSS };
+    let mut tries = 0;
+    let level = loop {
+        tries += 1;
+        match runs.level(domain.grid(across)?, tolerance, &[]) {
+            Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && tries < MOST_GROWN => {
+                domain = domain.grown();
+            }
+            // the first mesh that resolves the attraction
+            Err(Error::Adhesion(AdhesionError::ZoneNotResolved { .. })) if across < 1e4 => across *= RATIO,
+            Err(error) => return Err(error),
+            Ok(level) if level.domain.is_narrower(&domain, NARROWER) && tries < MOST_GROWN => domain = level.domain,
+            Ok(level) => break level,
+        }
+    };
+    let mut base = level;
+    let common = base.times.clone();
+    let mut shorter = tolerance / SHORTER;
+    let mut fine = runs.level(base.grid.clone(), shorter.max(TOLERANCES[0]), &common)?;
+    let steps_order = ((fine.steps as f64 / base.steps.max(1) as f64).ln() / SHORTER.ln()).clamp(0.0, 1.0);
+    let mut in_time = Vec::new();
+    for tries in 0..=MOST_SHORTENED {
+        let differences = base.differences(&fine, runs.observed);
+        in_time = differences.into_iter().map(|difference| OF_BOTH * difference).collect();
+        let worst = worst_asked(runs.observed, &in_time);
+        if worst <= IN_TIME * accuracy || tries == MOST_SHORTENED || tolerance <= TOLERANCES[0] {
+            break;
+        }
+        tolerance = (tolerance * (AIM_IN_TIME * accuracy / worst).max(1.0 / SHORTER)).max(TOLERANCES[0]);
+        base = runs.level(base.grid.clone(), tolerance, &common)?;
+        shorter = (tolerance / SHORTER).max(TOLERANCES[0]);
+        fine = runs.level(base.grid.clone(), shorter, &common)?;
+    }
+    let stops = base.times.clone();
+    Ok(First { level: base, domain, across, stops, tolerance, in_time, steps_order })
+}
+
+fn worst_asked(observed: &[Observed<'_>], errors: &[f64]) -> f64 {
+    observed.iter().zip(errors).filter(|(own, _)| own.is_asked).map(|(_, error)| *error).fold(0.0, f64::max)
+}
+
+/// What the meshes so far tell of each observable.
+fn measured(observed: &[Observed<'_>], meshes: &[Mesh], in_time: &[f64], accuracy: f64) -> Vec<Measured> {
+    let sides: Vec<f64> = meshes.iter().map(Mesh::side).collect();
+    let all = |k: usize| meshes.iter().filter_map(|mesh| mesh.changes[k]).collect::<Vec<f64>>();
+    // a pressure that does not converge is infinite at an edge or a tip: nothing is of a higher order than the first beside it
+    let is_greatest = |own: &Observed<'_>| matches!(own.reading, Reading::Greatest(_));
+    let peak = observed.iter().position(is_greatest).map(&all).unwrap_or_default();
+    let is_singular = peak.len() > 1 && OfMesh::of(&sides, &peak, SMOOTH).order.is_none();
+    let most = if is_singular { SINGULAR } else { SMOOTH };
+    let one = |(k, own): (usize, &Observed<'_>)| {
+        let differences = all(k);
+        let OfMesh { error, order } = OfMesh::of(&sides, &differences, most);
+        let is_known = order.is_some() || differences.len() == 1 || in_time[k] + error <= accuracy;
+        Measured {
+            name: own.name.clone(),
+            is_asked: own.is_asked,
+            time: in_time[k],
+            mesh: Some(error).filter(|error| is_known && error.is_finite()),
+            order,
+            last_change: differences.last().copied(),
+        }
+    };
+    observed.iter().enumerate().map(one).collect()
+}
+
+impl Measured {
+    /// How many times as fine a mesh is expected to meet an accuracy; nothing where it is met or nothing is expected.
+    fn ratio(&self, accuracy: f64) -> Option<f64> {
+        let left = AIM * (accuracy - self.time).max(0.1 * accuracy);
+        let mesh = self.mesh.filter(|mesh| *mesh > left)?;
+        Some((mesh / left).powf(1.0 / self.order.unwrap_or(1.0)))
+    }
+}
+
+/// Power of the cells along a side with which the convolutions of a run grow.
+fn convolutions_order(meshes: &[Mesh]) -> f64 {
+    let [first, .., last] = meshes else { return 0.0 };
+    let of = |mesh: &Mesh| mesh.convolutions / mesh.steps.max(1) as f64;
+    ((of(last) / of(first)).ln() / (first.side() / last.side()).ln()).clamp(0.0, 0.5)
+}
