@@ -16,9 +16,6 @@ pub(crate) struct GroupHistory {
     columns: Vec<Vec<f64>>,
     /// The third difference over the step being committed.
     twists: Vec<f64>,
-    /// Whether groups that are met in a step were at rest until then, as cells are.
-    #[cfg_attr(feature = "checkpoint", serde(skip))]
-    pub(crate) as_cells: bool,
 }
 
 /// Number of columns before the q_i.
@@ -28,7 +25,7 @@ impl GroupHistory {
     /// No groups, with room for some.
     pub(crate) fn new(rule: ExponentialRule, groups: usize) -> GroupHistory {
         let columns = (0..HEAD + rule.branches()).map(|_| Vec::with_capacity(groups)).collect();
-        GroupHistory { rule, columns, twists: Vec::with_capacity(groups), as_cells: false }
+        GroupHistory { rule, columns, twists: Vec::with_capacity(groups) }
     }
 
     /// The rule; its compliance belongs to the step predicted last.
@@ -50,7 +47,6 @@ impl GroupHistory {
     pub(crate) fn copy_from(&mut self, other: &GroupHistory) {
         self.rule.clone_from(&other.rule);
         self.columns.clone_from(&other.columns);
-        self.as_cells = other.as_cells;
     }
 
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial of lower degree is
@@ -110,7 +106,7 @@ impl GroupHistory {
     /// Whether groups that are met in a step follow the edge that meets them, as in quadratic steps. On a body without elastic response the groups of
     /// the last step share the response to the slope at the end, so that none has to follow.
     pub(crate) fn leads(&self) -> bool {
-        self.rule.kept() > 1 && !self.rule.has_dashpot() && !self.as_cells
+        self.rule.kept() > 1 && !self.rule.has_dashpot()
     }
 
     /// W at the end of the step predicted last, if nothing presses on it, of what stood at 0 and moved by these differences before.

@@ -105,12 +105,6 @@ impl StatesContact {
         }
     }
 
-    /// With quadratic steps as cells take them: levels that are met in a step were at rest until then.
-    pub(crate) fn with_steps_of_cells(mut self) -> StatesContact {
-        self.levels.history.as_cells = true;
-        self
-    }
-
     pub(crate) fn with_interpolant(mut self, interpolant: Interpolant) -> StatesContact {
         Arc::make_mut(&mut self.scene).interpolant = interpolant;
         self

@@ -136,6 +136,11 @@ impl Domain {
     }
 }
 
+/// A grid of few cells, on which the parts of a scene are seen.
+pub(super) fn probe(sides: [Side; 2]) -> Result<Grid> {
+    grid_of(sides, sides.map(|side| if let Side::Given(length) | Side::Uniform(length) = side { length } else { 1.0 }))
+}
+
 fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
     Grid::new(sides.map(|side| if matches!(side, Side::Uniform(_)) { 1 } else { CELLS }), lengths)
 }

@@ -3,8 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::error::{AdhesionError, Error, Result, StepError};
-use crate::Grid;
-use crate::study::domain::{Domain, Side};
+use crate::study::domain::{Domain, Side, probe};
 use crate::study::error::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observed, Reading};
@@ -124,7 +123,7 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
 }
 
 fn found(runs: &Runs<'_, '_>, sides: [Side; 2]) -> Result<Domain> {
-    let builder = runs.scene.builder(Grid::square(4, 1.0)?)?;
+    let builder = runs.scene.builder(probe(sides)?)?;
     if builder.attraction.is_some() {
         return Err(Error::Missing { part: "Study::domain, as surfaces attract each other" });
     }

@@ -17,5 +17,6 @@ mod several_indenters;
 mod step_loaded_sphere;
 mod stiffness;
 mod stress;
+mod study_fields;
 mod study_kernels;
 mod study_random;
