@@ -102,7 +102,7 @@ const NAMES: [(&str, &str); 12] = [
     ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
     ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),
     ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
-    ("(PlanBuilder::kernel)", "(kernel=)"),
+    ("Study::domain", "domain=(length, length)"),
     ("Earlier::Replace", "earlier=\"replace\""),
     ("::", "."),
 ];

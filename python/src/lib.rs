@@ -24,7 +24,6 @@ mod materials;
 mod measured;
 mod observe;
 mod pictures;
-mod plan;
 mod recipe;
 mod reports;
 mod rheology;
@@ -36,6 +35,7 @@ mod sliding;
 mod states;
 mod states_contact;
 mod stress;
+mod study;
 mod temperature;
 mod writers;
 
@@ -90,7 +90,7 @@ mod _native {
     #[pymodule_export]
     use crate::pictures::{Animation, Picture};
     #[pymodule_export]
-    use crate::plan::Plan;
+    use crate::study::Study;
     #[pymodule_export]
     use crate::recipe::again;
     #[pymodule_export]

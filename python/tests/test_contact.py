@@ -242,8 +242,9 @@ def test_an_exception_of_a_user_comes_out_as_itself():
         lambda: vc.InfluenceKernel.from_spectrum(GRID, raises),
         lambda: list(ball().follow(vc.Load.force(1.0), 1.0, progress=raises)),
         lambda: vc.ElasticStates.sweep(GRID, BALL, approach=1e-5, progress=raises),
-        lambda: vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=raises),
-        lambda: vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, kernel=raises),
+        lambda: vc.Study(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=raises),
+        lambda: vc.Study(BALL, RUBBER, vc.Load.force(1.0), 1.0, quantities={"own": raises}),
+        lambda: vc.Study(BALL, RUBBER, vc.Load.force(1.0), 1.0, kernel=raises),
         lambda: vc.SteadySliding(GRID, wave, RUBBER, kernel=periodic, modulus=raises).at((1.0, 0.0), vc.Load.force(1e-3)),
         lambda: vc.persson_friction(GRID, wave, raises, 1e3, (1.0, 0.0), 0.5),
         warm,
@@ -308,7 +309,7 @@ def test_progress_cancels():
     few, all = (vc.ElasticStates.sweep(GRID, BALL, approach=1e-4, progress=lambda n: n < most) for most in (4, 10**9))
     assert len(few) < len(all)
     with pytest.raises(vc.Cancelled):
-        vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=lambda *at: False)
+        vc.Study(BALL, RUBBER, vc.Load.force(1.0), 1.0, progress=lambda *at: False)
 
 
 def test_samples_and_events():
@@ -470,11 +471,11 @@ def test_ctrl_c():
         while True:
             vc.ElasticStates.sweep(vc.Grid(128, 4e-3), BALL, approach=2e-4, accuracy=1e-6)
 
-    def plan():
+    def study():
         while True:
-            vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=1e-4)
+            vc.Study(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=1e-5)
 
-    assert interrupted(sweep) < 5.0 and interrupted(plan) < 5.0
+    assert interrupted(sweep) < 5.0 and interrupted(study) < 5.0
     # a step that waits for its end is reported: no bytecode runs between the steps
     grid = vc.Grid(256, 1e-3)
     rough = vc.HeightMap.rough(grid, 0.5e-3, 4e-5, rms_slope=0.3, seed=1)

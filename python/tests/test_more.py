@@ -1,4 +1,4 @@
-"""States, sliding, attraction, plans, identification, writers, maps."""
+"""States, sliding, attraction, studies, identification, writers, maps."""
 
 import json
 import pickle
@@ -91,16 +91,35 @@ def test_motion():
     assert position == [1e-4, 0.0] and force[0] > 0 and report.time == 0.1
 
 
-def test_a_plan():
-    plan = vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=1e-2)
-    assert plan.pressure_converges and plan.pressure_doubt is None and all(0.0 <= time <= 2.0 for time in plan.stops)
-    contact = plan.contact()
-    table = contact.follow(vc.Load.force(1.0), 2.0, tolerance=plan.tolerance).table()
-    exact = vc.GrowingSphere(10e-3, RUBBER, vc.Load.force(1.0)).approach(2.0)
-    assert table["approach"][-1] == pytest.approx(exact, rel=1e-2)
-    assert plan.bytes > 0 and "cells" in str(plan) and plan.fields_to is None and 0.0 < plan.field_error < 0.2
-    fields = vc.Plan(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=3e-2, fields=[0.5, 2.0])
-    assert 0.0 < fields.fields_to < 3e-2 and fields.field_error < 3e-2 and fields.contact().mesh_error() is None
+def test_a_study(tmp_path):
+    load = vc.Load.force(1.0)
+    told = []
+    study = vc.Study(BALL, RUBBER, load, 2.0, accuracy=1e-2, ask=["contact area"], progress=lambda *at: told.append(at))
+    exact = vc.GrowingSphere(10e-3, RUBBER, load).approach(2.0)
+    assert study.is_converged and study.ending == "reached" and study.errors["contact area"] < 1e-2
+    assert study.contact().approach == pytest.approx(exact, rel=study.errors["approach"])
+    assert study.values("approach")[-1] == study.contact().approach and len(study.times) == len(study.values("force"))
+    again = study.contact(at_rest=True)
+    table = again.follow(load, 2.0, tolerance=study.tolerance, stop_at=study.stops).table()
+    assert table["approach"][-1] == study.contact().approach
+    assert told[-1][4] == study.work and told[0][5] is None and told[-1][5] is not None
+    assert study.cost_for(1e-4)[2] > study.cost_for(1e-2)[2] and study.bytes > 0 and "cells" in str(study)
+    study.write_csv(tmp_path / "study.csv")
+    study.save_picture(tmp_path / "study.png")
+    assert (tmp_path / "study.csv").read_text().startswith("row,cells 1")
+    with pytest.raises(ValueError, match="contact area"):
+        vc.Study(BALL, RUBBER, load, 2.0, ask=["area"])
+    with pytest.raises(ValueError, match="one of"):
+        study.values("area")
+
+
+def test_a_study_of_fields():
+    own = {"depth": lambda fields: fields.approach}
+    study = vc.Study(BALL, RUBBER, vc.Load.force(1.0), 2.0, accuracy=5e-2, fields=[0.5, 2.0], quantities=own)
+    early, late = study.fields()
+    assert early.contact_area < late.contact_area and late.force == study.contact().force
+    assert study.errors["pressure field"] < 5e-2 and study.errors["depth"] == study.errors["approach"]
+    assert len(study.meshes) > 1 and study.time_errors["depth"] < 5e-2 and set(study.orders) == set(study.errors)
 
 
 def test_identification():

@@ -59,6 +59,7 @@ not_covered! {
     FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies";
     SHARED_ROWS: "a contact that ranks share out",
         Attraction: "compute it in one process", SteadyMotion: "compute it in one process";
+    FOUND_DOMAIN: "a study that finds its domain", Attraction: "give its sides (Study::domain), wide enough for the attraction to end";
     ATTRACTED: "a contact of surfaces that attract each other", SteadyMotion: "build it without attraction";
     TEMPERATURES: "a history of the temperature",
         SteadyMotion: "multiply the velocity by the shift factor of the temperature";

@@ -61,6 +61,8 @@ mod quantity;
 mod section;
 #[cfg(feature = "sliding")]
 mod sliding;
+#[cfg(feature = "study")]
+mod study;
 
 pub use animation::Animation;
 pub use chart::{Chart, Scale};

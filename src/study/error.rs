@@ -16,6 +16,8 @@ const NOT_OBSERVED: f64 = 3.0;
 const LEAST: f64 = 0.5;
 pub(super) const SINGULAR: f64 = 1.0;
 pub(super) const SMOOTH: f64 = 2.0;
+/// A smaller difference, over the greatest value, is rounding.
+const ROUNDING: f64 = 1e-12;
 /// How exactly an order is found.
 const ORDER: f64 = 1e-12;
 
@@ -59,11 +61,11 @@ impl OfMesh {
     }
 }
 
-/// The greatest difference of values over the greatest of the finer ones; 0 where all are 0.
+/// The greatest difference of values over the greatest of the finer ones; 0 where it is rounding, as of a force that is given.
 pub(super) fn difference(coarse: &[f64], fine: &[f64]) -> f64 {
     let scale = fine.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let most = coarse.iter().zip(fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    if scale > 0.0 { most / scale } else { most }
+    if most > ROUNDING * scale { most / scale } else { 0.0 }
 }
 
 /// Means over coarser cells of the same domain, and Σ |p − p′| / Σ p′ of the coarse field against them.

@@ -20,7 +20,7 @@ pub use result::{Cost, Ending, Measured, Mesh, StudyResult};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::contact::{Builder, Settings};
-use crate::error::{Result, count_within, exact_length, positive, within};
+use crate::error::{Result, count_within, coverage, exact_length, positive, within};
 use crate::fields::Fields;
 use crate::load::LoadHistory;
 use crate::study::domain::{Side, probe};
@@ -73,6 +73,8 @@ const MOST_CELLS: usize = 1 << 18;
 pub struct Study<'a> {
     scene: Scene<'a>,
     sides: [Side; 2],
+    /// Sides that are periods of the body.
+    periods: [bool; 2],
     observed: Vec<Observed<'a>>,
     fields_at: Vec<f64>,
     most_cells: usize,
@@ -122,6 +124,7 @@ impl<'a> Study<'a> {
         Study {
             scene: Scene { on: Box::new(scene), histories: histories.to_vec(), until, accuracy: Accuracy::default() },
             sides: [Side::Found; 2],
+            periods: [false; 2],
             observed: Observable::ALL.map(|observable| observable.observed(asked(observable))).into(),
             fields_at: Vec::new(),
             most_cells: MOST_CELLS,
@@ -181,13 +184,14 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// A side of the domain that is a period of the body, of this length \[m\].
+    /// A side of the domain that is a period of the body, of this length \[m\]; the scene gives the kernel.
     pub fn period(mut self, axis: Axis, length: f64) -> Study<'a> {
-        self.sides[usize::from(axis == Axis::X2)] = Side::Given(length);
+        let axis = usize::from(axis == Axis::X2);
+        (self.sides[axis], self.periods[axis]) = (Side::Given(length), true);
         self
     }
 
-    /// A line contact: one cell along x2, of this length \[m\], on which the force acts.
+    /// A line contact: one cell along x2, of this length \[m\], on which the force acts; the scene gives the kernel.
     pub fn line(mut self, length: f64) -> Study<'a> {
         self.sides[1] = Side::Uniform(length);
         self
@@ -257,7 +261,7 @@ impl<'a> Study<'a> {
     }
 
     fn validate(&self) -> Result<()> {
-        let Study { scene, sides, fields_at, most_cells, most_work, .. } = self;
+        let Study { scene, sides, periods, fields_at, most_cells, most_work, .. } = self;
         positive("end of the run", scene.until)?;
         for (side, field) in sides.iter().zip(["side of the domain along x1", "side of the domain along x2"]) {
             if let Side::Given(length) | Side::Uniform(length) = *side {
@@ -272,8 +276,23 @@ impl<'a> Study<'a> {
         if let Some(most) = *most_work {
             positive("work of a study", most)?;
         }
-        // a kernel may not allow these cells
-        let bodies = (scene.on)(probe(*sides)?, scene.accuracy.settings()).map(|builder| builder.gaps.len());
-        bodies.map_or(Ok(()), |bodies| exact_length("load histories of the rigid bodies", scene.histories.len(), bodies))
+        // the scene may not allow these cells
+        let Ok(builder) = (scene.on)(probe(*sides)?, scene.accuracy.settings()) else { return Ok(()) };
+        exact_length("load histories of the rigid bodies", scene.histories.len(), builder.gaps.len())?;
+        let periodic = builder.kernel.as_ref().map_or([false; 2], |kernel| kernel.periodic_axes());
+        let is_line = matches!(sides[1], Side::Uniform(_));
+        let allowed = "that of a kernel which the scene has (Builder::kernel)";
+        let parts = [
+            ("period of the body along x1", 0, periods[0] && !periodic[0]),
+            ("period of the body along x2", 1, periods[1] && !periodic[1]),
+            ("length of a line contact", 1, is_line && builder.kernel.is_none()),
+        ];
+        for (field, axis, lacks) in parts {
+            if let Side::Given(length) | Side::Uniform(length) = sides[axis] {
+                within(field, length, !lacks, allowed)?;
+            }
+        }
+        let is_given = !sides.contains(&Side::Found);
+        coverage::FOUND_DOMAIN.unless(|_| builder.attraction.is_some() && !is_given)
     }
 }

@@ -126,6 +126,14 @@ pub(super) struct Growth {
     pub(super) convolutions: f64,
 }
 
+/// How the steps of a run are chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Steps {
+    /// Times at which they end besides.
+    pub(super) stops: Vec<f64>,
+    pub(super) tolerance: f64,
+}
+
 /// The result of a [`Study`](crate::study::Study): its finest run, with the measured error of each quantity and the table of all
 /// meshes ([`Display`](std::fmt::Display), [`StudyResult::write_csv`], and with the feature `plot` a picture).
 #[derive(Debug)]
@@ -144,8 +152,7 @@ pub struct StudyResult {
     /// Convolution equivalents of the whole study, each times the cells of its mesh.
     pub work: f64,
     pub(super) finest: Level,
-    stops: Vec<f64>,
-    tolerance: f64,
+    steps: Steps,
     growth: Growth,
 }
 
@@ -155,11 +162,10 @@ impl StudyResult {
         meshes: Vec<Mesh>,
         quantities: Vec<Measured>,
         accuracy: Accuracy,
-        (stops, tolerance): (&[f64], f64),
+        steps: Steps,
         growth: Growth,
     ) -> StudyResult {
-        let (ending, stops) = (Ending::Cells, stops.to_vec());
-        StudyResult { accuracy, ending, meshes, quantities, runs: 0, work: 0.0, finest, stops, tolerance, growth }
+        StudyResult { accuracy, ending: Ending::Cells, meshes, quantities, runs: 0, work: 0.0, finest, steps, growth }
     }
 
     /// Whether all that was asked for is met.
@@ -206,12 +212,12 @@ impl StudyResult {
 
     /// The stepping of the finest run.
     pub fn stepping(&self) -> Stepping {
-        Stepping::adaptive(self.tolerance)
+        Stepping::adaptive(self.steps.tolerance)
     }
 
     /// Times at which steps of the finest run end besides \[s\].
     pub fn stops(&self) -> &[f64] {
-        &self.stops
+        &self.steps.stops
     }
 
     /// The grid of the finest run.

@@ -3,11 +3,11 @@
 use std::ops::ControlFlow;
 
 use crate::error::{AdhesionError, Error, Result, StepError};
-use crate::study::domain::{Domain, Side, probe};
+use crate::study::domain::Domain;
 use crate::study::error::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observed, Reading};
-use crate::study::result::{Growth, Mesh, StudyResult};
+use crate::study::result::{Growth, Mesh, Steps, StudyResult};
 use crate::study::{Ending, Measured, Study, StudyProgress};
 
 /// Cells across the widest contact on the first mesh, and across a domain that is given.
@@ -40,9 +40,7 @@ struct First {
     level: Level,
     domain: Domain,
     across: f64,
-    /// Ends of the steps of the study.
-    stops: Vec<f64>,
-    tolerance: f64,
+    steps: Steps,
     /// Error in time of each observable.
     in_time: Vec<f64>,
     /// Power of 1/tolerance with which the steps grow.
@@ -50,7 +48,7 @@ struct First {
 }
 
 pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> ControlFlow<()>) -> Result<StudyResult> {
-    let Study { scene, sides, observed, mut fields_at, most_cells, most_bytes, most_work, cancelled } = study;
+    let Study { scene, sides, observed, mut fields_at, most_cells, most_bytes, most_work, cancelled, .. } = study;
     fields_at.sort_by(f64::total_cmp);
     fields_at.dedup();
     let cancelled = cancelled.as_ref();
@@ -58,12 +56,14 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
     let runs = &mut Runs { scene, observed, fields_at, sides, cancelled, progress, runs: 0, work: 0.0, expected: None };
     let domain = match Domain::given(sides) {
         Some(domain) => domain,
-        None => found(runs, sides)?,
+        None => Domain::find(scene, sides)?,
     };
     let mut grown = 0;
     'domain: loop {
         let first = first_mesh(runs, if grown == 0 { domain } else { (0..grown).fold(domain, |domain, _| domain.grown()) })?;
-        let First { level, domain, mut across, mut stops, tolerance, in_time, steps_order } = first;
+        let First { level, domain, mut across, steps, in_time, steps_order } = first;
+        let (on_finer, mut stops) = ((ON_FINER * steps.tolerance).min(TOLERANCES[1]), level.times.clone());
+        let mut last = steps;
         let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
         let (mut finest, mut unconverged) = (level, 0);
         let accuracy = scene.accuracy.target();
@@ -75,7 +75,7 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
             unconverged = if meshes.len() > 2 && asked.clone().any(|own| own.error().is_none()) { unconverged + 1 } else { 0 };
             let ratio = asked.filter_map(|own| own.ratio(accuracy)).reduce(f64::max);
             let ratio = ratio.map_or(RATIO, |ratio| ratio.clamp(RATIOS[0], RATIOS[1]));
-            let mut result = StudyResult::new(finest, meshes, measured, scene.accuracy, (&stops, tolerance), growth);
+            let mut result = StudyResult::new(finest, meshes, measured, scene.accuracy, last, growth);
             runs.expected = result.cost_for(scene.accuracy);
             let next = domain.grid(ratio * across)?;
             // the finest one that is allowed, where it is finer enough
@@ -96,7 +96,7 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
             };
             let ending = match ending {
                 Some(ending) => ending,
-                None => match runs.level(next, (ON_FINER * tolerance).min(TOLERANCES[1]), &stops) {
+                None => match runs.level(next, on_finer, &stops) {
                     Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && grown < MOST_GROWN => {
                         grown += 1;
                         continue 'domain;
@@ -109,9 +109,9 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
                         let differences = result.finest.differences(&level, observed).into_iter().map(Some).collect();
                         meshes = result.meshes;
                         meshes.push(Mesh::of(&level, differences));
-                        // its steps end where all before do
-                        stops = result.finest.times;
-                        finest = level;
+                        // the steps of the next one end where its own do
+                        (finest, last) = (level, Steps { stops, tolerance: on_finer });
+                        stops = finest.times.clone();
                         continue;
                     }
                 },
@@ -120,14 +120,6 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
             return Ok(result);
         }
     }
-}
-
-fn found(runs: &Runs<'_, '_>, sides: [Side; 2]) -> Result<Domain> {
-    let builder = runs.scene.builder(probe(sides)?)?;
-    if builder.attraction.is_some() {
-        return Err(Error::Missing { part: "Study::domain, as surfaces attract each other" });
-    }
-    Domain::find(runs.scene, sides)
 }
 
 /// Runs the first mesh on a domain that holds the contact, in steps that are short enough.
@@ -150,7 +142,7 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain) -> Result<First> {
         }
     };
     let mut base = level;
-    let common = base.times.clone();
+    let (common, mut stops) = (base.times.clone(), Vec::new());
     let mut shorter = tolerance / SHORTER;
     let mut fine = runs.level(base.grid.clone(), shorter.max(TOLERANCES[0]), &common)?;
     let steps_order = ((fine.steps as f64 / base.steps.max(1) as f64).ln() / SHORTER.ln()).clamp(0.0, 1.0);
@@ -164,11 +156,11 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain) -> Result<First> {
         }
         tolerance = (tolerance * (AIM_IN_TIME * accuracy / worst).max(1.0 / SHORTER)).max(TOLERANCES[0]);
         base = runs.level(base.grid.clone(), tolerance, &common)?;
+        stops.clone_from(&common);
         shorter = (tolerance / SHORTER).max(TOLERANCES[0]);
         fine = runs.level(base.grid.clone(), shorter, &common)?;
     }
-    let stops = base.times.clone();
-    Ok(First { level: base, domain, across, stops, tolerance, in_time, steps_order })
+    Ok(First { level: base, domain, across, steps: Steps { stops, tolerance }, in_time, steps_order })
 }
 
 fn worst_asked(observed: &[Observed<'_>], errors: &[f64]) -> f64 {

@@ -17,6 +17,7 @@ mod several_indenters;
 mod step_loaded_sphere;
 mod stiffness;
 mod stress;
+mod study;
 mod study_fields;
 mod study_kernels;
 mod study_random;
