@@ -90,8 +90,6 @@ mod _native {
     #[pymodule_export]
     use crate::pictures::{Animation, Picture};
     #[pymodule_export]
-    use crate::study::Study;
-    #[pymodule_export]
     use crate::recipe::again;
     #[pymodule_export]
     use crate::reports::{BodyState, StepReport};
@@ -111,6 +109,8 @@ mod _native {
     use crate::states_contact::StatesContact;
     #[pymodule_export]
     use crate::stress::{EnergyBalance, StressHistory, SubsurfaceStress};
+    #[pymodule_export]
+    use crate::study::Study;
     #[pymodule_export]
     use crate::temperature::{TemperatureHistory, TimeTemperature};
     #[pymodule_export]

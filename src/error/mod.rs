@@ -243,7 +243,7 @@ pub enum Error {
         remedy: &'static str,
     },
 
-    /// A [`Plan`](crate::plan::Plan) found no domain that holds the contact: none is large enough.
+    /// A [`Study`](crate::study::Study) found no domain that holds the contact: none is large enough.
     #[error(
         "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry and load"
     )]

@@ -64,9 +64,9 @@ mod twin;
 pub use crate::error::StatesError;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
-pub use reach::Reach;
 #[cfg(feature = "npy")]
 pub(crate) use pressed::Pressed;
+pub use reach::Reach;
 pub(crate) use reach::{as_elastic, greatest};
 pub use run::StatesRun;
 pub use sweep::Sweep;

@@ -147,10 +147,13 @@ fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
 
 /// Loads of the bodies at one time, as those of an elastic body of unit compliance under which the contact is as large as ever.
 fn greatest_loads(scene: &Scene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> {
-    let all: Vec<Vec<Load>> = scene.histories.iter().map(|history| sampled(*history, scene.until)).collect::<Result<_>>()?;
+    let all: Vec<Vec<Load>> =
+        scene.histories.iter().map(|history| sampled(*history, scene.until)).collect::<Result<_>>()?;
     let mut loads: Vec<Vec<Load>> = all.iter().map(|all| greatest(all, compliance).collect()).collect();
     // where the tilt or the load point changes, the contact is somewhere else
-    for (all, loads) in all.iter().zip(&mut loads).filter(|(all, _)| all.iter().any(|load| load.tilt() != all[0].tilt())) {
+    for (all, loads) in
+        all.iter().zip(&mut loads).filter(|(all, _)| all.iter().any(|load| load.tilt() != all[0].tilt()))
+    {
         loads.extend(all.iter().step_by(THINNED).map(|load| as_elastic(*load, compliance)));
     }
     let most = loads.iter().map(Vec::len).max().unwrap_or_default();

@@ -80,7 +80,8 @@ pub(super) fn difference_of_fields((coarse, n): (&[f64], [usize; 2]), (fine, m):
         let row = &along[from * n[1]..][..n[1]];
         means[i * n[1]..][..n[1]].iter_mut().zip(row).for_each(|(mean, value)| *mean += part * value);
     }
-    let (off, sum) = coarse.iter().zip(&means).fold((0.0, 0.0), |(off, sum), (p, mean)| (off + (p - mean).abs(), sum + mean.abs()));
+    let (off, sum) =
+        coarse.iter().zip(&means).fold((0.0, 0.0), |(off, sum), (p, mean)| (off + (p - mean).abs(), sum + mean.abs()));
     if sum > 0.0 { off / sum } else { off }
 }
 

@@ -103,7 +103,8 @@ impl Runs<'_, '_> {
             convolutions += report.convolution_equivalents();
             self.work += report.convolution_equivalents() * size;
             let (runs, expected, work) = (self.runs, self.expected, self.work);
-            let told = StudyProgress { runs, cells, steps: times.len(), time: report.time, until: *until, work, expected };
+            let told =
+                StudyProgress { runs, cells, steps: times.len(), time: report.time, until: *until, work, expected };
             if (self.progress)(told).is_break() {
                 return Err(Error::Cancelled { what: "a study" });
             }

@@ -265,7 +265,9 @@ impl StudyResult {
         let cells = self.finest.grid.cells().map(|n| if n == 1 { 1 } else { (finer * n as f64).ceil() as usize });
         let many = cells.iter().product::<usize>() as f64 / self.finest.grid.len() as f64;
         let steps = self.finest.steps as f64 * shorter.max(1e-3).powf(self.growth.steps);
-        let work = self.work_of_finest() * steps / self.finest.steps.max(1) as f64 * many * finer.powf(self.growth.convolutions);
+        let work = self.work_of_finest() * steps / self.finest.steps.max(1) as f64
+            * many
+            * finer.powf(self.growth.convolutions);
         Some(Cost { cells, steps: steps.ceil() as usize, work, bytes: (self.bytes() as f64 * many) as u64 })
     }
 

@@ -60,7 +60,8 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
     };
     let mut grown = 0;
     'domain: loop {
-        let first = first_mesh(runs, if grown == 0 { domain } else { (0..grown).fold(domain, |domain, _| domain.grown()) })?;
+        let first =
+            first_mesh(runs, if grown == 0 { domain } else { (0..grown).fold(domain, |domain, _| domain.grown()) })?;
         let First { level, domain, mut across, steps, in_time, steps_order } = first;
         let (on_finer, mut stops) = ((ON_FINER * steps.tolerance).min(TOLERANCES[1]), level.times.clone());
         let mut last = steps;
@@ -72,7 +73,8 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
             let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
             let is_met = |own: &Measured| !own.is_asked || own.error().is_some_and(|error| error <= accuracy);
             let asked = measured.iter().filter(|own| own.is_asked);
-            unconverged = if meshes.len() > 2 && asked.clone().any(|own| own.error().is_none()) { unconverged + 1 } else { 0 };
+            unconverged =
+                if meshes.len() > 2 && asked.clone().any(|own| own.error().is_none()) { unconverged + 1 } else { 0 };
             let ratio = asked.filter_map(|own| own.ratio(accuracy)).reduce(f64::max);
             let ratio = ratio.map_or(RATIO, |ratio| ratio.clamp(RATIOS[0], RATIOS[1]));
             let mut result = StudyResult::new(finest, meshes, measured, scene.accuracy, last, growth);
@@ -80,8 +82,11 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
             let next = domain.grid(ratio * across)?;
             // the finest one that is allowed, where it is finer enough
             let most = RATIOS[0].max((most_cells as f64 / next.len() as f64).sqrt() * ratio * 0.9);
-            let (ratio, next) =
-                if next.len() > most_cells { (most.min(ratio), domain.grid(most.min(ratio) * across)?) } else { (ratio, next) };
+            let (ratio, next) = if next.len() > most_cells {
+                (most.min(ratio), domain.grid(most.min(ratio) * across)?)
+            } else {
+                (ratio, next)
+            };
             // what the next mesh takes by what the last one took
             let size = next.len() as f64 / result.grid().len() as f64;
             let expected = result.work_of_finest() * size.powf(1.0 + 0.5 * growth.convolutions);

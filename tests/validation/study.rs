@@ -130,7 +130,11 @@ fn punches_converge_slowly_and_their_pressure_never() {
     assert_eq!(asked.ending, Ending::NoConvergence);
     // first order: a hundred times the cells a side for a hundredth of the error
     let (fine, cost) = (study_of(1e-5).run().unwrap(), coarse.cost_for(Accuracy::new(1e-5).unwrap()).unwrap());
-    assert!(fine.ending == Ending::Cells && cost.cells[0] > 10_000 && !fine.is_converged(), "{:?} {cost:?}", fine.ending);
+    assert!(
+        fine.ending == Ending::Cells && cost.cells[0] > 10_000 && !fine.is_converged(),
+        "{:?} {cost:?}",
+        fine.ending
+    );
 }
 
 /// The cost that a coarse study tells is that of the finer one, to a factor.
@@ -209,7 +213,8 @@ fn what_a_study_cannot_be_is_refused() {
 /// Surfaces that attract each other on a domain that is given, from the first mesh that resolves the zone.
 #[test]
 fn attraction_is_studied_on_a_given_domain() {
-    let (sphere, body) = (Sphere::new(1.0e-3).unwrap(), Material::incompressible(Zener::new(2.5e5, 5.0e4, 5.0e4).unwrap()));
+    let (sphere, body) =
+        (Sphere::new(1.0e-3).unwrap(), Material::incompressible(Zener::new(2.5e5, 5.0e4, 5.0e4).unwrap()));
     let load = Ramp::new(Load::force(0.0), Load::force(-20.0e-6), 0.2).unwrap();
     let scene = |grid, settings| {
         let law = ExponentialAttraction::new(0.05, 2.0e-6)?;
@@ -255,7 +260,7 @@ fn studies_report_their_progress_and_can_be_cancelled() {
         ControlFlow::Continue(())
     });
     let whole = whole.unwrap();
-    assert!(whole.work == work && whole.runs >= 3 && whole.meshes.len() + 1 <= whole.runs);
+    assert!(whole.work == work && whole.runs >= 3 && whole.meshes.len() < whole.runs);
     for last in (1..=steps).step_by(1 + steps / 9) {
         let mut taken = 0;
         let cancelled = study().run_with(|_| {
@@ -271,8 +276,7 @@ fn studies_report_their_progress_and_can_be_cancelled() {
 /// The table as text and CSV has what the result has.
 #[test]
 fn tables_of_a_study_are_read_back() {
-    let (sphere, load, material) =
-        (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap(), maxwell());
+    let (sphere, load, material) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap(), maxwell());
     let study = study(&sphere, &material, &load, 2.0).fields_at(&[1.0, 2.0]).accuracy(Accuracy::new(5e-2).unwrap());
     let study = study.run().unwrap();
     let path = std::env::temp_dir().join(format!("viscocontact-study-{}.csv", std::process::id()));
@@ -314,7 +318,8 @@ fn errors_of_histories_come_out_of_studies() {
             }
             Ok(Load::force(0.5 * (0.2 + (2.0 * t).sin().abs())))
         });
-        let result = study(&sphere, &body, &history, until).fields_at(&[1.0, 2.0]).accuracy(Accuracy::new(5e-2).unwrap()).run();
+        let result =
+            study(&sphere, &body, &history, until).fields_at(&[1.0, 2.0]).accuracy(Accuracy::new(5e-2).unwrap()).run();
         if is_met.load(std::sync::atomic::Ordering::Relaxed) {
             seen += 1;
             let failed = match &result {

@@ -57,7 +57,11 @@ impl Profile {
 }
 
 /// What was asked of the fields of a study over their true errors, and what it told over them; nothing where it did not converge.
-fn judge(study: StudyResult, asked: f64, mut true_error: impl FnMut(Fields<'_>, &Grid, usize) -> f64) -> Option<[f64; 2]> {
+fn judge(
+    study: StudyResult,
+    asked: f64,
+    mut true_error: impl FnMut(Fields<'_>, &Grid, usize) -> f64,
+) -> Option<[f64; 2]> {
     let told = study.measured("pressure field").unwrap().error()?;
     let errors = study.fields().enumerate().map(|(k, fields)| true_error(fields, study.grid(), k));
     let worst = errors.fold(0.0, f64::max);

@@ -61,19 +61,20 @@ fn scene(seed: u64, number: u64) -> Scene {
     // the approach of a periodic body and of a line is measured from another datum
     let by_force = by_force || period.is_some() || line.is_some();
     let full = |share: f64| if by_force { Load::force(share * force) } else { Load::approach(share * depth) };
-    let (_, history_name, history) = history(draws, &full, 1.0);
+    let (history_name, history) = history(draws, &full, 1.0);
     let accuracy = accuracy(draws);
     let by = if by_force { "force" } else { "approach" };
     let name = format!(
         "{seed}:{number} {kind} (layer {thickness:.2}), creep ×{ratio:.1} in {time:.2}, {history_name} of {by}, {accuracy:?}"
     );
-    let (other, shape, until, kind, area) = (Some(Other { kernel, period, line }), None, 1.0, 0, false);
-    Scene { name, shape, geometry, other, material, history, until, by_force, accuracy, area, aside: 0.0, ratio, kind }
+    let (other, shape, until, area) = (Some(Other { kernel, period, line }), None, 1.0, false);
+    Scene { name, shape, geometry, other, material, history, until, by_force, accuracy, area, aside: 0.0, ratio }
 }
 
 #[test]
 fn studies_on_all_bodies_tell_their_errors() {
-    let [seed, first] = [("STUDIES_SEED", 1), ("STUDIES_FIRST", 4)].map(|(name, default)| from_environment(name, default));
+    let [seed, first] =
+        [("STUDIES_SEED", 1), ("STUDIES_FIRST", 4)].map(|(name, default)| from_environment(name, default));
     let numbers = first..first + from_environment("STUDIES_KERNELS", 8);
     tell_their_errors(numbers.map(|number| scene(seed, number)), 128);
 }

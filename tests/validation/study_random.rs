@@ -105,17 +105,12 @@ pub(super) struct Scene {
     pub(super) area: bool,
     /// How far the shape is aside of the load \[m\].
     pub(super) aside: f64,
-    /// Creep ratio, and kind of the history.
+    /// Creep ratio.
     pub(super) ratio: f64,
-    pub(super) kind: usize,
 }
 
-/// A step, a ramp, a ramp that is held or a wave over `until` seconds; its name and kind.
-pub(super) fn history(
-    draws: &mut Draws,
-    full: &dyn Fn(f64) -> Load,
-    until: f64,
-) -> (usize, String, Box<dyn LoadHistory>) {
+/// A step, a ramp, a ramp that is held or a wave over `until` seconds; its name.
+pub(super) fn history(draws: &mut Draws, full: &dyn Fn(f64) -> Load, until: f64) -> (String, Box<dyn LoadHistory>) {
     let (kind, part) = (draws.below(4), draws.power_of_ten(-1.5, 0.0));
     let (low, period) = (draws.between(0.2, 0.8), until / draws.between(0.3, 3.0));
     let (name, history): (_, Box<dyn LoadHistory>) = match kind {
@@ -126,7 +121,7 @@ pub(super) fn history(
         _ if low < 0.35 => ("square".into(), Box::new(Periodic::square(full(1.0), full(low), period, 0.5).unwrap())),
         _ => ("sine".into(), Box::new(Sinusoid::new(full(low), full(1.0), period.recip()).unwrap())),
     };
-    (kind, name, history)
+    (name, history)
 }
 
 pub(super) fn accuracy(draws: &mut Draws) -> Accuracy {
@@ -158,7 +153,7 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
     let by_force = draws.chance(0.5);
     let [depth, force] = shape.elastic(radius, material.contact_compliance(until));
     let full = |share: f64| if by_force { Load::force(share * force) } else { Load::approach(share * depth) };
-    let (kind, history_name, history) = history(draws, &full, until);
+    let (history_name, history) = history(draws, &full, until);
     let accuracy = accuracy(draws);
     // a punch aside of the load tilts, and sinks in as much in its middle
     let most = if matches!(shape, Shape::Punch) { 0.8 * PUNCH } else { f64::INFINITY };
@@ -192,7 +187,6 @@ pub(super) fn scene(seed: u64, number: u64) -> Scene {
         area,
         aside,
         ratio,
-        kind,
     }
 }
 
@@ -217,8 +211,8 @@ fn tilting(seed: u64, number: u64) -> Scene {
     let (history, name) =
         (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, creep ×{ratio:.1}"));
     let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
-    let (shape, until, area, aside, kind) = (None, 1.0, draws.chance(0.3), 0.0, 1);
-    Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio, kind }
+    let (shape, until, area, aside) = (None, 1.0, draws.chance(0.3), 0.0);
+    Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio }
 }
 
 /// Approach (force where the approach is given) and contact radius √(area/π); `None` where they are not known.
@@ -434,7 +428,8 @@ fn stays_apart(scene: &Scene) -> bool {
 
 #[test]
 fn studies_of_random_scenes_tell_their_errors() {
-    let [seed, first] = [("STUDIES_SEED", 1), ("STUDIES_FIRST", 0)].map(|(name, default)| from_environment(name, default));
+    let [seed, first] =
+        [("STUDIES_SEED", 1), ("STUDIES_FIRST", 0)].map(|(name, default)| from_environment(name, default));
     let scenes = (first..first + from_environment("STUDIES", 12)).flat_map(|number| {
         [Some(scene(seed, number)), (number % 4 == 0).then(|| tilting(seed, number))].into_iter().flatten()
     });

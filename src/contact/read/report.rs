@@ -192,13 +192,6 @@ mod tests {
         let body = Material::incompressible(Elastic::new(1.0e6).unwrap());
         let line: String = postcard::from_bytes(&postcard::to_stdvec(&body).unwrap()).unwrap();
         assert_eq!(line, body.to_string());
-        let load = StepLoad::new(Load::force(0.5)).unwrap();
-        let sphere = Sphere::new(10.0e-3).unwrap();
-        let plan = Plan::builder(&sphere, &body, &load, 1.0).accuracy(Accuracy::COARSE).build().unwrap();
-        // the builder is left out: stepping comes first
-        let figures = postcard::to_stdvec(&plan).unwrap();
-        let (stepping, rest) = postcard::take_from_bytes::<Stepping>(&figures).unwrap();
-        assert_eq!((stepping, postcard::take_from_bytes::<Grid>(rest).unwrap().0), (plan.stepping, plan.grid));
         let creep = CreepSpectrum::new(1.0, 0.5, &[(2.0, 3.0)]).unwrap();
         there_and_back(&creep);
         there_and_back(&creep.relaxation());
