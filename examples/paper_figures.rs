@@ -1,7 +1,7 @@
 //! Figures 2 to 6 of the source paper, S. Spinu, *The surface contact of viscoelastic materials, Part I*, drawn to be laid
 //! beside it, with a table of how exact they are; fails if one is less exact than it should be.
 //!
-//! `cargo run --release -p viscocontact --features analytic,plot,states --example paper_figures` (15 s), or with `-- --quick` (seconds, coarser)
+//! `cargo run --release -p viscocontact --features analytic,plot,study --example paper_figures` (15 s), or with `-- --quick` (seconds, coarser)
 
 #[path = "support/scenes/paper_figures.rs"]
 mod scenes;
@@ -78,6 +78,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let columns = errors.iter().zip(convolutions).map(|(error, work)| format!(" {error:.1e}, {work} |"));
         println!("| {figure} | {steps} |{}", columns.collect::<String>());
     }
+    println!("\nFigure 6 as a study of mesh and time");
+    figure_6_as_a_study(args)?;
     println!("{cells}² cells; pictures are in {}", args.output.display());
     let failed = merits.iter().filter(|merit| !merit.holds()).count();
     if failed == 0 || args.quick { Ok(()) } else { Err(format!("{failed} figures of merit are out of range").into()) }
@@ -215,6 +217,23 @@ fn steps_in_time(cells: usize) -> Drawn {
     };
     let panels = [panel(&studies[0], "the paper's rule")?, panel(&studies[1], "the default rule")?];
     Ok((Picture::beside(&panels)?, studies.iter().flat_map(TimeStudy::orders).collect()))
+}
+
+/// The scene of Figure 6, and the profile at 2τ: domain, mesh and steps for 1e-2 of it, measured. Writes the table as CSV, and the picture.
+fn figure_6_as_a_study(args: &Args) -> Result<(), Box<dyn Error>> {
+    let sphere = StepLoadedSphere::maxwell();
+    let (shape, material) = (Sphere::new(sphere.radius)?, sphere.material.clone());
+    let (load, until) = (StepLoad::new(Load::force(sphere.force))?, 2.0 * sphere.tau);
+    let scene = |grid: Grid, settings: Settings| {
+        Ok(ViscoelasticContact::builder(grid).geometry(&shape).material(material.clone()).settings(settings))
+    };
+    let accuracy = if args.quick { Accuracy::new(5e-2)? } else { Accuracy::COARSE };
+    let study = Study::new(scene, &load, until).accuracy(accuracy).ask(Observable::GreatestPressure);
+    let study = study.fields_at(&[until]).run()?;
+    println!("{study}");
+    study.write_csv(args.output.join("study.csv"))?;
+    study.chart().save(args.output.join("study.png"))?;
+    Ok(())
 }
 
 /// The profile at 2τ in few steps, and in the fewest with the field asked for, on Table 1.

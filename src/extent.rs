@@ -12,12 +12,6 @@ impl Extent {
         Extent { low: cell, high: cell }
     }
 
-    /// Its cells, row by row.
-    pub(crate) fn cells(self) -> impl Iterator<Item = [usize; 2]> {
-        let Extent { low, high } = self;
-        (low[0]..=high[0]).flat_map(move |i| (low[1]..=high[1]).map(move |j| [i, j]))
-    }
-
     /// The least extent that contains both.
     pub(crate) fn with(self, other: Extent) -> Extent {
         let low = [0, 1].map(|axis| self.low[axis].min(other.low[axis]));

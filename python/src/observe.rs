@@ -32,8 +32,8 @@ macro_rules! observed {
                 py.detach(|| contact.stiffness_over_modulus()).or_raise()
             }
 
-            /// Estimated relative errors due to the mesh: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
-            /// Σ p), "rim_pressure" (of a cell of the rim, over the greatest pressure), "area"; None where there is no estimate.
+            /// Relative errors due to the mesh, measured by elastic contacts on half and a quarter of the cells along each side: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
+            /// Σ p), "area"; None where they are too few.
             fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let contact = self.shown()?;
                 let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
@@ -41,7 +41,6 @@ macro_rules! observed {
                     "approach": error.approach,
                     "max_pressure": error.max_pressure,
                     "pressure_field": error.pressure_field,
-                    "rim_pressure": error.rim_pressure,
                     "area": error.area,
                 }))
             }

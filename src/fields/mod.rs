@@ -23,6 +23,7 @@ use crate::adhesion::Attraction;
 use crate::equilibrium::{Frame, Ground, Held, Region, Settings};
 use crate::error::{Result, Special, coverage, exact_length};
 use crate::extent::Extent;
+use crate::geometry::Gap;
 use crate::kernel::{InfluenceKernel, LocalKernel};
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
@@ -188,6 +189,16 @@ impl<'a> Fields<'a> {
     /// The motion of a body.
     pub(crate) fn motion(&self, body: usize) -> RigidMotion {
         self.held.current.motions[body]
+    }
+
+    /// The gap before the bodies deform.
+    pub(crate) fn initial_gap(&self) -> &'a Gap {
+        self.held.indenter.gap()
+    }
+
+    /// Whether the approach of a body is given.
+    pub(crate) fn is_by_approach(&self, body: usize) -> bool {
+        matches!(self.held.loads[body], Load::Approach { .. })
     }
 
     /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls harder than the wall presses.

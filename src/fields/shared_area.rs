@@ -45,8 +45,7 @@ impl Fields<'_> {
                 gap.extend(pressure.iter().map(|&p| if p == NOTHING { f64::INFINITY } else { 0.0 }));
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
                 let (periodic, first) = (self.ground.kernel.periodic_axes(), Some(first));
-                let pressed =
-                    Pressed { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent, body: None };
+                let pressed = Pressed { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent };
                 covered.extend(squares(piece).map(|row| [pressed.covered_in_row(row)]));
             }
         }

@@ -20,18 +20,6 @@ const RISES: f64 = 1.0 + 1e-6;
 /// Rows and columns beyond the corners of a square whose pressure determines the covered part of the square.
 pub(crate) const REACH: usize = 3;
 
-/// The end of contact between the centres of a cell in contact and of a neighbour out of contact, in cells from the first.
-pub(crate) enum End {
-    /// At an edge of the shape, beyond which there is nothing to touch.
-    OfShape,
-    /// Anywhere: p² has no zero near the edge, as under a fast growing contact, whose pressure drops to zero within a cell.
-    Unknown,
-    /// At the zero of the straight line through p² of the last two cells.
-    Line(f64),
-    /// At the zero of the line, and at the zero of the parabola through p² of the three cells before the last.
-    LineAndParabola(f64, f64),
-}
-
 /// A pressure on a grid or on some of its rows, and the gap.
 pub(crate) struct Pressed<'a> {
     pub(crate) grid: &'a Grid,
@@ -45,8 +33,6 @@ pub(crate) struct Pressed<'a> {
     pub(crate) gap: &'a [f64],
     /// A rectangle of cells that contains the contact; `None` without contact.
     pub(crate) extent: Option<Extent>,
-    /// The body of each cell, and the one whose contact it is; `None` for all of them.
-    pub(crate) body: Option<(&'a [u16], u16)>,
 }
 
 impl Pressed<'_> {
@@ -121,19 +107,12 @@ impl Pressed<'_> {
     }
 
     /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in cells.
+    /// At the edge of a shape it is the rim of the cell, and so it is where p² has no zero near it, as under a fast growing contact, whose
+    /// pressure drops to zero within a cell.
     fn distance_to_end(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
         const TO_THE_RIM: f64 = 0.5;
-        match self.end(from, to) {
-            End::OfShape | End::Unknown => TO_THE_RIM,
-            End::Line(line) => line,
-            End::LineAndParabola(line, parabola) => LAST_TWO * line + THREE_BEFORE * parabola,
-        }
-    }
-
-    /// Estimate of the end of contact between a cell in contact and its neighbour out of contact.
-    pub(crate) fn end(&self, from: [isize; 2], to: [isize; 2]) -> End {
         if !self.touchable(to) {
-            return End::OfShape;
+            return TO_THE_RIM;
         }
         let back = |k: isize| {
             let p = self.pressure_at([0, 1].map(|axis| from[axis] + k * (from[axis] - to[axis])));
@@ -142,11 +121,11 @@ impl Pressed<'_> {
         let [last, second, third, fourth] = [back(0), back(1), back(2), back(3)];
         let line = if second > last { last / (second - last) } else { f64::INFINITY };
         if line > TOO_FAR {
-            return End::Unknown;
+            return TO_THE_RIM;
         }
         let line = line.min(1.0);
         if !(third > RISES * second && fourth > RISES * third) {
-            return End::Line(line);
+            return line;
         }
         // f(x) = second + slope x + bend x² at x = 0, −1, −2; its zero, one cell further out
         let slope = 0.5 * (3.0 * second - 4.0 * third + fourth);
@@ -154,17 +133,12 @@ impl Pressed<'_> {
         let discriminant = slope * slope - 4.0 * bend * second;
         let zero =
             if discriminant >= 0.0 { -2.0 * second / (slope - discriminant.sqrt()) } else { second / (third - second) };
-        End::LineAndParabola(line, (zero - 1.0).clamp(0.0, 1.0))
+        LAST_TWO * line + THREE_BEFORE * (zero - 1.0).clamp(0.0, 1.0)
     }
 
     /// Pressure in a cell, wrapped along periodic axes; zero beyond the grid.
     pub(crate) fn pressure_at(&self, cell: [isize; 2]) -> f64 {
-        self.index(cell).map_or(0.0, |k| self.own(k))
-    }
-
-    /// Pressure in a cell under the body.
-    pub(crate) fn own(&self, k: usize) -> f64 {
-        if self.body.is_some_and(|(owner, body)| owner[k] != body) { 0.0 } else { self.pressure[k] }
+        self.index(cell).map_or(0.0, |k| self.pressure[k])
     }
 
     /// Whether there is something to touch in a cell; nothing beyond the grid.

@@ -16,6 +16,7 @@
 pub(crate) mod area;
 mod asymmetry;
 mod distribution;
+pub(crate) mod grid_convergence;
 pub(crate) mod mesh_error;
 mod patches;
 pub(crate) mod profile;

@@ -21,9 +21,9 @@ impl StudyResult {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn chart(&self) -> Chart {
-        let change = Quantity::new("change from the mesh before, over the greatest value", "");
+        let change = Quantity::from("change from the mesh before, over the greatest value");
         let mut chart =
-            Chart::new("Convergence study", Quantity::new("cells along a side", ""), change, Legend::LowerLeft);
+            Chart::new("Convergence study", Quantity::from("cells along a side"), change, Legend::LowerLeft);
         chart.scale = Scale::LogLog;
         let mut colors = COLORS.iter().cycle();
         for (k, own) in self.quantities.iter().enumerate() {

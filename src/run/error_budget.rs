@@ -20,8 +20,7 @@ use crate::observe::MeshError;
 /// while run.next_step()?.is_some() {}
 /// let budget = run.error_budget();
 /// assert!(budget.time > Some(1.0e-3));
-/// assert_eq!(budget.mesh, None); // the bodies have parted ...
-/// assert!(budget.max_mesh.is_some()); // ... but were in contact before
+/// assert_eq!(budget.mesh, None); // the bodies have parted
 /// println!("{budget}");
 /// # Ok::<(), Error>(())
 /// ```
@@ -51,12 +50,10 @@ pub struct ErrorBudget {
     /// ([`Run::fields_to`](crate::run::Run::fields_to)). The L2 error is about twice as large, relative to the field, and the error of the
     /// greatest pressure five times. `None` if none has an estimate.
     pub field: Option<f64>,
-    /// Errors due to the mesh in the present state; `None` without contact, for a contact that the cells do not
-    /// resolve, and where [ranks](crate::parallel) share out the rows.
+    /// Errors due to the mesh in the present state, measured on coarser meshes; `None` where they are not measured: without contact, for a contact of few
+    /// cells, of surfaces that attract each other, and where [ranks](crate::parallel) share out the rows. Those of a whole run are measured by a
+    /// study (feature `study`).
     pub mesh: Option<MeshError>,
-    /// Greatest errors due to the mesh over the states of the run, each relative to its state. They are largest where
-    /// few cells are in contact. `None` if no state has an estimate.
-    pub max_mesh: Option<MeshError>,
     /// Greatest residual of the contact problems, relative to the displacement.
     pub solver: f64,
 }
@@ -70,10 +67,7 @@ impl fmt::Display for ErrorBudget {
         f.write_str("mesh: ")?;
         match self.mesh {
             Some(mesh) => write!(f, "{mesh}")?,
-            None => f.write_str("not estimated")?,
-        }
-        if let Some(greatest) = self.max_mesh {
-            write!(f, " (greatest of the run: {greatest})")?;
+            None => f.write_str("not measured")?,
         }
         write!(f, "; solver {:.1e}", self.solver)
     }

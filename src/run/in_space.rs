@@ -60,7 +60,7 @@ impl Driven for ViscoelasticContact {
                 Some((time, loads)) => self.given_step(control, course, time, loads)?,
                 None => adaptive_step(self, control, course)?,
             };
-            control.include(&error, report.residual, self.fields().mesh_error().unwrap_or_default());
+            control.include(&error, report.residual);
             Ok(report)
         })
     }
@@ -121,7 +121,7 @@ impl ViscoelasticContact {
 }
 
 impl Run<'_> {
-    /// The errors of the run so far, by their source.
+    /// The errors of the run so far, by their source. That of the mesh is [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
     pub fn error_budget(&self) -> ErrorBudget {
         let mesh = self.contact.fields().mesh_error().unwrap_or_default();
         ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst }

@@ -4,7 +4,6 @@ use crate::contact::{Scene, Settings, State};
 use crate::error::{Error, Result, StepError};
 use crate::hereditary::TimeError;
 use crate::load::Load;
-use crate::observe::MeshError;
 use crate::run::error_budget::ErrorBudget;
 use crate::run::halves::Halves;
 use crate::run::histories::Histories;
@@ -290,14 +289,13 @@ impl StepControl {
         }
     }
 
-    /// Includes the errors of a step with this residual of its contact problem, and the errors of the mesh at its end.
-    pub(super) fn include(&mut self, error: &TimeError, residual: f64, mesh: Option<MeshError>) {
-        let ErrorBudget { time, pressure, max_mesh, solver, .. } = &mut self.worst;
+    /// Includes the errors of a step with this residual of its contact problem.
+    pub(super) fn include(&mut self, error: &TimeError, residual: f64) {
+        let ErrorBudget { time, pressure, solver, .. } = &mut self.worst;
         let in_time = error.relative.max(error.lasting);
         *time = Some(time.map_or(in_time, |worst| worst.max(in_time)));
         *pressure = Some(pressure.map_or(error.greatest, |worst| worst.max(error.greatest)));
         *solver = solver.max(residual);
-        *max_mesh = [*max_mesh, mesh].into_iter().flatten().reduce(MeshError::max);
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod accuracy;
 mod domain;
-mod error;
 mod level;
 mod observable;
 mod result;

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use crate::error::{AdhesionError, Error, Result, StepError};
+use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::domain::Domain;
-use crate::study::error::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observed, Reading};
 use crate::study::result::{Growth, Mesh, Steps, StudyResult};

@@ -98,7 +98,10 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         finite("moment of a body", body.moment)?;
     }
     if let Some(space) = contact.fields().mesh_error().unwrap() {
-        known("error of the mesh", [space.approach, space.area, space.singular].into_iter().chain(space.max_pressure))?;
+        known(
+            "error of the mesh",
+            [space.approach, space.area, space.pressure_field].into_iter().chain(space.max_pressure),
+        )?;
     }
     known("pressures", [contact.mean_pressure(), contact.fields().max_pressure()])?;
     if let Ok(patches) = contact.fields().patches() {
@@ -197,7 +200,7 @@ pub fn look_along(
         }
     }
     let budget = run.error_budget();
-    let mesh = budget.max_mesh.map(|mesh| mesh.approach);
+    let mesh = budget.mesh.map(|mesh| mesh.approach);
     known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))
 }
 

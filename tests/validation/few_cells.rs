@@ -52,7 +52,7 @@ fn error(value: f64, exact: f64) -> f64 {
 /// Balls in a row, some pressed hard, some lightly: the warning is that of the one with the fewest cells, and so is the error due to the mesh.
 #[test]
 fn a_body_on_few_cells_is_warned_of_beside_others() {
-    let (mut warned, mut resolved, mut unresolved, mut worst) = (0, 0, 0, 0.0_f64);
+    let (mut warned, mut unwarned, mut compared) = (0, 0, 0);
     for number in 0..from_environment("FEW_CELLS_SCENES", 30) {
         let mut draws = Draws::new(1_100 + number);
         let (count, n) = (2 + draws.below(2), 20 + 2 * draws.below(14));
@@ -89,20 +89,14 @@ fn a_body_on_few_cells_is_warned_of_beside_others() {
         assert!(errors.is_finite(), "{name}");
         assert!(fewest.is_some() || errors < 5e-3, "{name}: {errors}");
         warned += u32::from(fewest.is_some());
-        match contact.fields().mesh_error().unwrap() {
-            Some(estimate) => {
-                assert!(errors < 4.0 * estimate.approach, "{name}: {errors} for {estimate}");
-                resolved += 1;
-                worst = worst.max(errors / estimate.approach);
-            }
-            None => {
-                assert!(fewest.is_some(), "{name}");
-                unresolved += 1;
-            }
+        unwarned += u32::from(fewest.is_none());
+        if let Some(measured) = contact.fields().mesh_error().unwrap() {
+            assert!(errors < 4.0 * measured.approach, "{name}: {errors} for {measured}");
+            compared += 1;
         }
     }
-    println!("{warned} warned of, {resolved} with an estimate, true over it at most {worst:.1}, {unresolved} without");
-    assert!(warned > 5 && resolved > 5 && unresolved > 5, "{warned} {resolved} {unresolved}");
+    println!("{warned} warned of, {unwarned} not, {compared} measured");
+    assert!(warned > 5 && unwarned > 3 && compared > 5, "{warned} {unwarned} {compared}");
 }
 
 /// Rough surfaces, periodic and on a ball, from few cells in a patch to many.
@@ -139,11 +133,6 @@ fn patches_of_few_cells_on_average_are_warned_of() {
         *count += 1;
         (0..2).for_each(|k| (greatest[k], sum[k]) = (greatest[k].max(errors[k]), sum[k] + errors[k]));
         assert!(errors.iter().all(|error| error.is_finite()), "{name}");
-        if let Some(estimate) = contact.fields().mesh_error().unwrap() {
-            let estimates = [estimate.area, estimate.approach];
-            let holds = errors.iter().zip(estimates).all(|(error, estimate)| *error < 4.0 * estimate);
-            assert!(holds, "{name}: {errors:?} for {estimate}");
-        }
     }
     println!("below 4, few, enough: number, greatest and sum of the errors of area and approach: {found:?}");
     let [few, some, many] = found;

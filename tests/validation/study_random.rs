@@ -412,7 +412,7 @@ pub(super) fn tell_their_errors(scenes: impl Iterator<Item = Scene>, limit: u64)
     of_peak.print("told over true, of the greatest pressure", 3);
     assert!(failed.is_empty(), "{} of {count}:\n{}", failed.len(), failed.join("\n"));
     assert!(over.count() > 0 && over.above(3.0) == 0 && over.quantile(0.99) <= 2.0, "true over asked");
-    assert!(reached * 2 > count, "{reached} of {count} were reached");
+    assert!(reached * 4 > count, "{reached} of {count} were reached");
 }
 
 /// Whether the shape meets nothing at any approach of the history, as 400² points over ten times the width of any contact show.
@@ -433,5 +433,5 @@ fn studies_of_random_scenes_tell_their_errors() {
     let scenes = (first..first + from_environment("STUDIES", 12)).flat_map(|number| {
         [Some(scene(seed, number)), (number % 4 == 0).then(|| tilting(seed, number))].into_iter().flatten()
     });
-    tell_their_errors(scenes, 96);
+    tell_their_errors(scenes, 128);
 }

@@ -14,8 +14,8 @@ const NOT_OBSERVED: f64 = 3.0;
 /// Orders that count as observed. Approach and force are of the first order on punches, of the second on smooth shapes; a
 /// greater order is chance, and a least order of ½ is that of a pressure at a singular edge.
 const LEAST: f64 = 0.5;
-pub(super) const SINGULAR: f64 = 1.0;
-pub(super) const SMOOTH: f64 = 2.0;
+pub(crate) const SINGULAR: f64 = 1.0;
+pub(crate) const SMOOTH: f64 = 2.0;
 /// A smaller difference, over the greatest value, is rounding.
 const ROUNDING: f64 = 1e-12;
 /// How exactly an order is found.
@@ -23,16 +23,16 @@ const ORDER: f64 = 1e-12;
 
 /// What is known of the error of the finest mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct OfMesh {
+pub(crate) struct OfMesh {
     /// The index; infinite from one mesh.
-    pub(super) error: f64,
+    pub(crate) error: f64,
     /// Observed order; `None` where it is assumed.
-    pub(super) order: Option<f64>,
+    pub(crate) order: Option<f64>,
 }
 
 impl OfMesh {
     /// From the sides of the cells of successive meshes and the differences between each two of them, with an order of at most this.
-    pub(super) fn of(sides: &[f64], differences: &[f64], most: f64) -> OfMesh {
+    pub(crate) fn of(sides: &[f64], differences: &[f64], most: f64) -> OfMesh {
         let Some((&last, before)) = differences.split_last() else {
             return OfMesh { error: f64::INFINITY, order: None };
         };
@@ -62,14 +62,14 @@ impl OfMesh {
 }
 
 /// The greatest difference of values over the greatest of the finer ones; 0 where it is rounding, as of a force that is given.
-pub(super) fn difference(coarse: &[f64], fine: &[f64]) -> f64 {
+pub(crate) fn difference(coarse: &[f64], fine: &[f64]) -> f64 {
     let scale = fine.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let most = coarse.iter().zip(fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     if most > ROUNDING * scale { most / scale } else { 0.0 }
 }
 
 /// Means over coarser cells of the same domain, and Σ |p − p′| / Σ p′ of the coarse field against them.
-pub(super) fn difference_of_fields((coarse, n): (&[f64], [usize; 2]), (fine, m): (&[f64], [usize; 2])) -> f64 {
+pub(crate) fn difference_of_fields((coarse, n): (&[f64], [usize; 2]), (fine, m): (&[f64], [usize; 2])) -> f64 {
     let columns = overlaps(n[1], m[1]);
     let mut along = vec![0.0; m[0] * n[1]];
     for (row, out) in fine.chunks_exact(m[1]).zip(along.chunks_exact_mut(n[1])) {
