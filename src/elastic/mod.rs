@@ -8,6 +8,7 @@
 //! a surface that the past has displaced ([`ElasticContact::set_surface`]).
 
 mod builder;
+mod mesh_error;
 mod report;
 
 use std::sync::Arc;

@@ -5,7 +5,6 @@ use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
 use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
 use crate::observe::area::Pressed;
-use crate::observe::mesh_error::MeshError;
 use crate::observe::profile::line_through;
 use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
@@ -31,44 +30,6 @@ impl Fields<'_> {
             return 0.0;
         }
         if region.is_shared() { self.shared_area() } else { self.pressed().area() }
-    }
-
-    /// The error due to the mesh, measured: the elastic contact under the same load and over the same surface is solved on half the cells along each
-    /// side and, where the contact is eight cells across there, on a quarter. The surface is what the displacement u leaves beside c K p, with the
-    /// compliance c of least squares: nothing on an elastic body, what its history left on one that creeps. The differences
-    /// between the meshes give the error, with their observed order, or else the first, by the grid convergence index
-    /// (P. J. Roache, J. Fluids Eng. 116, 1994). Costs a convolution, and a third of a step.
-    ///
-    /// Over true errors of random scenes of all shapes, elastic and creeping, those told are mostly 0.7 to 12 times as large
-    /// (docs/accuracy.md). What no mesh of the three resolves is not seen, as waves shorter than cells. Errors of a whole
-    /// run are measured by a study (feature `study`).
-    ///
-    /// Of several bodies the error of the approach is that of the body for which it is greatest.
-    ///
-    /// `None` without contact, for contacts of a body that are less than about six cells across, where half the cells do not divide a period, and for
-    /// coefficients of a user, which belong to cells.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let body = Material::incompressible(Elastic::new(1.0e6)?);
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 3.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(body)
-    ///     .build()?;
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
-    /// let error = (contact.approach() / hertz.approach - 1.0).abs();
-    /// let measured = contact.fields().mesh_error()?.expect("in contact").approach;
-    /// assert!(error < 2.0 * measured && error > 0.05 * measured);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If [ranks](crate::parallel) share out the rows, surfaces [attract](crate::adhesion) each other, or there is no memory for the coarser contacts.
-    pub fn mesh_error(&self) -> Result<Option<MeshError>> {
-        self.covers(coverage::MESH_ERROR)?;
-        crate::observe::mesh_error::mesh_error(*self)
     }
 
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area

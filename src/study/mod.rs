@@ -1,6 +1,7 @@
 //! The convergence study: by how much a result errs in mesh and time, measured by runs.
 
 mod accuracy;
+mod cost;
 mod domain;
 mod level;
 mod observable;
@@ -13,8 +14,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 pub use accuracy::Accuracy;
+pub use cost::Cost;
 pub use observable::Observable;
-pub use result::{Cost, Ending, Measured, Mesh, StudyResult};
+pub use result::{Ending, Measured, Mesh, StudyResult};
 
 use crate::Grid;
 use crate::axis::Axis;
@@ -42,7 +44,7 @@ const MOST_CELLS: usize = 1 << 18;
 ///    show the order p, and 1.25 d₂/(rᵖ − 1) is the error of the finest: the grid convergence index (P. J. Roache, J. Fluids Eng. 116
 ///    (1994) 405). Two meshes have 3 d/(r − 1).
 /// 4. It ends where error in time and error of the mesh of all quantities that are [asked](Study::ask) for are at most the
-///    accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four meshes
+///    accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four meshes or in time
 ///    ([`Ending`]).
 ///
 /// Each error is relative to the greatest value of the run. Where the differences do not fall with the cells, as of a pressure that is infinite at an edge,
@@ -76,10 +78,16 @@ pub struct Study<'a> {
     periods: [bool; 2],
     observed: Vec<Observed<'a>>,
     fields_at: Vec<f64>,
-    most_cells: usize,
-    most_bytes: Option<u64>,
-    most_work: Option<f64>,
+    budget: Budget,
     cancelled: Option<Arc<AtomicBool>>,
+}
+
+/// What a study may take: cells of a mesh, bytes of a run, and work of all runs.
+#[derive(Debug, Clone, Copy)]
+struct Budget {
+    cells: usize,
+    bytes: Option<u64>,
+    work: Option<f64>,
 }
 
 /// How far a study has come, after each step of its runs.
@@ -126,9 +134,7 @@ impl<'a> Study<'a> {
             periods: [false; 2],
             observed: Observable::ALL.map(|observable| observable.observed(asked(observable))).into(),
             fields_at: Vec::new(),
-            most_cells: MOST_CELLS,
-            most_bytes: None,
-            most_work: None,
+            budget: Budget { cells: MOST_CELLS, bytes: None, work: None },
             cancelled: None,
         }
     }
@@ -198,20 +204,20 @@ impl<'a> Study<'a> {
 
     /// Most cells of a mesh (default: 2¹⁸, as of 512 × 512).
     pub fn cells(mut self, most: usize) -> Study<'a> {
-        self.most_cells = most;
+        self.budget.cells = most;
         self
     }
 
     /// Most bytes of a run (default: what there is).
     pub fn memory(mut self, most: u64) -> Study<'a> {
-        self.most_bytes = Some(most);
+        self.budget.bytes = Some(most);
         self
     }
 
     /// Most work of the whole study: convolution equivalents, each times the cells of its mesh (default: no limit). A run that is
-    /// expected to take more than what is left is not begun.
+    /// expected to take more than what is left is not begun; those of the first mesh are.
     pub fn work(mut self, most: f64) -> Study<'a> {
-        self.most_work = Some(most);
+        self.budget.work = Some(most);
         self
     }
 
@@ -260,7 +266,7 @@ impl<'a> Study<'a> {
     }
 
     fn validate(&self) -> Result<()> {
-        let Study { scene, sides, periods, fields_at, most_cells, most_work, .. } = self;
+        let Study { scene, sides, periods, fields_at, budget, .. } = self;
         positive("end of the run", scene.until)?;
         for (side, field) in sides.iter().zip(["side of the domain along x1", "side of the domain along x2"]) {
             if let Side::Given(length) | Side::Uniform(length) = *side {
@@ -271,8 +277,8 @@ impl<'a> Study<'a> {
             let inside = (0.0..=scene.until).contains(&time);
             within("time of a pressure field", time, inside, "from the start of the run to its end")?;
         }
-        count_within("cells of a study", *most_cells, *most_cells > 0, "at least 1")?;
-        if let Some(most) = *most_work {
+        count_within("cells of a study", budget.cells, budget.cells > 0, "at least 1")?;
+        if let Some(most) = budget.work {
             positive("work of a study", most)?;
         }
         // the scene may not allow these cells

@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
 use crate::file::replace;
 use crate::run::Stepping;
-use crate::study::Accuracy;
 use crate::study::level::Level;
+use crate::study::{Accuracy, Cost};
 
 /// Parts of an accuracy for mesh and time, of which the cost for it is told.
 const TO_MESH: f64 = 0.6;
@@ -79,6 +79,8 @@ impl Measured {
 pub enum Ending {
     /// What was asked is met.
     Reached,
+    /// The error in time of a quantity that is asked for does not fall below the accuracy with shorter steps: meshes would not lower it.
+    Time,
     /// A quantity that is asked for does not converge: its changes do not fall with the cells.
     NoConvergence,
     /// The next mesh would have more cells than allowed.
@@ -95,6 +97,7 @@ impl fmt::Display for Ending {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Ending::Reached => "reached",
+            Ending::Time => "not reached: shorter steps do not lower the error in time",
             Ending::NoConvergence => "not reached: a quantity does not converge",
             Ending::Cells => "not reached with the cells that are allowed",
             Ending::Memory => "not reached with the memory there is",
@@ -102,21 +105,6 @@ impl fmt::Display for Ending {
             Ending::Failed(error) => return write!(f, "not reached: the next run failed: {error}"),
         })
     }
-}
-
-/// What a run to an accuracy is expected to take, from what a study measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Cost {
-    /// Cells along x1 and x2.
-    pub cells: [usize; 2],
-    /// Steps.
-    pub steps: usize,
-    /// Convolution equivalents, each times the cells.
-    pub work: f64,
-    /// Bytes of the contact.
-    pub bytes: u64,
 }
 
 /// Powers with which steps grow as their tolerance falls, and convolutions of a step with the cells along a side.
@@ -153,7 +141,7 @@ pub struct StudyResult {
     pub work: f64,
     pub(super) finest: Level,
     steps: Steps,
-    growth: Growth,
+    pub(super) growth: Growth,
 }
 
 impl StudyResult {
@@ -263,7 +251,8 @@ impl StudyResult {
         let least = 1.0 / (self.finest.grid.cells()[0] as f64 / coarsest[0] as f64);
         let finer = finer.max(least);
         let cells = self.finest.grid.cells().map(|n| if n == 1 { 1 } else { (finer * n as f64).ceil() as usize });
-        let many = cells.iter().product::<usize>() as f64 / self.finest.grid.len() as f64;
+        // as numbers: cells of an order of a half may be more than memory could ever hold
+        let many = cells.iter().map(|n| *n as f64).product::<f64>() / self.finest.grid.len() as f64;
         let steps = self.finest.steps as f64 * shorter.max(1e-3).powf(self.growth.steps);
         let work = self.work_of_finest() * steps / self.finest.steps.max(1) as f64
             * many

@@ -2,13 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use crate::error::{AdhesionError, Error, Result, StepError};
+use crate::Grid;
+use crate::error::{AdhesionError, Error, Result, StepError, count_within};
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::domain::Domain;
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observed, Reading};
 use crate::study::result::{Growth, Mesh, Steps, StudyResult};
-use crate::study::{Ending, Measured, Study, StudyProgress};
+use crate::study::{Budget, Ending, Measured, Study, StudyProgress};
 
 /// Cells across the widest contact on the first mesh, and across a domain that is given.
 const ACROSS: f64 = 16.0;
@@ -48,99 +49,117 @@ struct First {
 }
 
 pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> ControlFlow<()>) -> Result<StudyResult> {
-    let Study { scene, sides, observed, mut fields_at, most_cells, most_bytes, most_work, cancelled, .. } = study;
+    let Study { scene, sides, observed, mut fields_at, budget, cancelled, .. } = study;
     fields_at.sort_by(f64::total_cmp);
     fields_at.dedup();
-    let cancelled = cancelled.as_ref();
-    let (scene, observed, fields_at) = (&scene, &observed[..], &fields_at[..]);
+    let (scene, cancelled) = (&scene, cancelled.as_ref());
+    let (observed, fields_at) = (&observed[..], &fields_at[..]);
     let runs = &mut Runs { scene, observed, fields_at, sides, cancelled, progress, runs: 0, work: 0.0, expected: None };
-    let domain = match Domain::given(sides) {
+    let mut domain = match Domain::given(sides) {
         Some(domain) => domain,
         None => Domain::find(scene, sides)?,
     };
-    let mut grown = 0;
-    'domain: loop {
-        let first =
-            first_mesh(runs, if grown == 0 { domain } else { (0..grown).fold(domain, |domain, _| domain.grown()) })?;
-        let First { level, domain, mut across, steps, in_time, steps_order } = first;
-        let (on_finer, mut stops) = ((ON_FINER * steps.tolerance).min(TOLERANCES[1]), level.times.clone());
-        let mut last = steps;
-        let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
-        let (mut finest, mut unconverged) = (level, 0);
-        let accuracy = scene.accuracy.target();
-        loop {
-            let measured = measured(observed, &meshes, &in_time, accuracy);
-            let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
-            let is_met = |own: &Measured| !own.is_asked || own.error().is_some_and(|error| error <= accuracy);
-            let asked = measured.iter().filter(|own| own.is_asked);
-            unconverged =
-                if meshes.len() > 2 && asked.clone().any(|own| own.error().is_none()) { unconverged + 1 } else { 0 };
-            let ratio = asked.filter_map(|own| own.ratio(accuracy)).reduce(f64::max);
-            let ratio = ratio.map_or(RATIO, |ratio| ratio.clamp(RATIOS[0], RATIOS[1]));
-            let mut result = StudyResult::new(finest, meshes, measured, scene.accuracy, last, growth);
-            runs.expected = result.cost_for(scene.accuracy);
-            let next = domain.grid(ratio * across)?;
-            // the finest one that is allowed, where it is finer enough
-            let most = RATIOS[0].max((most_cells as f64 / next.len() as f64).sqrt() * ratio * 0.9);
-            let (ratio, next) = if next.len() > most_cells {
-                (most.min(ratio), domain.grid(most.min(ratio) * across)?)
-            } else {
-                (ratio, next)
-            };
-            // what the next mesh takes by what the last one took
-            let size = next.len() as f64 / result.grid().len() as f64;
-            let expected = result.work_of_finest() * size.powf(1.0 + 0.5 * growth.convolutions);
-            let bytes = (result.bytes() as f64 * size) as u64;
-            let ending = match () {
-                () if result.quantities.iter().all(is_met) => Some(Ending::Reached),
-                () if unconverged >= MOST_UNCONVERGED => Some(Ending::NoConvergence),
-                () if next.len() > most_cells => Some(Ending::Cells),
-                () if most_bytes.is_some_and(|most| bytes > most) => Some(Ending::Memory),
-                () if most_work.is_some_and(|most| runs.work + expected > most) => Some(Ending::Work),
-                () => None,
-            };
-            let ending = match ending {
-                Some(ending) => ending,
-                None => match runs.level(next, on_finer, &stops) {
-                    Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && grown < MOST_GROWN => {
-                        grown += 1;
-                        continue 'domain;
-                    }
-                    Err(error @ Error::Cancelled { .. }) => return Err(error),
-                    Err(Error::OutOfMemory { .. }) => Ending::Memory,
-                    Err(error) => Ending::Failed(error),
-                    Ok(level) => {
-                        across *= ratio;
-                        let differences = result.finest.differences(&level, observed).into_iter().map(Some).collect();
-                        meshes = result.meshes;
-                        meshes.push(Mesh::of(&level, differences));
-                        // the steps of the next one end where its own do
-                        (finest, last) = (level, Steps { stops, tolerance: on_finer });
-                        stops = finest.times.clone();
-                        continue;
-                    }
-                },
-            };
-            (result.ending, result.work, result.runs) = (ending, runs.work, runs.runs);
+    for _ in 0..MOST_GROWN {
+        if let Some(result) = on_domain(runs, domain, &budget)? {
             return Ok(result);
+        }
+        domain = domain.grown();
+    }
+    Err(Error::NoDomain { length: domain.grid(ACROSS)?.lengths()[0] })
+}
+
+/// Meshes on a domain until what is asked is met, or the budget ends it; nothing where the contact reaches the edge of the domain on one of them.
+fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result<Option<StudyResult>> {
+    let (observed, accuracy) = (runs.observed, runs.scene.accuracy);
+    let First { level, domain, mut across, steps, in_time, steps_order } = first_mesh(runs, domain, budget.cells)?;
+    let on_finer = (ON_FINER * steps.tolerance).min(TOLERANCES[1]);
+    let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
+    let (mut finest, mut steps, mut unconverged) = (level, steps, 0);
+    loop {
+        let measured = measured(observed, &meshes, &in_time, accuracy.target());
+        let asked = || measured.iter().filter(|own| own.is_asked);
+        let is_open = meshes.len() > 2 && asked().any(|own| own.error().is_none());
+        unconverged = if is_open { unconverged + 1 } else { 0 };
+        let ratio = asked().filter_map(|own| own.ratio(accuracy.target())).reduce(f64::max).unwrap_or(RATIO);
+        let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
+        let mut result = StudyResult::new(finest, meshes, measured, accuracy, steps, growth);
+        runs.expected = result.cost_for(accuracy);
+        let (next_across, next) = next_grid(&domain, across, ratio, budget.cells)?;
+        let ending = match budget.ending(&result, &next, runs.work, unconverged) {
+            Some(ending) => ending,
+            // its steps end where those of the mesh before do
+            None => match runs.level(next, on_finer, result.times()) {
+                Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() => return Ok(None),
+                Err(error @ Error::Cancelled { .. }) => return Err(error),
+                Err(Error::OutOfMemory { .. }) => Ending::Memory,
+                Err(error) => Ending::Failed(error),
+                Ok(level) => {
+                    across = next_across;
+                    let differences = result.finest.differences(&level, observed).into_iter().map(Some).collect();
+                    meshes = result.meshes;
+                    meshes.push(Mesh::of(&level, differences));
+                    steps = Steps { stops: result.finest.times, tolerance: on_finer };
+                    finest = level;
+                    continue;
+                }
+            },
+        };
+        (result.ending, result.work, result.runs) = (ending, runs.work, runs.runs);
+        return Ok(Some(result));
+    }
+}
+
+/// The next mesh, so many times as fine as one with so many cells across; the finest one that is allowed, where that is finer enough.
+fn next_grid(domain: &Domain, across: f64, ratio: f64, most_cells: usize) -> Result<(f64, Grid)> {
+    let ratio = ratio.clamp(RATIOS[0], RATIOS[1]);
+    let next = domain.grid(ratio * across)?;
+    if next.len() <= most_cells {
+        return Ok((ratio * across, next));
+    }
+    // sizes of grids go by steps of up to a tenth
+    let allowed = 0.9 * ratio * (most_cells as f64 / next.len() as f64).sqrt();
+    let finer = allowed.clamp(RATIOS[0], ratio) * across;
+    Ok((finer, domain.grid(finer)?))
+}
+
+impl Budget {
+    /// Why a study ends with what it has, before the next mesh.
+    fn ending(&self, result: &StudyResult, next: &Grid, work: f64, unconverged: usize) -> Option<Ending> {
+        let accuracy = result.accuracy.target();
+        let mut asked = result.quantities.iter().filter(|own| own.is_asked);
+        // what the next mesh takes by what the last one took
+        let size = next.len() as f64 / result.grid().len() as f64;
+        let expected = result.work_of_finest() * size.powf(1.0 + 0.5 * result.growth.convolutions);
+        let bytes = (result.bytes() as f64 * size) as u64;
+        match () {
+            () if asked.clone().all(|own| own.error().is_some_and(|error| error <= accuracy)) => Some(Ending::Reached),
+            () if asked.any(|own| own.time >= accuracy) => Some(Ending::Time),
+            () if unconverged >= MOST_UNCONVERGED => Some(Ending::NoConvergence),
+            () if next.len() > self.cells => Some(Ending::Cells),
+            () if self.bytes.is_some_and(|most| bytes > most) => Some(Ending::Memory),
+            () if self.work.is_some_and(|most| work + expected > most) => Some(Ending::Work),
+            () => None,
         }
     }
 }
 
 /// Runs the first mesh on a domain that holds the contact, in steps that are short enough.
-fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain) -> Result<First> {
+fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) -> Result<First> {
     let accuracy = runs.scene.accuracy.target();
     let mut tolerance = (TOLERANCE * accuracy).clamp(TOLERANCES[0], TOLERANCES[1]);
     let mut across = if domain.is_given() { ACROSS_GIVEN } else { ACROSS };
     let mut tries = 0;
     let level = loop {
         tries += 1;
-        match runs.level(domain.grid(across)?, tolerance, &[]) {
+        let grid = domain.grid(across)?;
+        let allowed = "those of the first mesh that resolves the scene, or more";
+        count_within("cells of a study", most_cells, grid.len() <= most_cells, allowed)?;
+        match runs.level(grid, tolerance, &[]) {
             Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && tries < MOST_GROWN => {
                 domain = domain.grown();
             }
             // the first mesh that resolves the attraction
-            Err(Error::Adhesion(AdhesionError::ZoneNotResolved { .. })) if across < 1e4 => across *= RATIO,
+            Err(Error::Adhesion(AdhesionError::ZoneNotResolved { .. })) => across *= RATIO,
             Err(error) => return Err(error),
             Ok(level) if level.domain.is_narrower(&domain, NARROWER) && tries < MOST_GROWN => domain = level.domain,
             Ok(level) => break level,
